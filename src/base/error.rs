@@ -1,0 +1,77 @@
+use std::path::PathBuf;
+
+/// What can go wrong, each with what, where and what to do about it.
+#[derive(Debug, thiserror::Error)]
+pub enum Error {
+    /// A value outside its legal range.
+    #[error("{key} = {value} is not valid: {reason}; {remedy}")]
+    Value {
+        /// The key as it stands in the file, e.g. `block.poisson`.
+        key: String,
+        /// The value found.
+        value: String,
+        /// Why it is refused.
+        reason: String,
+        /// What to write instead.
+        remedy: String,
+    },
+    /// A file that does not parse or holds something that must not be there.
+    #[error("{}{}: {message}; {remedy}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1, where it is known.
+        line: Option<usize>,
+        /// What is wrong.
+        message: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// Reading or writing failed.
+    #[error("cannot {action} {}: {source}", path.display())]
+    Io {
+        /// What was tried, e.g. `read` or `create`.
+        action: &'static str,
+        /// Where.
+        path: PathBuf,
+        /// What the system said.
+        source: std::io::Error,
+    },
+    /// The contact solver did not converge.
+    #[error(
+        "contact did not converge after {iterations} iterations (edge residual {residual:.1e} p0); {remedy}"
+    )]
+    NotConverged {
+        /// Iterations done.
+        iterations: usize,
+        /// What is left, in units of p0.
+        residual: f64,
+        /// What to do.
+        remedy: String,
+    },
+    /// A child process failed, hung or wrote nonsense.
+    #[error("{program}: {message}\n{log_tail}\n{remedy}")]
+    Child {
+        /// The program and its stage.
+        program: String,
+        /// What happened.
+        message: String,
+        /// The end of its output.
+        log_tail: String,
+        /// What to do.
+        remedy: String,
+    },
+    /// A tool that is not installed.
+    #[error("{tool} was not found ({searched}); {remedy}")]
+    Missing {
+        /// The tool.
+        tool: String,
+        /// Where it was looked for.
+        searched: String,
+        /// What to install.
+        remedy: String,
+    },
+}
+
+/// The library's result.
+pub type Result<T> = std::result::Result<T, Error>;

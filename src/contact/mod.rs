@@ -1,0 +1,1 @@
+//! Load-controlled contact of two bodies.

@@ -1,0 +1,1 @@
+//! Closed forms only: pure functions, no allocation.

@@ -1,0 +1,143 @@
+//! The standard curves: the places at which every method and FEM are compared.
+//!
+//! All coordinates here are in units of C; `half_length` is S_l = L1 / (2 C).
+
+use serde::{Deserialize, Serialize};
+
+/// One of the two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyKind {
+    /// The rectangular block.
+    Block,
+    /// The roller.
+    Roller,
+}
+
+impl BodyKind {
+    /// Both bodies, the block first.
+    pub const ALL: [BodyKind; 2] = [BodyKind::Block, BodyKind::Roller];
+
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            BodyKind::Block => "block",
+            BodyKind::Roller => "roller",
+        }
+    }
+}
+
+/// A named list of points of one body.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CurveSpec {
+    /// The body the points lie in.
+    pub body: BodyKind,
+    /// The curve's name, e.g. `depth-end`.
+    pub name: &'static str,
+    /// Points (x, y, z) in units of C, z into the body, in the order of the running coordinate.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// Names of the standard curves, in the order of [`standard_curves`].
+pub const CURVE_NAMES: [&str; 7] = [
+    "surface-along-y",
+    "surface-along-x",
+    "depth-centre",
+    "depth-0.9",
+    "depth-end",
+    "along-y-0.5C",
+    "along-y-0.78C",
+];
+
+/// Distances from the roller's end at which curves along y are sampled (units of C).
+const END_DISTANCES: [f64; 22] = [
+    0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0,
+    4.0, 5.0, 6.5, 8.0,
+];
+
+/// How far beyond the roller's end curves of a longer block go (units of C).
+const OUTWARD: f64 = 3.0;
+
+/// Distances from the roller's end, ascending, up to `half_length` (which is the last).
+fn end_distances(half_length: f64) -> Vec<f64> {
+    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < half_length).collect();
+    let mut decade = 1.0;
+    'grow: loop {
+        for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
+            let next = 10.0 * decade * step;
+            if next >= half_length {
+                break 'grow;
+            }
+            s.push(next);
+        }
+        decade *= 10.0;
+    }
+    s.push(half_length);
+    s
+}
+
+/// y of the points on the contact line, from the centre to the roller's end (units of C).
+pub fn contact_line(half_length: f64) -> Vec<f64> {
+    end_distances(half_length).iter().rev().map(|s| half_length - s).collect()
+}
+
+/// x of the points across the contact, from the centre outwards (units of C).
+pub fn across_contact() -> Vec<f64> {
+    (0..=30).map(|i| 0.05 * f64::from(i)).collect()
+}
+
+/// Depths of the depth profiles (units of C).
+pub fn depths() -> Vec<f64> {
+    let mut z = vec![0.0, 0.02];
+    z.extend((1..=30).map(|i| 0.05 * f64::from(i)));
+    z.extend((16..=30).map(|i| 0.1 * f64::from(i)));
+    z.extend([3.5, 4.0, 5.0]);
+    z
+}
+
+/// The standard curves of one body. `half_length` is the roller's half-length and
+/// `body_half_length` that of the body (units of C); a longer body's curves along y go on past
+/// the roller's end for up to three C.
+pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
+    let mut y = contact_line(half_length);
+    let ledge = body_half_length - half_length;
+    if ledge > 0.0 {
+        let reach = ledge.min(OUTWARD);
+        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach);
+        y.extend(outward.map(|s| half_length + s));
+        y.push(half_length + reach);
+    }
+    let mut x = across_contact();
+    x.extend([1.75, 2.0, 2.5, 3.0]);
+    let along_y = |depth: f64| y.iter().map(|&y| [0.0, y, depth]).collect::<Vec<_>>();
+    let along_z = |y: f64| depths().iter().map(|&z| [0.0, y, z]).collect::<Vec<_>>();
+    let points = [
+        along_y(0.0),
+        x.iter().map(|&x| [x, 0.0, 0.0]).collect(),
+        along_z(0.0),
+        along_z(0.9 * half_length),
+        along_z(half_length),
+        along_y(0.5),
+        along_y(0.78),
+    ];
+    CURVE_NAMES.iter().zip(points).map(|(&name, points)| CurveSpec { body, name, points }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn curves_have_the_points_that_records_hold() {
+        assert_eq!(contact_line(5.0).first(), Some(&0.0));
+        assert_eq!(contact_line(5.0).last(), Some(&5.0));
+        assert_eq!(contact_line(5.0).len(), 20);
+        assert_eq!(end_distances(20.0)[20..], [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]);
+        assert_eq!(end_distances(120.0)[30..], [80.0, 100.0, 120.0]);
+        let curves = standard_curves(BodyKind::Block, 5.0, 10.0);
+        assert_eq!(curves[0].points.last(), Some(&[0.0, 8.0, 0.0]));
+        let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
+        assert_eq!(ledge[0].points.last(), Some(&[0.0, 5.0 / 0.99, 0.0]));
+        assert_eq!(depths().len(), 50);
+    }
+}
