@@ -133,7 +133,7 @@ mod tests {
         assert_eq!(contact_line(5.0).last(), Some(&5.0));
         assert_eq!(contact_line(5.0).len(), 20);
         assert_eq!(end_distances(20.0)[20..], [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]);
-        assert_eq!(end_distances(120.0)[30..], [80.0, 100.0, 120.0]);
+        assert_eq!(end_distances(120.0)[30..], [64.0, 80.0, 100.0, 120.0]);
         let curves = standard_curves(BodyKind::Block, 5.0, 10.0);
         assert_eq!(curves[0].points.last(), Some(&[0.0, 8.0, 0.0]));
         let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
