@@ -29,8 +29,11 @@ pub struct Body {
     pub surface: Panels,
     /// Axis of the depth along an end face.
     pub face: Panels,
-    /// Images of the surface axis, itself and its mirror in y = 0 included.
-    pub images: Vec<Image>,
+    /// Images of the surface axis, itself and its mirror in y = 0 included, as they act on the
+    /// displacement.
+    images: Vec<Image>,
+    /// The same as they act on the stresses: an image that psi weighs has its full weight here.
+    pub stress_images: Vec<Image>,
     /// Nodes of `surface` that belong to the contact; they come first.
     contact: usize,
     /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
@@ -89,8 +92,10 @@ impl Body {
                 images.extend([image(1.0, lengths, weight), image(-1.0, lengths, weight)]);
             }
         }
+        let stress_images = images.iter().map(|i| Image { weight: 1.0, ..*i }).collect();
         let mut body = Self {
             half,
+            stress_images,
             nu,
             model,
             face_wavenumbers: resolution.face_wavenumbers(half),
@@ -281,8 +286,8 @@ impl Body {
         matrix
     }
 
-    /// Amplitudes of the plate's remainder at (`y`, `z`) under the face load `q` (at the first
-    /// face nodes), in the components of [`plate::remainder`]; zero where it does not matter.
+    /// Amplitudes of the plate's remainder at (`y`, `z`) under face loads with the given
+    /// [`Body::plate_transform`], in the components of [`plate::remainder`].
     pub fn plate_stress(&self, k: f64, transform: &[f64], y: f64, z: f64) -> [f64; 6] {
         let mut sum = [0.0; 6];
         let axis = &self.face_wavenumbers;
