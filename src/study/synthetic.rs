@@ -1,27 +1,15 @@
 //! Made-up solutions for tests: smooth closed forms of the right shape, different for each model.
 
-use crate::base::{Material, StressTensor};
+use crate::base::{Error, StressTensor};
 use crate::body::EdgeModel;
-use crate::case::{Block, Case, Roller};
+use crate::case::{Case, Study};
 use crate::solve::{Critical, Curve, PressureCell, PressureLine, Seconds, Solution};
 use crate::stress::{BodyKind, curves};
-use std::f64::consts::PI;
+use crate::study::run::{Provenance, Reference, Setup, StudyRun, run as run_study};
+use crate::study::{Range, Sampled};
 
-const STEEL: Material = Material { young_pa: 210e9, poisson: 0.3 };
-
-/// A case with the given factors: steel on steel, R = 10 mm.
-pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
-    let radius_m = 0.01;
-    let c_m = 2.0 * radius_m * (load / PI).sqrt();
-    let length_m = 2.0 * slenderness * c_m;
-    Case {
-        name: format!("W{load:.0e}-S{slenderness}-L{length_ratio}"),
-        roller: Roller { radius_m, length_m, material: STEEL },
-        block: Block { length_m: length_m / length_ratio, material: STEEL },
-        force_n: load * STEEL.contact_modulus(&STEEL) * radius_m * length_m,
-        tolerance: Case::DEFAULT_TOLERANCE,
-    }
-}
+/// What the made-up FEM answer differs by from the quarter-space one (p0).
+pub const SHIFT: f64 = 0.003;
 
 /// How much a model makes of the ends: a share of the end effect in pressure and stress.
 fn end_share(method: EdgeModel) -> f64 {
@@ -33,13 +21,12 @@ fn end_share(method: EdgeModel) -> f64 {
     }
 }
 
-/// A solution of `case` whose end effect has the size of the model's; `shift` (p0) is added to all
-/// normal stresses and the pressure, to tell a "reference" from a method.
-pub fn solution(case: &Case, method: EdgeModel, shift: f64) -> Solution {
+/// A solution of `case` whose end effect is `share`; `shift` (p0) is added to all normal stresses
+/// and the pressure, to tell a "reference" from a method.
+fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution {
     let hertz = case.hertz();
     let (c, p0) = (hertz.c_m, hertz.p0_pa);
     let half = case.factors().slenderness;
-    let share = end_share(method);
     let end = |y: f64| share * (-(half - y).abs() / 0.8).exp();
     let pressure = |x: f64, y: f64| {
         if y.abs() > half { 0.0 } else { (1.0 - x * x).max(0.0).sqrt() * (1.0 + end(y)) + shift }
@@ -117,4 +104,96 @@ pub fn solution(case: &Case, method: EdgeModel, shift: f64) -> Solution {
         points: Vec::new(),
         details: serde_json::json!({ "evaluations": { "done": 100, "skipped": 40 } }),
     }
+}
+
+/// What is wrong with a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Twist {
+    /// Nothing.
+    None,
+    /// One curve of both bodies of FEM is off by a factor in one case.
+    FemCurve { case: String, curve: &'static str, factor: f64 },
+    /// The shear stresses across z have the wrong sign in every method.
+    ShearSign,
+    /// One method's end effect is off by a factor.
+    EndShare(EdgeModel, f64),
+    /// There are no FEM answers.
+    NoReference,
+    /// One method solves nothing.
+    Unsolved(EdgeModel),
+}
+
+/// The built-in study on made-up solutions; FEM is the quarter-space one, shifted.
+pub fn run(twist: Twist) -> StudyRun {
+    let solver = |cases: &[Case], method: EdgeModel| {
+        cases
+            .iter()
+            .map(|case| {
+                let mut share = end_share(method);
+                match twist {
+                    Twist::Unsolved(m) if m == method => {
+                        return Err(Error::NotConverged {
+                            iterations: 7,
+                            residual: 0.1,
+                            remedy: "nothing helps".to_string(),
+                        });
+                    }
+                    Twist::EndShare(m, factor) if m == method => share *= factor,
+                    _ => {}
+                }
+                let mut answer = solution(case, method, share, 0.0);
+                if twist == Twist::ShearSign {
+                    for s in answer.curves.iter_mut().flat_map(|c| &mut c.stress_pa) {
+                        (s.xz, s.yz) = (-s.xz, -s.yz);
+                    }
+                }
+                Ok(answer)
+            })
+            .collect()
+    };
+    let reference = |case: &Case| {
+        if twist == Twist::NoReference {
+            return Err("there is no record".to_string());
+        }
+        let method = EdgeModel::QuarterSpace;
+        let answer = solution(case, method, end_share(method), SHIFT);
+        let mut sampled = Sampled::from_solution(&answer);
+        sampled.source = "fem".to_string();
+        for curve in &mut sampled.curves {
+            curve.own_error = Some(vec![[0.004; 8]; curve.at.len()]);
+            match &twist {
+                Twist::FemCurve { case: name, curve: which, factor }
+                    if *name == case.name && curve.name == *which =>
+                {
+                    curve.stress.iter_mut().for_each(|s| *s = *s * *factor);
+                }
+                _ => {}
+            }
+        }
+        for line in &mut sampled.lines {
+            line.own_error = Some(vec![0.002; line.at.len()]);
+        }
+        let sam = EdgeModel::ALL.map(|m| (m.name().to_string(), [0.01, 0.0004]));
+        let provenance = Provenance {
+            date: Some("2026-01-01".to_string()),
+            machine: Some("a made-up processor".to_string()),
+            unknowns: Some(150_000),
+            seconds: Some(15.0 * case.factors().slenderness / 5.0),
+            seconds_spread: Some(0.3),
+            sam_seconds: sam.into(),
+            ..Default::default()
+        };
+        Ok(Reference { sampled, provenance })
+    };
+    run_study(
+        &Study::built_in(),
+        &Setup {
+            methods: EdgeModel::ALL.to_vec(),
+            range: Range::default(),
+            repeats: 3,
+            solver: &solver,
+            reference: &reference,
+            progress: &|_, _, _| {},
+        },
+    )
 }
