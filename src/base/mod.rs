@@ -1,11 +1,15 @@
-//! Materials, Hertz scales, the stress tensor, quadrature and the error type.
+//! Materials, Hertz scales, the stress tensor, graded axes, quadrature and the error type.
 
 mod error;
 mod material;
+mod panels;
+mod quadrature;
 mod scales;
 mod tensor;
 
 pub use error::{Error, Result};
 pub use material::Material;
+pub use panels::Panels;
+pub use quadrature::gauss_legendre;
 pub use scales::HertzScales;
 pub use tensor::StressTensor;

@@ -1,1 +1,6 @@
 //! Closed forms only: pure functions, no allocation.
+
+pub mod bessel;
+pub mod plate;
+pub mod strip;
+pub mod wave;

@@ -1,0 +1,100 @@
+//! An infinite plate pressed on both faces, and the two half-spaces that carry its steep part.
+//!
+//! The plate is |y| <= H, unbounded in x and z; both faces carry the pressure q cos(k x) cos(l z).
+//! kappa^2 = k^2 + l^2, t = kappa H. In the plane of the wave vector and y the plate is in plane
+//! strain (Timoshenko and Goodier, Theory of Elasticity, 1970, article 24).
+
+/// Amplitudes of the stresses of the plate less those of the two half-spaces behind its faces,
+/// per unit face pressure, at `y`: xx, yy, zz vary as cos(k x) cos(l z), xy as sin(k x) cos(l z),
+/// xz as sin(k x) sin(l z), yz as cos(k x) sin(l z).
+///
+/// `half` > 0 is H, |`y`| <= H, `k` and `l` >= 0 not both zero, `nu` is Poisson's ratio.
+/// The difference is smooth and vanishes like e^(-2 kappa (H - |y|) ...) for large kappa H.
+pub fn remainder(half: f64, nu: f64, k: f64, l: f64, y: f64) -> [f64; 6] {
+    let kappa = k.hypot(l);
+    let t = kappa * half;
+    let a = kappa * y;
+    // Hyperbolic functions of t and a, each divided by e^t.
+    let (up, down) = ((a - t).exp(), (-a - t).exp());
+    let (cosh_a, sinh_a) = (0.5 * (up + down), 0.5 * (up - down));
+    let decay = (-2.0 * t).exp();
+    let (cosh_t, sinh_t) = (0.5 * (1.0 + decay), 0.5 * (1.0 - decay));
+    // (sinh t cosh t + t) / e^(2 t).
+    let d = 0.25 * (1.0 - decay * decay) + t * decay;
+    let across = -((sinh_t + t * cosh_t) * cosh_a - a * sinh_t * sinh_a) / d;
+    let along = -((sinh_t - t * cosh_t) * cosh_a + a * sinh_t * sinh_a) / d;
+    let shear = -(a * sinh_t * cosh_a - t * cosh_t * sinh_a) / d;
+    let (near, far) = (t - a, t + a);
+    // `up` is e^-near and `down` e^-far.
+    let across = across + (1.0 + near) * up + (1.0 + far) * down;
+    let along = along + (1.0 - near) * up + (1.0 - far) * down;
+    let shear = shear - near * up + far * down;
+    let transverse = nu * (along + across);
+    let (kk, ll) = (k / kappa, l / kappa);
+    [
+        along * kk * kk + transverse * ll * ll,
+        across,
+        along * ll * ll + transverse * kk * kk,
+        shear * kk,
+        -(along - transverse) * kk * ll,
+        shear * ll,
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The six stresses of the two half-spaces at y, as the plate's components.
+    fn half_spaces(half: f64, nu: f64, k: f64, l: f64, y: f64) -> [f64; 6] {
+        let kappa = k.hypot(l);
+        let mut sum = [0.0; 6];
+        for (depth, sign) in [(half - y, 1.0), (half + y, -1.0)] {
+            let d = kappa * depth;
+            let e = (-d).exp();
+            let (across, along, shear) = (-(1.0 + d) * e, -(1.0 - d) * e, sign * d * e);
+            let transverse = nu * (across + along);
+            let (kk, ll) = (k / kappa, l / kappa);
+            let all = [
+                along * kk * kk + transverse * ll * ll,
+                across,
+                along * ll * ll + transverse * kk * kk,
+                shear * kk,
+                -(along - transverse) * kk * ll,
+                shear * ll,
+            ];
+            sum.iter_mut().zip(all).for_each(|(s, a)| *s += a);
+        }
+        sum
+    }
+
+    #[test]
+    fn plate_meets_its_boundary_conditions_and_equilibrium() {
+        let (half, nu) = (1.7, 0.3);
+        for (k, l) in [(0.01, 0.02), (0.5, 0.0), (0.0, 0.8), (1.1, 0.7), (3.0, 5.0)] {
+            let at = |y: f64| {
+                let (r, h) = (remainder(half, nu, k, l, y), half_spaces(half, nu, k, l, y));
+                std::array::from_fn::<f64, 6, _>(|i| r[i] + h[i])
+            };
+            for y in [half, -half] {
+                let s = at(y);
+                assert!((s[1] + 1.0).abs() < 1e-12, "yy {}", s[1]);
+                assert!(s[3].abs() < 1e-12 && s[5].abs() < 1e-12);
+            }
+            // Equilibrium along x, y and z of the cosine and sine amplitudes.
+            for y in [0.0, 0.4, 1.2] {
+                let step = 1e-5;
+                let (s, up, down) = (at(y), at(y + step), at(y - step));
+                let slope = |i: usize| (up[i] - down[i]) / (2.0 * step);
+                assert!((-k * s[0] + slope(3) + l * s[4]).abs() < 1e-7);
+                assert!((k * s[3] + slope(1) + l * s[5]).abs() < 1e-7);
+                assert!((k * s[4] + slope(5) - l * s[2]).abs() < 1e-7);
+            }
+        }
+    }
+
+    #[test]
+    fn remainder_vanishes_for_short_waves() {
+        assert!(remainder(10.0, 0.3, 2.0, 1.0, 10.0).iter().all(|s| s.abs() < 1e-15));
+    }
+}
