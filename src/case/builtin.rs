@@ -8,22 +8,10 @@ use std::path::Path;
 pub const BUILTIN_CASES: [(&str, &str); 6] = [
     ("flush-short", include_str!("../../cases/flush-short.toml")),
     ("half-short", include_str!("../../cases/half-short.toml")),
-    (
-        "long-contact",
-        include_str!("../../cases/long-contact.toml"),
-    ),
-    (
-        "validation-nu025",
-        include_str!("../../cases/validation-nu025.toml"),
-    ),
-    (
-        "validation-nu040",
-        include_str!("../../cases/validation-nu040.toml"),
-    ),
-    (
-        "validation-steel-aluminium",
-        include_str!("../../cases/validation-steel-aluminium.toml"),
-    ),
+    ("long-contact", include_str!("../../cases/long-contact.toml")),
+    ("validation-nu025", include_str!("../../cases/validation-nu025.toml")),
+    ("validation-nu040", include_str!("../../cases/validation-nu040.toml")),
+    ("validation-steel-aluminium", include_str!("../../cases/validation-steel-aluminium.toml")),
 ];
 
 /// The built-in case called `name`, if there is one.
@@ -50,10 +38,6 @@ mod tests {
                 .filter(|name| name != "factorial")
                 .collect();
         files.sort();
-        assert_eq!(
-            files,
-            BUILTIN_CASES.map(|(name, _)| name),
-            "cases/ against BUILTIN_CASES"
-        );
+        assert_eq!(files, BUILTIN_CASES.map(|(name, _)| name), "cases/ against BUILTIN_CASES");
     }
 }

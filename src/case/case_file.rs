@@ -43,19 +43,11 @@ impl Case {
         let document = Document::parse(path, text)?;
         let root = document.root();
         if root.get("factors").is_some() {
-            return Err(root.error(
-                "is a study file, not a case file",
-                "run `edgeline study` on it",
-            ));
+            return Err(
+                root.error("is a study file, not a case file", "run `edgeline study` on it")
+            );
         }
-        root.only(&[
-            "name",
-            "roller",
-            "block",
-            "dimensionless",
-            "load",
-            "accuracy",
-        ])?;
+        root.only(&["name", "roller", "block", "dimensionless", "load", "accuracy"])?;
         let name = name(&root)?;
         let roller = root.table("roller")?;
         roller.only(&["radius_m", "length_m", "young_pa", "poisson"])?;
@@ -140,10 +132,7 @@ pub(super) fn name(root: &Table) -> Result<String> {
 
 /// The roller's radius (m).
 pub(super) fn radius(roller: &Table) -> Result<f64> {
-    length(
-        &roller.require("radius_m", "radius_m = 10e-3")?,
-        "the roller's radius in metres",
-    )
+    length(&roller.require("radius_m", "radius_m = 10e-3")?, "the roller's radius in metres")
 }
 
 /// Young's modulus and Poisson's ratio.
@@ -159,10 +148,7 @@ pub(super) fn material(table: &Table) -> Result<Material> {
     }
     // The lower limit also catches moduli that were written in GPa or MPa.
     let young_pa = young.number_in(1e3, 1e14, "Young's modulus in pascals")?;
-    Ok(Material {
-        young_pa,
-        poisson: nu,
-    })
+    Ok(Material { young_pa, poisson: nu })
 }
 
 /// `[accuracy] tolerance`, or its default.
@@ -208,37 +194,16 @@ fn check_factors(case: &Case, force: &Entry, roller: &Entry, block: &Entry) -> R
     let outside = |value: f64, (low, high): (f64, f64)| !(low..=high).contains(&value);
     if factors.length_ratio > 1.0 {
         return Err(block.refuse(
-            format!(
-                "the block is shorter than the roller ({:e} m)",
-                case.roller.length_m
-            ),
+            format!("the block is shorter than the roller ({:e} m)", case.roller.length_m),
             "make it at least as long: equal lengths are flush ends",
         ));
     }
     let checks: [(&Entry, &str, f64, (f64, f64)); 3] = [
-        (
-            block,
-            "L_r = L1 / L2",
-            factors.length_ratio,
-            Factors::LENGTH_RATIO_RANGE,
-        ),
-        (
-            force,
-            "W = w / (E* R L1)",
-            factors.load,
-            Factors::LOAD_RANGE,
-        ),
-        (
-            roller,
-            "S_l = L1 / (2 C)",
-            factors.slenderness,
-            Factors::SLENDERNESS_RANGE,
-        ),
+        (block, "L_r = L1 / L2", factors.length_ratio, Factors::LENGTH_RATIO_RANGE),
+        (force, "W = w / (E* R L1)", factors.load, Factors::LOAD_RANGE),
+        (roller, "S_l = L1 / (2 C)", factors.slenderness, Factors::SLENDERNESS_RANGE),
     ];
-    match checks
-        .into_iter()
-        .find(|&(_, _, value, range)| outside(value, range))
-    {
+    match checks.into_iter().find(|&(_, _, value, range)| outside(value, range)) {
         Some((entry, what, value, (low, high))) => Err(entry.refuse(
             format!("{what} becomes {value:.3e} and must lie between {low:e} and {high:e}"),
             "check the units of the load (N), the lengths and the radius (m), and the moduli (Pa)",

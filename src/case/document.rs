@@ -15,16 +15,10 @@ const MAX_BYTES: u64 = 1 << 20;
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String> {
-    let io = |source| Error::Io {
-        action: "read",
-        path: path.to_path_buf(),
-        source,
-    };
+    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
     let mut bytes = Vec::new();
     let file = std::fs::File::open(path).map_err(io)?;
-    file.take(MAX_BYTES + 1)
-        .read_to_end(&mut bytes)
-        .map_err(io)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
     let refuse = |message: &str| Error::File {
         path: path.to_path_buf(),
         line: None,
@@ -47,11 +41,7 @@ pub(super) struct Document<'a> {
 impl<'a> Document<'a> {
     /// Parses `text`; `path` is only named in errors.
     pub fn parse(path: &'a Path, text: &'a str) -> Result<Self> {
-        let mut document = Self {
-            path,
-            text,
-            root: DeTable::new(),
-        };
+        let mut document = Self { path, text, root: DeTable::new() };
         match DeTable::parse(text) {
             Ok(root) => document.root = root.into_inner(),
             Err(e) => {
@@ -64,12 +54,7 @@ impl<'a> Document<'a> {
 
     /// The top level.
     pub fn root(&self) -> Table<'_> {
-        Table {
-            document: self,
-            name: String::new(),
-            span: None,
-            entries: &self.root,
-        }
+        Table { document: self, name: String::new(), span: None, entries: &self.root }
     }
 
     fn error(
@@ -128,11 +113,7 @@ impl<'d> Table<'d> {
     /// The value of `key`, if it is there.
     pub fn get(&self, key: &str) -> Option<Entry<'d>> {
         let (_, value) = self.entries.iter().find(|(k, _)| k.get_ref() == key)?;
-        Some(Entry {
-            document: self.document,
-            key: self.full_key(key),
-            value,
-        })
+        Some(Entry { document: self.document, key: self.full_key(key), value })
     }
 
     /// The value of `key`; `example` shows what to write where it is missing.
@@ -163,11 +144,7 @@ impl<'d> Table<'d> {
     }
 
     fn full_key(&self, key: &str) -> String {
-        if self.name.is_empty() {
-            key.to_string()
-        } else {
-            format!("{}.{key}", self.name)
-        }
+        if self.name.is_empty() { key.to_string() } else { format!("{}.{key}", self.name) }
     }
 }
 
@@ -219,10 +196,7 @@ impl<'d> Entry<'d> {
         };
         match parsed {
             Some(v) if f64::is_finite(v) => Ok(v),
-            _ => Err(self.refuse(
-                "a finite number belongs here",
-                "write for example 1.5 or 2e-4",
-            )),
+            _ => Err(self.refuse("a finite number belongs here", "write for example 1.5 or 2e-4")),
         }
     }
 
@@ -260,11 +234,7 @@ impl<'d> Entry<'d> {
     pub fn list(&self) -> Result<Vec<Entry<'d>>> {
         match self.value.get_ref() {
             DeValue::Array(items) if !items.is_empty() => {
-                let item = |value| Entry {
-                    document: self.document,
-                    key: self.key.clone(),
-                    value,
-                };
+                let item = |value| Entry { document: self.document, key: self.key.clone(), value };
                 Ok(items.iter().map(item).collect())
             }
             _ => Err(self.refuse("a list belongs here", "write [first, second]")),

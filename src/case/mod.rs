@@ -90,15 +90,8 @@ impl Case {
         let length_m = 2.0 * c_m * factors.slenderness;
         Self {
             name: name.into(),
-            roller: Roller {
-                radius_m,
-                length_m,
-                material: roller,
-            },
-            block: Block {
-                length_m: length_m / factors.length_ratio,
-                material: block,
-            },
+            roller: Roller { radius_m, length_m, material: roller },
+            block: Block { length_m: length_m / factors.length_ratio, material: block },
             force_n: factors.load * e_star * radius_m * length_m,
             tolerance: Self::DEFAULT_TOLERANCE,
         }
@@ -107,12 +100,7 @@ impl Case {
     /// The Hertz line-contact scales.
     pub fn hertz(&self) -> HertzScales {
         let e_star = self.roller.material.contact_modulus(&self.block.material);
-        HertzScales::new(
-            e_star,
-            self.roller.radius_m,
-            self.roller.length_m,
-            self.force_n,
-        )
+        HertzScales::new(e_star, self.roller.radius_m, self.roller.length_m, self.force_n)
     }
 
     /// W, S_l and L_r.

@@ -61,14 +61,11 @@ impl Study {
         if root.get("factors").is_none()
             && (root.get("dimensionless").is_some() || root.get("load").is_some())
         {
-            return Err(root.error(
-                "is a case file, not a study file",
-                "run `edgeline solve` on it",
-            ));
+            return Err(
+                root.error("is a case file, not a study file", "run `edgeline solve` on it")
+            );
         }
-        root.only(&[
-            "name", "centre", "cases", "roller", "block", "factors", "accuracy",
-        ])?;
+        root.only(&["name", "centre", "cases", "roller", "block", "factors", "accuracy"])?;
         let base = Base::read(&root)?;
         let levels = root.table("factors")?;
         levels.only(&["W", "S_l", "L_r"])?;
@@ -81,11 +78,7 @@ impl Study {
             centre: None,
             extra: Vec::new(),
         };
-        let sizes = [
-            &study.load_levels,
-            &study.slenderness_levels,
-            &study.length_ratio_levels,
-        ];
+        let sizes = [&study.load_levels, &study.slenderness_levels, &study.length_ratio_levels];
         if sizes.iter().map(|l| l.len()).product::<usize>() > MAX_CASES {
             let message = format!("the levels combine to more than {MAX_CASES} cases");
             return Err(levels.error(message, "give fewer levels"));
@@ -94,11 +87,7 @@ impl Study {
             for &slenderness in &study.slenderness_levels {
                 for &length_ratio in &study.length_ratio_levels {
                     let name = format!("w{load:e}_sl{slenderness}_lr{length_ratio}");
-                    let factors = Factors {
-                        load,
-                        slenderness,
-                        length_ratio,
-                    };
+                    let factors = Factors { load, slenderness, length_ratio };
                     study.corners.push(base.case(name, factors));
                 }
             }
@@ -156,20 +145,14 @@ impl Base {
 
     fn case(&self, name: String, factors: Factors) -> Case {
         let case = Case::from_factors(name, self.radius_m, self.roller, self.block, factors);
-        Case {
-            tolerance: self.tolerance,
-            ..case
-        }
+        Case { tolerance: self.tolerance, ..case }
     }
 }
 
 /// The levels of one factor, all different.
 fn read_levels(table: &Table, key: &str, read: impl Fn(&Entry) -> Result<f64>) -> Result<Vec<f64>> {
     let mut levels: Vec<f64> = Vec::new();
-    for entry in table
-        .require(key, &format!("{key} = [low, high]"))?
-        .list()?
-    {
+    for entry in table.require(key, &format!("{key} = [low, high]"))?.list()? {
         let level = read(&entry)?;
         if levels.contains(&level) {
             return Err(entry.refuse("this level is there already", "remove it"));

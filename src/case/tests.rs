@@ -65,22 +65,14 @@ fn loaded_case_keeps_its_values() {
     let case = parse(LOADED).unwrap();
     assert_eq!((case.force_n, case.tolerance), (1000.0, 1e-2));
     assert_eq!((case.roller.length_m, case.block.length_m), (20e-3, 40e-3));
-    assert_eq!(
-        case.block.material,
-        crate::base::Material {
-            young_pa: 70e9,
-            poisson: 0.33
-        }
-    );
+    assert_eq!(case.block.material, crate::base::Material { young_pa: 70e9, poisson: 0.33 });
     assert!(close(case.factors().length_ratio, 0.5));
 }
 
 /// Replaces one line of `text` and returns the error's text.
 fn broken(text: &str, line: &str, with: &str) -> String {
     assert!(text.contains(line), "{line} is not in the text");
-    parse(&text.replacen(line, with, 1))
-        .expect_err(with)
-        .to_string()
+    parse(&text.replacen(line, with, 1)).expect_err(with).to_string()
 }
 
 #[test]
@@ -91,118 +83,46 @@ fn errors_name_key_line_and_remedy() {
             "poison = 0.3",
             "f.toml:5: unknown key roller.poison; did you mean poisson?",
         ),
-        (
-            "poisson = 0.3",
-            "poisson = 0.5",
-            "f.toml:5: roller.poisson = 0.5 is not valid",
-        ),
-        (
-            "poisson = 0.3",
-            "poisson = -0.1",
-            "f.toml:5: roller.poisson = -0.1 is not valid",
-        ),
-        (
-            "radius_m = 10e-3",
-            "radius_m = 0",
-            "f.toml:3: roller.radius_m = 0 is not valid",
-        ),
-        (
-            "radius_m = 10e-3",
-            "radius_m = nan",
-            "f.toml:3: roller.radius_m = nan is not valid",
-        ),
-        (
-            "radius_m = 10e-3",
-            "radius_m = inf",
-            "f.toml:3: roller.radius_m = inf is not valid",
-        ),
+        ("poisson = 0.3", "poisson = 0.5", "f.toml:5: roller.poisson = 0.5 is not valid"),
+        ("poisson = 0.3", "poisson = -0.1", "f.toml:5: roller.poisson = -0.1 is not valid"),
+        ("radius_m = 10e-3", "radius_m = 0", "f.toml:3: roller.radius_m = 0 is not valid"),
+        ("radius_m = 10e-3", "radius_m = nan", "f.toml:3: roller.radius_m = nan is not valid"),
+        ("radius_m = 10e-3", "radius_m = inf", "f.toml:3: roller.radius_m = inf is not valid"),
         ("radius_m = 10e-3", "radius_m = 1e999", "f.toml:3: "),
-        (
-            "radius_m = 10e-3",
-            "radius_m = 0x10",
-            "f.toml:3: roller.radius_m = 0x10 is not valid",
-        ),
+        ("radius_m = 10e-3", "radius_m = 0x10", "f.toml:3: roller.radius_m = 0x10 is not valid"),
         (
             "radius_m = 10e-3",
             "radius_m = \"10\"",
             "f.toml:3: roller.radius_m = \"10\" is not valid",
         ),
-        (
-            "radius_m = 10e-3",
-            "radius_m = [10]",
-            "f.toml:3: roller.radius_m = [10] is not valid",
-        ),
+        ("radius_m = 10e-3", "radius_m = [10]", "f.toml:3: roller.radius_m = [10] is not valid"),
         (
             "radius_m = 10e-3",
             "radius = 10e-3",
             "f.toml:3: unknown key roller.radius; did you mean radius_m?",
         ),
-        (
-            "radius_m = 10e-3",
-            "",
-            "f.toml:2: roller.radius_m is missing; add for example `radius_m",
-        ),
-        (
-            "radius_m = 10e-3",
-            "radius_m 10e-3",
-            "f.toml:3: is not valid TOML",
-        ),
-        (
-            "radius_m = 10e-3",
-            "radius_m = 1\nradius_m = 2",
-            "f.toml:4: is not valid TOML",
-        ),
-        (
-            "young_pa = 210e9",
-            "young_pa = 210",
-            "f.toml:4: roller.young_pa = 210 is not valid",
-        ),
+        ("radius_m = 10e-3", "", "f.toml:2: roller.radius_m is missing; add for example `radius_m"),
+        ("radius_m = 10e-3", "radius_m 10e-3", "f.toml:3: is not valid TOML"),
+        ("radius_m = 10e-3", "radius_m = 1\nradius_m = 2", "f.toml:4: is not valid TOML"),
+        ("young_pa = 210e9", "young_pa = 210", "f.toml:4: roller.young_pa = 210 is not valid"),
         (
             "L_r = 0.5",
             "L_r = 1.01",
             "f.toml:12: dimensionless.L_r = 1.01 is not valid: the roller would be longer",
         ),
         ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
-        (
-            "W = 5e-4",
-            "W = -5e-4",
-            "f.toml:10: dimensionless.W = -5e-4 is not valid",
-        ),
-        (
-            "W = 5e-4",
-            "w = 5e-4",
-            "f.toml:10: unknown key dimensionless.w; did you mean W?",
-        ),
-        (
-            "S_l = 5.0",
-            "S_l = 0.1",
-            "f.toml:11: dimensionless.S_l = 0.1 is not valid",
-        ),
+        ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
+        ("W = 5e-4", "w = 5e-4", "f.toml:10: unknown key dimensionless.w; did you mean W?"),
+        ("S_l = 5.0", "S_l = 0.1", "f.toml:11: dimensionless.S_l = 0.1 is not valid"),
         (
             "[block]",
             "[block]\nlength_m = 1",
             "f.toml:7: block.length_m = 1 is not valid: the lengths follow",
         ),
-        (
-            "[block]",
-            "[blok]",
-            "f.toml:6: unknown key blok; did you mean block?",
-        ),
-        (
-            "name = \"one\"",
-            "name = \"a/b\"",
-            "f.toml:1: name = \"a/b\" is not valid",
-        ),
-        (
-            "name = \"one\"",
-            "name = 1",
-            "f.toml:1: name = 1 is not valid: a text belongs here",
-        ),
-        (
-            "name = \"one\"",
-            "name = \"one\"\nroller = 3",
-            "is not valid TOML",
-        ),
+        ("[block]", "[blok]", "f.toml:6: unknown key blok; did you mean block?"),
+        ("name = \"one\"", "name = \"a/b\"", "f.toml:1: name = \"a/b\" is not valid"),
+        ("name = \"one\"", "name = 1", "f.toml:1: name = 1 is not valid: a text belongs here"),
+        ("name = \"one\"", "name = \"one\"\nroller = 3", "is not valid TOML"),
         (
             "[dimensionless]",
             "[load]\nforce_n = 1\n[dimensionless]",
@@ -224,16 +144,8 @@ fn errors_name_key_line_and_remedy() {
             "length_m = 19e-3",
             "f.toml:8: block.length_m = 19e-3 is not valid: the block is shorter",
         ),
-        (
-            "length_m = 20e-3",
-            "",
-            "f.toml:2: roller.length_m is missing",
-        ),
-        (
-            "force_n = 1000",
-            "force_n = 1e12",
-            "f.toml:12: load.force_n = 1e12 is not valid: W = ",
-        ),
+        ("length_m = 20e-3", "", "f.toml:2: roller.length_m is missing"),
+        ("force_n = 1000", "force_n = 1e12", "f.toml:12: load.force_n = 1e12 is not valid: W = "),
         (
             "force_n = 1000",
             "force_n = 1000\nunit = 1",
@@ -250,17 +162,9 @@ fn errors_name_key_line_and_remedy() {
 
 #[test]
 fn missing_file_names_the_built_in_cases() {
-    let message = Case::find(Path::new("flush-shirt"))
-        .unwrap_err()
-        .to_string();
-    assert!(
-        message.contains("no such file") && message.contains("flush-short"),
-        "{message}"
-    );
-    assert_eq!(
-        Case::find(Path::new("flush-short")).unwrap().name,
-        "flush-short"
-    );
+    let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
+    assert!(message.contains("no such file") && message.contains("flush-short"), "{message}");
+    assert_eq!(Case::find(Path::new("flush-short")).unwrap().name, "flush-short");
 }
 
 #[test]
@@ -271,12 +175,7 @@ fn files_that_are_no_text_are_refused() {
     assert!(Case::read(&path).unwrap_err().to_string().contains("UTF-8"));
     std::fs::write(&path, vec![b'#'; 2 << 20]).unwrap();
     assert!(Case::read(&path).unwrap_err().to_string().contains("1 MiB"));
-    assert!(
-        Case::read(folder.path())
-            .unwrap_err()
-            .to_string()
-            .contains("cannot read")
-    );
+    assert!(Case::read(folder.path()).unwrap_err().to_string().contains("cannot read"));
 }
 
 #[test]
@@ -300,10 +199,7 @@ fn default_study_is_the_two_level_factorial() {
     let low = study.corners[0].factors();
     assert!(close(low.load, 1e-4) && close(low.slenderness, 5.0) && close(low.length_ratio, 0.5));
     let centre = study.centre.unwrap().factors();
-    assert!(
-        close(centre.load, 1e-7f64.sqrt()) && close(centre.slenderness, 10.0),
-        "{centre:?}"
-    );
+    assert!(close(centre.load, 1e-7f64.sqrt()) && close(centre.slenderness, 10.0), "{centre:?}");
     assert!(close(centre.length_ratio, 0.75), "{centre:?}");
 }
 
@@ -323,38 +219,19 @@ fn study_lists_further_cases_beside_it_or_built_in() {
 #[test]
 fn study_errors_name_key_line_and_remedy() {
     let line = |key: &str| {
-        1 + DEFAULT_STUDY
-            .lines()
-            .position(|l| l.starts_with(key))
-            .expect("key in the study")
+        1 + DEFAULT_STUDY.lines().position(|l| l.starts_with(key)).expect("key in the study")
     };
     for (key, with, wanted) in [
-        (
-            "W = ",
-            "W = []",
-            "factors.W = [] is not valid: a list belongs here",
-        ),
-        (
-            "W = ",
-            "W = 1e-4",
-            "factors.W = 1e-4 is not valid: a list belongs here",
-        ),
-        (
-            "W = ",
-            "W = [1e-4, 1e-4]",
-            "factors.W = 1e-4 is not valid: this level is there already",
-        ),
+        ("W = ", "W = []", "factors.W = [] is not valid: a list belongs here"),
+        ("W = ", "W = 1e-4", "factors.W = 1e-4 is not valid: a list belongs here"),
+        ("W = ", "W = [1e-4, 1e-4]", "factors.W = 1e-4 is not valid: this level is there already"),
         ("W = ", "W = [1e-4, -1]", "factors.W = -1 is not valid"),
         (
             "L_r = ",
             "L_r = [0.5, 1.5]",
             "factors.L_r = 1.5 is not valid: the roller would be longer",
         ),
-        (
-            "S_l = ",
-            "S_1 = [5]",
-            "unknown key factors.S_1; did you mean S_l?",
-        ),
+        ("S_l = ", "S_1 = [5]", "unknown key factors.S_1; did you mean S_l?"),
         ("centre = ", "centre = 1", "centre = 1 is not valid"),
         (
             "centre = ",
@@ -372,34 +249,19 @@ fn study_errors_name_key_line_and_remedy() {
         lines[number - 1] = with;
         let message = parse_study(&lines.join("\n")).expect_err(with).to_string();
         assert!(message.contains(wanted), "{with}: {message}");
-        assert!(
-            message.starts_with(&format!("f.toml:{number}: ")),
-            "{with}: {message}"
-        );
+        assert!(message.starts_with(&format!("f.toml:{number}: ")), "{with}: {message}");
     }
     let message = parse_study(DIMENSIONLESS).unwrap_err().to_string();
-    assert!(
-        message.contains("is a case file, not a study file"),
-        "{message}"
-    );
+    assert!(message.contains("is a case file, not a study file"), "{message}");
     let many: Vec<String> = (1..=2100).map(|i| format!("{i}")).collect();
     let text = DEFAULT_STUDY.replace("S_l = [5.0, 20.0]", &format!("S_l = [{}]", many.join(",")));
-    assert!(
-        parse_study(&text)
-            .unwrap_err()
-            .to_string()
-            .contains("more than 4096 cases")
-    );
+    assert!(parse_study(&text).unwrap_err().to_string().contains("more than 4096 cases"));
 }
 
 /// A valid file with one slice replaced by arbitrary text.
 fn mutilated() -> impl Strategy<Value = String> {
     let files = prop_oneof![Just(DIMENSIONLESS), Just(LOADED), Just(DEFAULT_STUDY)];
-    (
-        files,
-        any::<(prop::sample::Index, usize)>(),
-        "\\PC{0,12}|[\\[\\]{}=\"\n#,.0-9e+-]{0,12}",
-    )
+    (files, any::<(prop::sample::Index, usize)>(), "\\PC{0,12}|[\\[\\]{}=\"\n#,.0-9e+-]{0,12}")
         .prop_map(|(text, (at, length), with)| {
             let start = at.index(text.len());
             let end = (start + length % 20).min(text.len());
