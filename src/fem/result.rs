@@ -53,8 +53,7 @@ impl FemSummary {
             ("load_error_rel", self.load_error_rel),
             ("equilibrium_residual", self.equilibrium_residual),
         ] {
-            // NaN fails as well.
-            if !(value.abs() <= 1e-6) {
+            if value.is_nan() || value.abs() > 1e-6 {
                 return Err(nonsense(path, None, format!("{name} = {value:e} is more than 1e-6")));
             }
         }

@@ -1,1 +1,3 @@
-//! See the crate's list of layers.
+//! One file per form of output.
+
+pub mod solution;
