@@ -2,6 +2,7 @@
 
 pub mod chart;
 pub mod plots;
+pub mod solution;
 pub mod study_files;
 pub mod table;
 
