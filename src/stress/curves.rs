@@ -58,14 +58,18 @@ const END_DISTANCES: [f64; 22] = [
 /// How far beyond the roller's end curves of a longer block go (units of C).
 const OUTWARD: f64 = 3.0;
 
+/// Lengths that differ by less than this part are the same: they have been to SI units and back.
+const SAME: f64 = 1e-9;
+
 /// Distances from the roller's end, ascending, up to `half_length` (which is the last).
 fn end_distances(half_length: f64) -> Vec<f64> {
-    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < half_length).collect();
+    let below = half_length * (1.0 - SAME);
+    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < below).collect();
     let mut decade = 1.0;
     'grow: loop {
         for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
             let next = 10.0 * decade * step;
-            if next >= half_length {
+            if next >= below {
                 break 'grow;
             }
             s.push(next);
@@ -78,7 +82,11 @@ fn end_distances(half_length: f64) -> Vec<f64> {
 
 /// y of the points on the contact line, from the centre to the roller's end (units of C).
 pub fn contact_line(half_length: f64) -> Vec<f64> {
-    end_distances(half_length).iter().rev().map(|s| half_length - s).collect()
+    end_distances(half_length)
+        .iter()
+        .rev()
+        .map(|s| half_length - s)
+        .collect()
 }
 
 /// x of the points across the contact, from the centre outwards (units of C).
@@ -101,9 +109,9 @@ pub fn depths() -> Vec<f64> {
 pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
     let mut y = contact_line(half_length);
     let ledge = body_half_length - half_length;
-    if ledge > 0.0 {
+    if ledge > SAME * half_length {
         let reach = ledge.min(OUTWARD);
-        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach);
+        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
         y.extend(outward.map(|s| half_length + s));
         y.push(half_length + reach);
     }
@@ -120,7 +128,11 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
         along_y(0.5),
         along_y(0.78),
     ];
-    CURVE_NAMES.iter().zip(points).map(|(&name, points)| CurveSpec { body, name, points }).collect()
+    CURVE_NAMES
+        .iter()
+        .zip(points)
+        .map(|(&name, points)| CurveSpec { body, name, points })
+        .collect()
 }
 
 #[cfg(test)]
@@ -132,12 +144,20 @@ mod tests {
         assert_eq!(contact_line(5.0).first(), Some(&0.0));
         assert_eq!(contact_line(5.0).last(), Some(&5.0));
         assert_eq!(contact_line(5.0).len(), 20);
-        assert_eq!(end_distances(20.0)[20..], [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]);
+        assert_eq!(
+            end_distances(20.0)[20..],
+            [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]
+        );
         assert_eq!(end_distances(120.0)[30..], [64.0, 80.0, 100.0, 120.0]);
         let curves = standard_curves(BodyKind::Block, 5.0, 10.0);
         assert_eq!(curves[0].points.last(), Some(&[0.0, 8.0, 0.0]));
         let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
         assert_eq!(ledge[0].points.last(), Some(&[0.0, 5.0 / 0.99, 0.0]));
         assert_eq!(depths().len(), 50);
+        for rounded in [5.0 * (1.0 - 1e-15), 5.0 * (1.0 + 1e-15)] {
+            let flush = standard_curves(BodyKind::Block, 5.0, rounded);
+            assert_eq!(flush[0].points.len(), 20);
+            assert_eq!(contact_line(rounded).len(), 20);
+        }
     }
 }
