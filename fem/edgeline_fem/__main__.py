@@ -2,8 +2,10 @@
 
 import argparse
 import json
+import logging
 import os
 import sys
+from pathlib import Path
 
 # One thread a process: ranks and jobs are what runs in parallel here, and BLAS reads this when loaded.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
@@ -48,6 +50,23 @@ def _probe(arguments):
     print(json.dumps({**versions(), "gmsh": gmsh}))
 
 
+def _record(arguments):
+    from .record import read_cases, record
+
+    cases = read_cases(arguments.folder / "cases.toml")
+    names = arguments.cases or list(cases)
+    unknown = [name for name in names if name not in cases]
+    if unknown:
+        raise FemError(f"there is no case '{unknown[0]}' in {arguments.folder / 'cases.toml'}; "
+                       f"known are {', '.join(cases)}")
+    # Coarse meshes of all cases come first: an early stop leaves something of every case.
+    for size in sorted(arguments.sizes, reverse=True):
+        for name in names:
+            _log(f"{name}, size {size:g}")
+            if not record(cases[name], size, arguments.folder, _log):
+                _log("recorded already")
+
+
 def main():
     """Run one subcommand; exit code 2 with one message if it cannot be done."""
     parser = argparse.ArgumentParser(prog="edgeline_fem", description=sys.modules[__package__].__doc__,
@@ -61,10 +80,18 @@ def main():
         command.add_argument("request", help="JSON file that describes the calculation")
         command.add_argument("folder", help="folder of the meshes and results")
         command.set_defaults(run=run)
+    command = commands.add_parser("record", help="add meshes of cases to the recorded reference curves")
+    command.add_argument("folder", type=Path, help="folder with cases.toml, one subfolder a case")
+    command.add_argument("--cases", nargs="+", help="names of cases; all of cases.toml if left out")
+    command.add_argument("--sizes", nargs="+", type=float, default=[2.0, 1.4, 1.0],
+                         help="mesh sizes, 1 is the production mesh (default: 2 1.4 1)")
+    command.set_defaults(run=_record)
     command = commands.add_parser("probe", help="print the versions of what is installed, as JSON")
     command.add_argument("--gmsh", default="gmsh", help="name or path of the gmsh program")
     command.set_defaults(run=_probe)
     arguments = parser.parse_args()
+    # The form compiler's own progress would drown ours.
+    logging.getLogger().setLevel(logging.WARNING)
     try:
         arguments.run(arguments)
     except (FemError, OSError) as error:

@@ -43,7 +43,7 @@ class Body:
     def __init__(self, domain, young, poisson, fixed, linear="direct", tolerance=1e-10):
         self.domain = domain
         self.comm = domain.comm
-        self.poisson = poisson
+        self.young, self.poisson = young, poisson
         self.seconds = {}
         began = time.perf_counter()
         self.space = compat.quadratic_space(domain, 3)

@@ -79,9 +79,9 @@ def make_axes(case, options):
     length, block_length = case.roller_half_length(), case.block_half_length()
     scale = options.size
 
-    def grown(size, distance):
+    def grown(size, distance, growth=options.growth):
         far = max(0.0, distance - options.far_from)
-        return size + options.growth * (distance - far) + options.far_growth * far
+        return size + growth * (distance - far) + options.far_growth * far
 
     reach = options.contact_reach
     quarter_arc = 0.25 * math.pi * radius
@@ -91,7 +91,8 @@ def make_axes(case, options):
         )
 
     def across(x):
-        return grown(options.across, max(0.0, x - reach))
+        near_edge = options.edge + options.growth * abs(x - 1.0)
+        return grown(min(options.across, near_edge), max(0.0, x - reach))
 
     near = graded_axis(0.0, reach, across, scale)
     arc = np.concatenate((near, graded_axis(reach, quarter_arc, across, scale)[1:]))
@@ -100,7 +101,7 @@ def make_axes(case, options):
     x = np.concatenate((under, graded_axis(under[-1], options.block_width, across, scale)[1:]))
 
     def deep(z):
-        return grown(options.depth, z)
+        return grown(options.depth, z, options.depth_growth)
 
     core_depth = (1.0 - _CORE_SIDE) * radius
     core = max(2, round(3.0 / scale))

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from . import compat
-from .contact import ContactGrid, solve_contact
+from .contact import ContactGrid, half_space_compliance, solve_contact
 from .elasticity import STRESS, Body, load_mesh
 from .meshing import write_atomically
 from .request import FemError
@@ -89,12 +89,15 @@ def surface_depth(name, x, radius):
     return np.zeros_like(x) if name == "block" else x**2 / (radius + np.sqrt(radius**2 - x**2))
 
 
-def press_bodies(bodies, grid, radius, load, solver, log):
-    """Solve the contact of ``bodies`` on ``grid`` under ``load`` (units of p0 C^2, of the quarter).
+def press_bodies(bodies, grid, case, solver, log):
+    """Solve the contact of ``bodies`` on ``grid`` under the load of ``case``.
 
     Leaves the bodies in their final state. Returns the :class:`~edgeline_fem.contact.ContactSolution` and
     the relative error of the supports' reaction, the larger of both bodies.
     """
+    radius = case.scales().radius
+    # A quarter of the Hertz pressure's load on the whole contact line, pi/2 * 2 S_l.
+    load = 0.25 * np.pi * case.roller_half_length()
     for name, body in bodies.items():
         def find(nodes, name=name):
             surface = surface_depth(name, np.minimum(nodes[:, 0], radius), radius)
@@ -102,14 +105,15 @@ def press_bodies(bodies, grid, radius, load, solver, log):
             return np.where(np.abs(nodes[:, 2] - surface) < 1e-6, numbers, -1)
 
         body.number_contact_nodes(len(grid), find)
-    x = bodies["roller"].contact_coordinates(0)
+    flush = case.block_length_m <= case.roller_length_m * (1.0 + 1e-9)
+    roller, block = ((1.0 - bodies[n].poisson**2) / bodies[n].young for n in ("roller", "block"))
     gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2)
     solution = solve_contact(
         compliance=lambda forces: bodies["block"].press(forces) + bodies["roller"].press(forces),
         gap=gap,
         weights=grid.weights,
         load=load,
-        start=np.sqrt(np.maximum(0.0, 1.0 - x**2)),
+        model=half_space_compliance(grid, roller + flush * block, (not flush) * block),
         scale=0.5 / radius,
         tolerance=solver.tolerance,
         max_iterations=solver.max_iterations,
@@ -234,8 +238,7 @@ def solve_case(request, folder, comm, log):
     log(f"stiffness assembled in {seconds['assemble']:.1f} s, solvers set up in {seconds['factor']:.1f} s")
 
     mark = time.perf_counter()
-    load = np.pi * case.roller_half_length() / 4.0
-    solution, reaction_error = press_bodies(bodies, grid, scales.radius, load, request.solver, log)
+    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, log)
     seconds["contact"] = time.perf_counter() - mark
 
     mark = time.perf_counter()
@@ -277,7 +280,7 @@ def solve_case(request, folder, comm, log):
         stress = fields[curve.body].sample(inside)
         derived = np.stack(invariants(stress), axis=1)
         for point, row in zip(curve.points_m, np.hstack([stress, derived]) * scales.p0_pa):
-            writer.writerow([curve.body, curve.name, *(f"{v:.9g}" for v in point), *(f"{v:.7g}" for v in row)])
+            writer.writerow([curve.body, curve.name, *(f"{v:.9g}" for v in point), *(f"{v:.6g}" for v in row)])
     lines = io.StringIO()
     writer = csv.writer(lines, lineterminator="\n")
     writer.writerow(PRESSURE_HEADER)
@@ -285,7 +288,7 @@ def solve_case(request, folder, comm, log):
         at = np.array(points) / scales.c_m
         columns = np.stack([grid.sample(pressure, at), grid.sample(lumped, at), from_stress[line]], axis=1)
         for point, row in zip(points, columns * scales.p0_pa):
-            writer.writerow([line, *(f"{v:.9g}" for v in point), *(f"{v:.7g}" for v in row)])
+            writer.writerow([line, *(f"{v:.9g}" for v in point), *(f"{v:.6g}" for v in row)])
     seconds["sample"] = time.perf_counter() - mark
     seconds["total"] = time.perf_counter() - began + seconds["mesh"]
 
@@ -306,7 +309,7 @@ def solve_case(request, folder, comm, log):
         "linear_iterations": sum(body.iterations for body in bodies.values()),
         "complementarity_residual": solution.residual,
         "smallest_gap_rel": solution.smallest_gap,
-        "load_error_rel": abs(float(solution.forces.sum()) / load - 1.0),
+        "load_error_rel": abs(4.0 * float(solution.forces.sum()) / (np.pi * case.roller_half_length()) - 1.0),
         "equilibrium_residual": reaction_error,
         "approach_m": solution.approach * scales.c_m,
         "p_centre_pa": float(pressure[0]) * scales.p0_pa,

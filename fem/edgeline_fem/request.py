@@ -104,21 +104,25 @@ class MeshOptions:
     """
 
     size: float = 1.0
-    across: float = 0.12
-    """Element size across the contact, constant as far as ``contact_reach`` (size 1)."""
+    across: float = 0.16
+    """Element size across the contact as far as ``contact_reach`` (size 1)."""
+    edge: float = 0.045
+    """The same at the contact's edge x = 1, where the pressure has a vertical tangent."""
     depth: float = 0.08
     """Element size at the surface, along z (size 1)."""
-    end: float = 0.06
+    end: float = 0.065
     """Element size at the roller's end, along y (size 1)."""
     free_end: float = 1.2
     """Element size at the end of a block that is longer than the roller, along y (size 1)."""
-    growth: float = 0.3
-    """Increase of element size per unit of distance, near the contact (size 1)."""
-    far_growth: float = 0.8
-    """The same beyond ``far_from``."""
+    growth: float = 0.42
+    """Increase of element size per unit of distance along x and y, near the contact (size 1)."""
+    depth_growth: float = 0.34
+    """The same along z."""
+    far_growth: float = 1.4
+    """Increase of element size per unit of distance, in every direction, beyond ``far_from``."""
     far_from: float = 5.0
     """Distance at which the mesh starts to grow faster."""
-    contact_reach: float = 1.6
+    contact_reach: float = 1.5
     """Half-width of the strip of the surface in which contact is looked for."""
     block_width: float = 640.0
     """The block's half-width in x."""
