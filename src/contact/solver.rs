@@ -38,6 +38,8 @@ pub struct ContactSolution {
     pub approach: f64,
     /// Iterations done.
     pub iterations: usize,
+    /// Distance from the line's end within which the half-width was not an unknown of its own.
+    pub end_zone: f64,
     /// Amplitude of the edge singularity that was left (p0).
     pub residual: f64,
     /// |load - prescribed| / prescribed.
@@ -66,10 +68,29 @@ pub fn solve(
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
+    // A pressure that is singular at the end (a half-space's) may want a longer end zone.
+    let mut settings = *settings;
+    let mut answer = solve_once(compliance, axis, &settings);
+    for _ in 0..3 {
+        if answer.is_ok() {
+            break;
+        }
+        settings.end_zone *= 2.0;
+        answer = solve_once(compliance, axis, &settings);
+    }
+    answer
+}
+
+/// [`solve`] with the end zone as it is given.
+fn solve_once(
+    compliance: &Compliance,
+    axis: &Panels,
+    settings: &ContactSettings,
+) -> Result<ContactSolution> {
     let n = axis.len();
     let length: f64 = axis.weights().iter().sum();
     let load = 0.5 * PI * length;
-    let layout = Layout::new(axis, settings);
+    let mut layout = Layout::new(axis, settings);
     let remainders = remainders(compliance, n);
     let mut half_widths = vec![1.0; n];
     // Edge slopes S of the end zone relative to the outermost free node's.
@@ -82,7 +103,7 @@ pub fn solve(
         let mut next = half_widths.clone();
         let slopes: Vec<f64> = (0..n)
             .map(|j| {
-                let own = &unknowns.as_slice()[layout.unknowns(j)][..layout.modes(j)];
+                let own = &unknowns.as_slice()[layout.unknowns(j)][..layout.modes[j]];
                 own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum()
             })
             .collect();
@@ -97,14 +118,14 @@ pub fn solve(
         let outermost = next[layout.free - 1];
         next[layout.free..].fill(outermost);
         for (ratio, slope) in zone.iter_mut().zip(&slopes[layout.free..]) {
-            *ratio = (slope / slopes[layout.free - 1]).clamp(0.1, 10.0);
+            *ratio = (slope / slopes[layout.free - 1]).clamp(0.0, 10.0);
         }
         last = worst;
-        if worst <= settings.tolerance {
+        if worst <= settings.tolerance && !layout.release(&unknowns) {
             let mut coefficients: Vec<Vec<f64>> = (0..n)
                 .map(|j| {
                     let mut own = unknowns.as_slice()[layout.unknowns(j)].to_vec();
-                    own.truncate(layout.modes(j));
+                    own.truncate(layout.modes[j]);
                     own
                 })
                 .collect();
@@ -125,6 +146,7 @@ pub fn solve(
                 coefficients,
                 approach,
                 iterations: iteration,
+                end_zone: settings.end_zone,
                 residual: worst,
                 load_error,
             });
@@ -139,43 +161,84 @@ pub fn solve(
 }
 
 /// Which unknowns each node has: the free nodes, which come first, have all modes and the singular
-/// one; the nodes of the end zone have two modes and the half-width of the outermost free node.
-/// There wavenumbers beyond the largest one decide the shape, and a half-width of their own would
-/// be noise.
+/// one; the nodes of the end zone have the half-width of the outermost free node and up to two
+/// modes. There wavenumbers beyond the largest one decide the shape, and a half-width of their own
+/// would be noise. A node of the end zone whose pressure would pull loses a mode, its second one
+/// first; with none left it carries no pressure.
+#[derive(Debug, Clone)]
 struct Layout {
-    nodes: usize,
     free: usize,
     all_modes: usize,
-    end_modes: usize,
+    modes: Vec<usize>,
+    starts: Vec<usize>,
 }
 
 impl Layout {
     fn new(axis: &Panels, settings: &ContactSettings) -> Self {
         let end = axis.breaks()[axis.panel_count()] - settings.end_zone;
         let free = axis.nodes().iter().filter(|&&y| y <= end).count().max(1);
-        Self {
-            nodes: axis.len(),
-            free,
-            all_modes: settings.modes,
-            end_modes: settings.modes.min(2),
-        }
+        let end_modes = settings.modes.min(2);
+        let modes =
+            (0..axis.len()).map(|j| if j < free { settings.modes } else { end_modes }).collect();
+        let mut layout = Self { free, all_modes: settings.modes, modes, starts: Vec::new() };
+        layout.number();
+        layout
     }
 
-    fn modes(&self, j: usize) -> usize {
-        if j < self.free { self.all_modes } else { self.end_modes }
+    /// Numbers the unknowns.
+    fn number(&mut self) {
+        let mut next = 0;
+        self.starts.clear();
+        for (j, modes) in self.modes.iter().enumerate() {
+            self.starts.push(next);
+            next += modes + usize::from(j < self.free);
+        }
+        self.starts.push(next);
     }
 
     /// Unknowns and collocation equations of node `j`: its modes, then the singular one.
     fn unknowns(&self, j: usize) -> std::ops::Range<usize> {
-        let block = self.all_modes + 1;
-        let start = j.min(self.free) * block + j.saturating_sub(self.free) * self.end_modes;
-        let len = if j < self.free { block } else { self.end_modes };
-        start..start + len
+        self.starts[j]..self.starts[j + 1]
     }
 
     /// Unknowns in all, the approach included.
     fn size(&self) -> usize {
-        self.unknowns(self.nodes).start + 1
+        self.starts[self.modes.len()] + 1
+    }
+
+    /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode, else
+    /// those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
+    fn points(&self, j: usize) -> impl Iterator<Item = f64> {
+        let count = self.unknowns(j).len();
+        let free = j < self.free;
+        (0..count).map(move |l| {
+            let angle = if free {
+                PI * (2 * l + 1) as f64 / (4 * count) as f64
+            } else {
+                PI * (l + 1) as f64 / (2 * count + 1) as f64
+            };
+            angle.cos()
+        })
+    }
+
+    /// Takes modes from the nodes of the end zone whose pressure is negative somewhere across the
+    /// contact: the second one where the shape is to blame, all where the mean is; whether there
+    /// was one.
+    fn release(&mut self, unknowns: &DVector<f64>) -> bool {
+        let mut released = false;
+        for j in self.free..self.modes.len() {
+            let c = &unknowns.as_slice()[self.unknowns(j)];
+            // c_0 + c_1 (4 t^2 - 1) is monotonic in t^2: its ends decide.
+            let left = match c {
+                [c0, ..] if *c0 < 0.0 => 0,
+                [c0, c1] if c0 - c1 < 0.0 || c0 + 3.0 * c1 < 0.0 => 1,
+                _ => continue,
+            };
+            self.modes[j] = left;
+            released = true;
+        }
+        self.number();
+        released
     }
 }
 
@@ -201,12 +264,10 @@ fn linear_solve(
     let n = axis.len();
     // The end zone moves with the outermost free node: so does its singular mode.
     let shared = layout.unknowns(layout.free - 1).end - 1;
-    let size = layout.size();
-    // Collocation points: the positive zeros of T_2n for n equations.
-    let points = |j: usize| {
-        let count = layout.unknowns(j).len();
-        (0..count).map(move |l| (PI * (2 * l + 1) as f64 / (4 * count) as f64).cos())
+    let singular_column = |j: usize, own: &std::ops::Range<usize>| {
+        if j < layout.free { own.end - 1 } else { shared }
     };
+    let size = layout.size();
     let mut matrix = DMatrix::zeros(size, size);
     let mut right = DVector::zeros(size);
     let mut transform = vec![0.0; size - 1];
@@ -217,18 +278,18 @@ fn linear_solve(
         wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(remainders)
     {
         for (j, &a) in half_widths.iter().enumerate() {
-            let modes = layout.modes(j);
+            let modes = layout.modes[j];
             let own = &mut transform[layout.unknowns(j)];
             singular_transform[j] = strip::transforms(a, k, &mut own[..modes]);
-            for (c, t) in cosine[layout.unknowns(j)].iter_mut().zip(points(j)) {
+            for (c, t) in cosine[layout.unknowns(j)].iter_mut().zip(layout.points(j)) {
                 *c = (k * a * t).cos();
             }
         }
         for j in 0..n {
             let own = layout.unknowns(j);
-            let modes = own.start..own.start + layout.modes(j);
+            let modes = own.start..own.start + layout.modes[j];
             let ratio = if j < layout.free { 1.0 } else { zone[j - layout.free] };
-            let singular = (shared.min(own.end - 1), ratio * singular_transform[j]);
+            let singular = (singular_column(j, &own), ratio * singular_transform[j]);
             for (m, transform) in modes.map(|m| (m, transform[m])).chain([singular]) {
                 let factor = w / (PI * PI) * transform;
                 let column = &mut matrix.column_mut(m);
@@ -245,11 +306,11 @@ fn linear_solve(
     }
     let mut local = vec![0.0; layout.all_modes];
     for (i, &a) in half_widths.iter().enumerate() {
-        let modes = layout.modes(i);
+        let modes = layout.modes[i];
         let own = layout.unknowns(i);
         let ratio = if i < layout.free { 1.0 } else { zone[i - layout.free] };
-        let singular_column = shared.min(own.end - 1);
-        for (row, t) in own.clone().zip(points(i)) {
+        let singular_column = singular_column(i, &own);
+        for (row, t) in own.clone().zip(layout.points(i)) {
             let singular = strip::logarithmic(a, t, &mut local[..modes]);
             for (m, value) in local[..modes].iter().enumerate() {
                 matrix[(row, own.start + m)] += 2.0 / PI * value;
@@ -271,7 +332,9 @@ fn linear_solve(
             matrix[(row, size - 1)] = -1.0;
             right[row] = -(a * t).powi(2);
         }
-        matrix[(size - 1, own.start)] = axis.weights()[i] * a * 0.5 * PI;
+        if modes > 0 {
+            matrix[(size - 1, own.start)] = axis.weights()[i] * a * 0.5 * PI;
+        }
         matrix[(size - 1, singular_column)] += axis.weights()[i] * a * PI * ratio;
     }
     right[size - 1] = load;
