@@ -1,6 +1,7 @@
-//! Materials, Hertz scales, the stress tensor, graded axes, quadrature and the error type.
+//! Materials, Hertz scales, the stress tensor, graded axes, quadrature, whole files and the error type.
 
 mod error;
+mod files;
 mod material;
 mod panels;
 mod quadrature;
@@ -8,6 +9,7 @@ mod scales;
 mod tensor;
 
 pub use error::{Error, Result};
+pub use files::{prepare_folder, write_whole};
 pub use material::Material;
 pub use panels::Panels;
 pub use quadrature::gauss_legendre;

@@ -1,9 +1,20 @@
-//! Case and study files.
+//! Case and study files. `cases/README.md` explains the format to users.
+
+mod builtin;
+mod case_file;
+mod document;
+mod study_file;
+#[cfg(test)]
+mod tests;
+
+pub use builtin::{BUILTIN_CASES, builtin_case};
+pub use study_file::{DEFAULT_STUDY, Study};
 
 use crate::base::{HertzScales, Material};
+use serde::Serialize;
 
 /// A right circular cylinder with its axis along y.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Roller {
     /// Radius (m).
     pub radius_m: f64,
@@ -14,7 +25,7 @@ pub struct Roller {
 }
 
 /// A rectangular block, deep and wide against the contact.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Block {
     /// Length along y (m), not shorter than the roller.
     pub length_m: f64,
@@ -23,7 +34,7 @@ pub struct Block {
 }
 
 /// A validated contact problem in SI units.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// The case's name, unique in a study.
     pub name: String,
@@ -38,7 +49,7 @@ pub struct Case {
 }
 
 /// The three factors of the study.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Factors {
     /// Load factor w / (E* R L1).
     pub load: f64,
@@ -48,9 +59,43 @@ pub struct Factors {
     pub length_ratio: f64,
 }
 
+impl Factors {
+    /// Legal range of W. Above, the half-width C is more than a quarter of the radius, which no
+    /// small-strain theory of contact covers.
+    pub const LOAD_RANGE: (f64, f64) = (1e-12, 0.05);
+    /// Legal range of S_l.
+    pub const SLENDERNESS_RANGE: (f64, f64) = (0.5, 1e4);
+    /// Legal range of L_r.
+    pub const LENGTH_RATIO_RANGE: (f64, f64) = (1e-3, 1.0);
+}
+
 impl Case {
     /// The accuracy that is asked for where a case does not say, as a fraction of p0.
     pub const DEFAULT_TOLERANCE: f64 = 1e-3;
+
+    /// Legal range of the tolerance.
+    pub const TOLERANCE_RANGE: (f64, f64) = (1e-5, 1e-1);
+
+    /// The case that has the dimensionless `factors`, with a roller of radius `radius_m` (m), and
+    /// the default tolerance. Does not check its arguments: files are checked as they are read.
+    pub fn from_factors(
+        name: impl Into<String>,
+        radius_m: f64,
+        roller: Material,
+        block: Material,
+        factors: Factors,
+    ) -> Self {
+        let e_star = roller.contact_modulus(&block);
+        let c_m = 2.0 * radius_m * (factors.load / std::f64::consts::PI).sqrt();
+        let length_m = 2.0 * c_m * factors.slenderness;
+        Self {
+            name: name.into(),
+            roller: Roller { radius_m, length_m, material: roller },
+            block: Block { length_m: length_m / factors.length_ratio, material: block },
+            force_n: factors.load * e_star * radius_m * length_m,
+            tolerance: Self::DEFAULT_TOLERANCE,
+        }
+    }
 
     /// The Hertz line-contact scales.
     pub fn hertz(&self) -> HertzScales {

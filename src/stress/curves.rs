@@ -58,14 +58,18 @@ const END_DISTANCES: [f64; 22] = [
 /// How far beyond the roller's end curves of a longer block go (units of C).
 const OUTWARD: f64 = 3.0;
 
+/// Lengths that differ by less than this part are the same: they have been to SI units and back.
+const SAME: f64 = 1e-9;
+
 /// Distances from the roller's end, ascending, up to `half_length` (which is the last).
 fn end_distances(half_length: f64) -> Vec<f64> {
-    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < half_length).collect();
+    let below = half_length * (1.0 - SAME);
+    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < below).collect();
     let mut decade = 1.0;
     'grow: loop {
         for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
             let next = 10.0 * decade * step;
-            if next >= half_length {
+            if next >= below {
                 break 'grow;
             }
             s.push(next);
@@ -101,9 +105,9 @@ pub fn depths() -> Vec<f64> {
 pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
     let mut y = contact_line(half_length);
     let ledge = body_half_length - half_length;
-    if ledge > 0.0 {
+    if ledge > SAME * half_length {
         let reach = ledge.min(OUTWARD);
-        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach);
+        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
         y.extend(outward.map(|s| half_length + s));
         y.push(half_length + reach);
     }
@@ -139,5 +143,10 @@ mod tests {
         let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
         assert_eq!(ledge[0].points.last(), Some(&[0.0, 5.0 / 0.99, 0.0]));
         assert_eq!(depths().len(), 50);
+        for rounded in [5.0 * (1.0 - 1e-15), 5.0 * (1.0 + 1e-15)] {
+            let flush = standard_curves(BodyKind::Block, 5.0, rounded);
+            assert_eq!(flush[0].points.len(), 20);
+            assert_eq!(contact_line(rounded).len(), 20);
+        }
     }
 }

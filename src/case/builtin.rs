@@ -1,0 +1,43 @@
+//! The case files that are built into the binary, so that it runs from any folder.
+
+use super::Case;
+use crate::base::Result;
+use std::path::Path;
+
+/// Name and text of every case file in `cases/`.
+pub const BUILTIN_CASES: [(&str, &str); 6] = [
+    ("flush-short", include_str!("../../cases/flush-short.toml")),
+    ("half-short", include_str!("../../cases/half-short.toml")),
+    ("long-contact", include_str!("../../cases/long-contact.toml")),
+    ("validation-nu025", include_str!("../../cases/validation-nu025.toml")),
+    ("validation-nu040", include_str!("../../cases/validation-nu040.toml")),
+    ("validation-steel-aluminium", include_str!("../../cases/validation-steel-aluminium.toml")),
+];
+
+/// The built-in case called `name`, if there is one.
+pub fn builtin_case(name: &str) -> Option<Result<Case>> {
+    let (name, text) = BUILTIN_CASES.iter().find(|(known, _)| *known == name)?;
+    Some(Case::parse(text, Path::new(name)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_built_in_case_is_valid_and_named_like_its_file() {
+        for (name, text) in BUILTIN_CASES {
+            let case = Case::parse(text, Path::new(name)).unwrap();
+            assert_eq!(case.name, name);
+        }
+        let mut files: Vec<String> =
+            std::fs::read_dir(concat!(env!("CARGO_MANIFEST_DIR"), "/cases"))
+                .unwrap()
+                .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+                .filter_map(|file| file.strip_suffix(".toml").map(str::to_string))
+                .filter(|name| name != "factorial")
+                .collect();
+        files.sort();
+        assert_eq!(files, BUILTIN_CASES.map(|(name, _)| name), "cases/ against BUILTIN_CASES");
+    }
+}

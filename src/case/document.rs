@@ -1,0 +1,272 @@
+//! TOML with places: every value knows its key and its line, so that every complaint can name them.
+
+use crate::base::{Error, Result};
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Larger files are refused unread: no case or study file comes near.
+const MAX_BYTES: u64 = 1 << 20;
+
+/// Reads a text file.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
+pub(super) fn read_text(path: &Path) -> Result<String> {
+    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
+    let mut bytes = Vec::new();
+    let file = std::fs::File::open(path).map_err(io)?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
+    let refuse = |message: &str| Error::File {
+        path: path.to_path_buf(),
+        line: None,
+        message: message.into(),
+        remedy: "give a case or study file in TOML".into(),
+    };
+    if bytes.len() as u64 > MAX_BYTES {
+        return Err(refuse("is larger than 1 MiB"));
+    }
+    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text"))
+}
+
+/// A parsed file that can say where things stand in it.
+pub(super) struct Document<'a> {
+    path: &'a Path,
+    text: &'a str,
+    root: DeTable<'a>,
+}
+
+impl<'a> Document<'a> {
+    /// Parses `text`; `path` is only named in errors.
+    pub fn parse(path: &'a Path, text: &'a str) -> Result<Self> {
+        let mut document = Self { path, text, root: DeTable::new() };
+        match DeTable::parse(text) {
+            Ok(root) => document.root = root.into_inner(),
+            Err(e) => {
+                let message = format!("is not valid TOML: {}", e.message().trim());
+                return Err(document.error(e.span(), message, "correct this line"));
+            }
+        }
+        Ok(document)
+    }
+
+    /// The top level.
+    pub fn root(&self) -> Table<'_> {
+        Table { document: self, name: String::new(), span: None, entries: &self.root }
+    }
+
+    fn error(
+        &self,
+        span: Option<Range<usize>>,
+        message: impl Into<String>,
+        remedy: impl Into<String>,
+    ) -> Error {
+        let line = span.map(|s| {
+            let before = &self.text.as_bytes()[..s.start.min(self.text.len())];
+            1 + before.iter().filter(|&&b| b == b'\n').count()
+        });
+        Error::File {
+            path: self.path.to_path_buf(),
+            line,
+            message: message.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
+/// A table of a document.
+pub(super) struct Table<'d> {
+    document: &'d Document<'d>,
+    /// Its name, empty at the top level.
+    name: String,
+    span: Option<Range<usize>>,
+    entries: &'d DeTable<'d>,
+}
+
+impl<'d> Table<'d> {
+    /// Refuses every key that is not in `known`.
+    pub fn only(&self, known: &[&str]) -> Result<()> {
+        // In the order of the file: the first mistake is the one to report.
+        let unknown = self
+            .entries
+            .keys()
+            .filter(|k| !known.contains(&k.get_ref().as_ref()))
+            .min_by_key(|k| k.span().start);
+        let Some(key) = unknown else { return Ok(()) };
+        let nearest = known
+            .iter()
+            .min_by_key(|k| edit_distance(k, key.get_ref()))
+            .expect("every table has known keys");
+        let place = match self.name.as_str() {
+            "" => "the top level".to_string(),
+            name => format!("[{name}]"),
+        };
+        Err(self.document.error(
+            Some(key.span()),
+            format!("unknown key {}", self.full_key(key.get_ref())),
+            format!("did you mean {nearest}? {place} takes {}", known.join(", ")),
+        ))
+    }
+
+    /// The value of `key`, if it is there.
+    pub fn get(&self, key: &str) -> Option<Entry<'d>> {
+        let (_, value) = self.entries.iter().find(|(k, _)| k.get_ref() == key)?;
+        Some(Entry { document: self.document, key: self.full_key(key), value })
+    }
+
+    /// The value of `key`; `example` shows what to write where it is missing.
+    pub fn require(&self, key: &str, example: &str) -> Result<Entry<'d>> {
+        self.get(key).ok_or_else(|| {
+            self.document.error(
+                self.span.clone(),
+                format!("{} is missing", self.full_key(key)),
+                format!("add for example `{example}`"),
+            )
+        })
+    }
+
+    /// The table `key`, which has to be there.
+    pub fn table(&self, key: &str) -> Result<Table<'d>> {
+        match self.get(key) {
+            Some(entry) => entry.table(),
+            None => {
+                let message = format!("the table [{}] is missing", self.full_key(key));
+                Err(self.document.error(self.span.clone(), message, "add it"))
+            }
+        }
+    }
+
+    /// An error about the whole table.
+    pub fn error(&self, message: impl Into<String>, remedy: impl Into<String>) -> Error {
+        self.document.error(self.span.clone(), message, remedy)
+    }
+
+    fn full_key(&self, key: &str) -> String {
+        if self.name.is_empty() { key.to_string() } else { format!("{}.{key}", self.name) }
+    }
+}
+
+/// A key and its value.
+pub(super) struct Entry<'d> {
+    document: &'d Document<'d>,
+    key: String,
+    value: &'d Spanned<DeValue<'d>>,
+}
+
+impl<'d> Entry<'d> {
+    /// An error about this value: "`key` = `value` is not valid: `reason`; `remedy`".
+    pub fn refuse(&self, reason: impl AsRef<str>, remedy: impl Into<String>) -> Error {
+        let span = self.value.span();
+        let found = self.document.text.get(span.clone()).unwrap_or("?");
+        let shown: String = match found.lines().next() {
+            Some(line) if line.len() < found.len() || line.chars().count() > 60 => {
+                line.chars().take(57).chain("...".chars()).collect()
+            }
+            line => line.unwrap_or("").to_string(),
+        };
+        let message = format!("{} = {shown} is not valid: {}", self.key, reason.as_ref());
+        self.document.error(Some(span), message, remedy)
+    }
+
+    /// The value as a table.
+    pub fn table(self) -> Result<Table<'d>> {
+        match self.value.get_ref() {
+            DeValue::Table(entries) => Ok(Table {
+                document: self.document,
+                span: Some(self.value.span()),
+                name: self.key,
+                entries,
+            }),
+            _ => Err(self.refuse("a table belongs here", format!("write [{}]", self.key))),
+        }
+    }
+
+    /// The value as a finite number.
+    pub fn number(&self) -> Result<f64> {
+        let parsed = match self.value.get_ref() {
+            // TOML's hexadecimal, octal and binary integers are not numbers that a case needs.
+            DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
+            DeValue::Float(f) => f.as_str().parse().ok(),
+            DeValue::String(_) => {
+                return Err(self.refuse("a number belongs here", "write it without quotes"));
+            }
+            _ => None,
+        };
+        match parsed {
+            Some(v) if f64::is_finite(v) => Ok(v),
+            _ => Err(self.refuse("a finite number belongs here", "write for example 1.5 or 2e-4")),
+        }
+    }
+
+    /// The value as a finite number in `low..=high`; `what` names the quantity and its unit.
+    pub fn number_in(&self, low: f64, high: f64, what: &str) -> Result<f64> {
+        let value = self.number()?;
+        if (low..=high).contains(&value) {
+            return Ok(value);
+        }
+        let reason = if value <= 0.0 && low > 0.0 {
+            format!("{what} is greater than zero")
+        } else {
+            format!("{what} lies between {low:e} and {high:e}")
+        };
+        Err(self.refuse(reason, "correct the value, and check its unit"))
+    }
+
+    /// The value as a string.
+    pub fn string(&self) -> Result<&'d str> {
+        match self.value.get_ref() {
+            DeValue::String(s) => Ok(s.as_ref()),
+            _ => Err(self.refuse("a text belongs here", "write it in double quotes")),
+        }
+    }
+
+    /// The value as true or false.
+    pub fn flag(&self) -> Result<bool> {
+        match self.value.get_ref() {
+            DeValue::Boolean(b) => Ok(*b),
+            _ => Err(self.refuse("true or false belongs here", "write true or false")),
+        }
+    }
+
+    /// The value as a list, not empty.
+    pub fn list(&self) -> Result<Vec<Entry<'d>>> {
+        match self.value.get_ref() {
+            DeValue::Array(items) if !items.is_empty() => {
+                let item = |value| Entry { document: self.document, key: self.key.clone(), value };
+                Ok(items.iter().map(item).collect())
+            }
+            _ => Err(self.refuse("a list belongs here", "write [first, second]")),
+        }
+    }
+}
+
+/// Levenshtein's distance.
+fn edit_distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, ca) in a.chars().enumerate() {
+        let mut diagonal = row[0];
+        row[0] = i + 1;
+        for (j, &cb) in b.iter().enumerate() {
+            let substituted = diagonal + usize::from(ca != cb);
+            diagonal = row[j + 1];
+            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn distances_count_single_edits() {
+        assert_eq!(edit_distance("poisson", "poisson"), 0);
+        assert_eq!(edit_distance("poison", "poisson"), 1);
+        assert_eq!(edit_distance("radius_m", "radius"), 2);
+        assert_eq!(edit_distance("", "abc"), 3);
+    }
+}

@@ -1,0 +1,306 @@
+use super::*;
+use proptest::prelude::*;
+use std::path::Path;
+
+const DIMENSIONLESS: &str = "\
+name = \"one\"
+[roller]
+radius_m = 10e-3
+young_pa = 210e9
+poisson = 0.3
+[block]
+young_pa = 210e9
+poisson = 0.3
+[dimensionless]
+W = 5e-4
+S_l = 5.0
+L_r = 0.5
+";
+
+const LOADED: &str = "\
+name = \"two\"
+[roller]
+radius_m = 10e-3
+length_m = 20e-3
+young_pa = 210e9
+poisson = 0.3
+[block]
+length_m = 40e-3
+young_pa = 70e9
+poisson = 0.33
+[load]
+force_n = 1000
+[accuracy]
+tolerance = 1e-2
+";
+
+fn parse(text: &str) -> crate::base::Result<Case> {
+    Case::parse(text, Path::new("f.toml"))
+}
+
+fn parse_study(text: &str) -> crate::base::Result<Study> {
+    Study::parse(text, Path::new("f.toml"))
+}
+
+fn close(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-14 * b.abs()
+}
+
+#[test]
+fn dimensionless_case_has_its_factors() {
+    let case = parse(DIMENSIONLESS).unwrap();
+    let (factors, hertz) = (case.factors(), case.hertz());
+    assert!(close(factors.load, 5e-4), "{factors:?}");
+    assert!(close(factors.slenderness, 5.0), "{factors:?}");
+    assert!(close(factors.length_ratio, 0.5), "{factors:?}");
+    // C = 2 R sqrt(W / pi), p0 = E* sqrt(W / pi).
+    let root = (5e-4 / std::f64::consts::PI).sqrt();
+    assert!(close(hertz.c_m, 20e-3 * root));
+    assert!(close(hertz.p0_pa, 210e9 / (2.0 * 0.91) * root));
+    assert_eq!(case.tolerance, Case::DEFAULT_TOLERANCE);
+}
+
+#[test]
+fn loaded_case_keeps_its_values() {
+    let case = parse(LOADED).unwrap();
+    assert_eq!((case.force_n, case.tolerance), (1000.0, 1e-2));
+    assert_eq!((case.roller.length_m, case.block.length_m), (20e-3, 40e-3));
+    assert_eq!(case.block.material, crate::base::Material { young_pa: 70e9, poisson: 0.33 });
+    assert!(close(case.factors().length_ratio, 0.5));
+}
+
+/// Replaces one line of `text` and returns the error's text.
+fn broken(text: &str, line: &str, with: &str) -> String {
+    assert!(text.contains(line), "{line} is not in the text");
+    parse(&text.replacen(line, with, 1)).expect_err(with).to_string()
+}
+
+#[test]
+fn errors_name_key_line_and_remedy() {
+    for (line, with, wanted) in [
+        (
+            "poisson = 0.3",
+            "poison = 0.3",
+            "f.toml:5: unknown key roller.poison; did you mean poisson?",
+        ),
+        ("poisson = 0.3", "poisson = 0.5", "f.toml:5: roller.poisson = 0.5 is not valid"),
+        ("poisson = 0.3", "poisson = -0.1", "f.toml:5: roller.poisson = -0.1 is not valid"),
+        ("radius_m = 10e-3", "radius_m = 0", "f.toml:3: roller.radius_m = 0 is not valid"),
+        ("radius_m = 10e-3", "radius_m = nan", "f.toml:3: roller.radius_m = nan is not valid"),
+        ("radius_m = 10e-3", "radius_m = inf", "f.toml:3: roller.radius_m = inf is not valid"),
+        ("radius_m = 10e-3", "radius_m = 1e999", "f.toml:3: "),
+        ("radius_m = 10e-3", "radius_m = 0x10", "f.toml:3: roller.radius_m = 0x10 is not valid"),
+        (
+            "radius_m = 10e-3",
+            "radius_m = \"10\"",
+            "f.toml:3: roller.radius_m = \"10\" is not valid",
+        ),
+        ("radius_m = 10e-3", "radius_m = [10]", "f.toml:3: roller.radius_m = [10] is not valid"),
+        (
+            "radius_m = 10e-3",
+            "radius = 10e-3",
+            "f.toml:3: unknown key roller.radius; did you mean radius_m?",
+        ),
+        ("radius_m = 10e-3", "", "f.toml:2: roller.radius_m is missing; add for example `radius_m"),
+        ("radius_m = 10e-3", "radius_m 10e-3", "f.toml:3: is not valid TOML"),
+        ("radius_m = 10e-3", "radius_m = 1\nradius_m = 2", "f.toml:4: is not valid TOML"),
+        ("young_pa = 210e9", "young_pa = 210", "f.toml:4: roller.young_pa = 210 is not valid"),
+        (
+            "L_r = 0.5",
+            "L_r = 1.01",
+            "f.toml:12: dimensionless.L_r = 1.01 is not valid: the roller would be longer",
+        ),
+        ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
+        ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
+        ("W = 5e-4", "w = 5e-4", "f.toml:10: unknown key dimensionless.w; did you mean W?"),
+        ("S_l = 5.0", "S_l = 0.1", "f.toml:11: dimensionless.S_l = 0.1 is not valid"),
+        (
+            "[block]",
+            "[block]\nlength_m = 1",
+            "f.toml:7: block.length_m = 1 is not valid: the lengths follow",
+        ),
+        ("[block]", "[blok]", "f.toml:6: unknown key blok; did you mean block?"),
+        ("name = \"one\"", "name = \"a/b\"", "f.toml:1: name = \"a/b\" is not valid"),
+        ("name = \"one\"", "name = 1", "f.toml:1: name = 1 is not valid: a text belongs here"),
+        ("name = \"one\"", "name = \"one\"\nroller = 3", "is not valid TOML"),
+        (
+            "[dimensionless]",
+            "[load]\nforce_n = 1\n[dimensionless]",
+            "f.toml:9: the load is given twice",
+        ),
+        (
+            "[dimensionless]",
+            "[accuracy]\ntolerance = 0.5\n[dimensionless]",
+            "f.toml:10: accuracy.tolerance = 0.5",
+        ),
+        ("[dimensionless]", "[factors]", "is a study file"),
+    ] {
+        let message = broken(DIMENSIONLESS, line, with);
+        assert!(message.contains(wanted), "{with}: {message}");
+    }
+    for (line, with, wanted) in [
+        (
+            "length_m = 40e-3",
+            "length_m = 19e-3",
+            "f.toml:8: block.length_m = 19e-3 is not valid: the block is shorter",
+        ),
+        ("length_m = 20e-3", "", "f.toml:2: roller.length_m is missing"),
+        ("force_n = 1000", "force_n = 1e12", "f.toml:12: load.force_n = 1e12 is not valid: W = "),
+        (
+            "force_n = 1000",
+            "force_n = 1000\nunit = 1",
+            "f.toml:13: unknown key load.unit; did you mean force_n?",
+        ),
+    ] {
+        let message = broken(LOADED, line, with);
+        assert!(message.contains(wanted), "{with}: {message}");
+    }
+    let cut = DIMENSIONLESS.split("[dimensionless]").next().unwrap();
+    let message = parse(cut).unwrap_err().to_string();
+    assert!(message.contains("f.toml: there is no load"), "{message}");
+}
+
+#[test]
+fn missing_file_names_the_built_in_cases() {
+    let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
+    assert!(message.contains("no such file") && message.contains("flush-short"), "{message}");
+    assert_eq!(Case::find(Path::new("flush-short")).unwrap().name, "flush-short");
+}
+
+#[test]
+fn files_that_are_no_text_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("binary.toml");
+    std::fs::write(&path, [0xff, 0xfe, 0x00]).unwrap();
+    assert!(Case::read(&path).unwrap_err().to_string().contains("UTF-8"));
+    std::fs::write(&path, vec![b'#'; 2 << 20]).unwrap();
+    assert!(Case::read(&path).unwrap_err().to_string().contains("1 MiB"));
+    assert!(Case::read(folder.path()).unwrap_err().to_string().contains("cannot read"));
+}
+
+#[test]
+fn default_study_is_the_two_level_factorial() {
+    let study = Study::built_in();
+    let names: Vec<&str> = study.cases().map(|c| c.name.as_str()).collect();
+    assert_eq!(
+        names,
+        [
+            "w1e-4_sl5_lr0.5",
+            "w1e-4_sl5_lr1",
+            "w1e-4_sl20_lr0.5",
+            "w1e-4_sl20_lr1",
+            "w1e-3_sl5_lr0.5",
+            "w1e-3_sl5_lr1",
+            "w1e-3_sl20_lr0.5",
+            "w1e-3_sl20_lr1",
+            "centre",
+        ]
+    );
+    let low = study.corners[0].factors();
+    assert!(close(low.load, 1e-4) && close(low.slenderness, 5.0) && close(low.length_ratio, 0.5));
+    let centre = study.centre.unwrap().factors();
+    assert!(close(centre.load, 1e-7f64.sqrt()) && close(centre.slenderness, 10.0), "{centre:?}");
+    assert!(close(centre.length_ratio, 0.75), "{centre:?}");
+}
+
+#[test]
+fn study_lists_further_cases_beside_it_or_built_in() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("mine.toml"), LOADED).unwrap();
+    let path = folder.path().join("study.toml");
+    let text = format!("cases = [\"mine.toml\", \"flush-short\"]\n{DEFAULT_STUDY}");
+    std::fs::write(&path, text).unwrap();
+    let study = Study::read(&path).unwrap();
+    let names: Vec<&str> = study.extra.iter().map(|c| c.name.as_str()).collect();
+    assert_eq!(names, ["two", "flush-short"]);
+    assert_eq!(study.cases().count(), 11);
+}
+
+#[test]
+fn study_errors_name_key_line_and_remedy() {
+    let line = |key: &str| {
+        1 + DEFAULT_STUDY.lines().position(|l| l.starts_with(key)).expect("key in the study")
+    };
+    for (key, with, wanted) in [
+        ("W = ", "W = []", "factors.W = [] is not valid: a list belongs here"),
+        ("W = ", "W = 1e-4", "factors.W = 1e-4 is not valid: a list belongs here"),
+        ("W = ", "W = [1e-4, 1e-4]", "factors.W = 1e-4 is not valid: this level is there already"),
+        ("W = ", "W = [1e-4, -1]", "factors.W = -1 is not valid"),
+        (
+            "L_r = ",
+            "L_r = [0.5, 1.5]",
+            "factors.L_r = 1.5 is not valid: the roller would be longer",
+        ),
+        ("S_l = ", "S_1 = [5]", "unknown key factors.S_1; did you mean S_l?"),
+        ("centre = ", "centre = 1", "centre = 1 is not valid"),
+        (
+            "centre = ",
+            "cases = [\"nowhere.toml\"]",
+            "cases = \"nowhere.toml\" is not valid: there is no file",
+        ),
+        (
+            "centre = ",
+            "cases = [\"flush-short\", \"flush-short\"]",
+            "another case called flush-short",
+        ),
+    ] {
+        let number = line(key);
+        let mut lines: Vec<&str> = DEFAULT_STUDY.lines().collect();
+        lines[number - 1] = with;
+        let message = parse_study(&lines.join("\n")).expect_err(with).to_string();
+        assert!(message.contains(wanted), "{with}: {message}");
+        assert!(message.starts_with(&format!("f.toml:{number}: ")), "{with}: {message}");
+    }
+    let message = parse_study(DIMENSIONLESS).unwrap_err().to_string();
+    assert!(message.contains("is a case file, not a study file"), "{message}");
+    let many: Vec<String> = (1..=2100).map(|i| format!("{i}")).collect();
+    let text = DEFAULT_STUDY.replace("S_l = [5.0, 20.0]", &format!("S_l = [{}]", many.join(",")));
+    assert!(parse_study(&text).unwrap_err().to_string().contains("more than 4096 cases"));
+}
+
+/// A valid file with one slice replaced by arbitrary text.
+fn mutilated() -> impl Strategy<Value = String> {
+    let files = prop_oneof![Just(DIMENSIONLESS), Just(LOADED), Just(DEFAULT_STUDY)];
+    (files, any::<(prop::sample::Index, usize)>(), "\\PC{0,12}|[\\[\\]{}=\"\n#,.0-9e+-]{0,12}")
+        .prop_map(|(text, (at, length), with)| {
+            let start = at.index(text.len());
+            let end = (start + length % 20).min(text.len());
+            format!("{}{with}{}", &text[..start], &text[end..])
+        })
+}
+
+proptest! {
+    #[test]
+    fn no_text_panics(text in "(\\PC|[\n\\[\\]=\"])*") {
+        let _ = parse(&text);
+        let _ = parse_study(&text);
+    }
+
+    #[test]
+    fn mutilated_files_give_an_error_or_a_legal_case(text in mutilated()) {
+        if let Ok(case) = parse(&text) {
+            prop_assert!(case.force_n > 0.0 && case.hertz().c_m > 0.0);
+            prop_assert!(case.block.length_m >= case.roller.length_m);
+        }
+        if let Ok(study) = parse_study(&text) {
+            for case in study.cases() {
+                prop_assert!(case.factors().length_ratio <= 1.0 + 1e-12);
+            }
+        }
+    }
+
+    #[test]
+    fn factors_survive_the_way_through_si_units(
+        load in 1e-8..0.05f64,
+        slenderness in 0.5..1e4f64,
+        length_ratio in 1e-3..=1.0f64,
+        poisson in 0.0..0.5f64,
+    ) {
+        let wanted = Factors { load, slenderness, length_ratio };
+        let steel = crate::base::Material { young_pa: 2e11, poisson };
+        let got = Case::from_factors("p", 0.01, steel, steel, wanted).factors();
+        prop_assert!((got.load / load - 1.0).abs() < 1e-13);
+        prop_assert!((got.slenderness / slenderness - 1.0).abs() < 1e-13);
+        prop_assert!((got.length_ratio / length_ratio - 1.0).abs() < 1e-13);
+    }
+}

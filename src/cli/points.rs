@@ -1,0 +1,121 @@
+//! The file of points that `edgeline solve --points` takes.
+
+use crate::base::{Error, Result};
+use crate::case::Case;
+use crate::solve::Point;
+use crate::stress::BodyKind;
+use serde::Deserialize;
+use std::path::Path;
+
+/// One row of the file.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Row {
+    body: BodyKind,
+    x_m: f64,
+    y_m: f64,
+    z_m: f64,
+}
+
+/// Reads points from a CSV file with the columns `body,x_m,y_m,z_m`, all within the bodies of
+/// `case`.
+///
+/// # Errors
+/// [`Error::File`] with the line of the first row that is not such a point.
+pub(super) fn read(path: &Path, case: &Case) -> Result<Vec<Point>> {
+    let text = std::fs::read_to_string(path).map_err(|source| Error::Io {
+        action: "read",
+        path: path.to_path_buf(),
+        source,
+    })?;
+    let refuse = |line: Option<u64>, message: String| Error::File {
+        path: path.to_path_buf(),
+        line: line.map(|l| l as usize),
+        message,
+        remedy: "give the columns body,x_m,y_m,z_m: block or roller, and metres; z is the depth \
+                 into that body"
+            .into(),
+    };
+    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+    let header = reader.headers().map_err(|e| refuse(Some(1), e.to_string()))?.clone();
+    let mut points = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(|e| refuse(e.position().map(|p| p.line()), e.to_string()))?;
+        let line = record.position().map(|p| p.line());
+        let row: Row = record.deserialize(Some(&header)).map_err(|e| {
+            let text = match e.kind() {
+                csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+                _ => e.to_string(),
+            };
+            refuse(line, text)
+        })?;
+        let at_m = [row.x_m, row.y_m, row.z_m];
+        if let Some(value) = at_m.iter().find(|v| !v.is_finite()) {
+            return Err(refuse(line, format!("{value} is not a finite number")));
+        }
+        let (length_m, depth_m) = match row.body {
+            BodyKind::Block => (case.block.length_m, f64::INFINITY),
+            BodyKind::Roller => (case.roller.length_m, 2.0 * case.roller.radius_m),
+        };
+        let name = row.body.name();
+        // Coordinates may have lost digits on their way through a file.
+        if row.y_m.abs() > 0.5 * length_m * (1.0 + 1e-9) {
+            let half = 0.5 * length_m;
+            let message = format!("y_m = {:e} is outside the {name}, |y| <= {half:e} m", row.y_m);
+            return Err(refuse(line, message));
+        }
+        if !(0.0..=depth_m).contains(&row.z_m) {
+            return Err(refuse(line, format!("z_m = {:e} is outside the {name}", row.z_m)));
+        }
+        points.push(Point { body: row.body, at_m });
+    }
+    if points.is_empty() {
+        return Err(refuse(None, "holds no points".into()));
+    }
+    Ok(points)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn read_text(text: &str) -> Result<Vec<Point>> {
+        let file = tempfile::NamedTempFile::new().unwrap();
+        std::fs::write(file.path(), text).unwrap();
+        read(file.path(), &Case::find(Path::new("half-short")).unwrap())
+    }
+
+    #[test]
+    fn points_are_read_in_their_order() {
+        let points =
+            read_text("x_m,y_m,z_m,body\n0, 1e-4,0,roller\n1e-4,-0.002,3e-4,block\n").unwrap();
+        let wanted = [
+            Point { body: BodyKind::Roller, at_m: [0.0, 1e-4, 0.0] },
+            Point { body: BodyKind::Block, at_m: [1e-4, -0.002, 3e-4] },
+        ];
+        assert_eq!(points, wanted);
+    }
+
+    #[test]
+    fn bad_points_are_refused_with_their_line() {
+        let head = "body,x_m,y_m,z_m\nblock,0,0,0\n";
+        for (row, wanted) in [
+            ("block,0,0", ":3: "),
+            ("blok,0,0,0", ":3: unknown variant `blok`"),
+            ("block,0,zero,0", ":3: "),
+            ("block,nan,0,0", ":3: NaN is not a finite number"),
+            ("block,0,0,-1e-9", ":3: z_m = -1e-9 is outside the block"),
+            ("block,0,1,0", ":3: y_m = 1e0 is outside the block"),
+            ("roller,0,0.002,0", ":3: y_m = 2e-3 is outside the roller"),
+            ("roller,0,0,0.0201", ":3: z_m = 2.01e-2 is outside the roller"),
+        ] {
+            let message = read_text(&format!("{head}{row}\n")).unwrap_err().to_string();
+            assert!(message.contains(wanted), "{row}: {message}");
+            assert!(message.contains("give the columns"), "{row}: {message}");
+        }
+        assert!(read_text("body,x_m,y_m\nblock,0,0\n").unwrap_err().to_string().contains("z_m"));
+        assert!(
+            read_text(head.lines().next().unwrap()).unwrap_err().to_string().contains("no points")
+        );
+    }
+}

@@ -1,0 +1,146 @@
+//! `edgeline solve`: one case by one edge model.
+
+use super::{Outcome, print, print_json};
+use crate::base::{Error, Result, prepare_folder};
+use crate::body::EdgeModel;
+use crate::case::Case;
+use crate::report::solution;
+use crate::solve::{Options, Solution, solve};
+use crate::stress::BodyKind;
+use crate::stress::curves::CURVE_NAMES;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// Solves one case with the semi-analytical method.
+///
+/// Writes summary.json, pressure.csv (the contact pressure, one row a cell), curves.csv (stresses
+/// on the standard curves of both bodies) and, with --points, points.csv into the output folder.
+/// Takes some hundredths of a second.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A case file, or the name of a built-in case
+    #[arg(value_hint = ValueHint::FilePath)]
+    case: PathBuf,
+    /// How the free ends of the bodies are modelled
+    #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
+    method: EdgeModel,
+    /// Folder for the results; made if it is not there
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+    /// CSV file of further points, with the columns body,x_m,y_m,z_m
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    points: Option<PathBuf>,
+    /// Only this body's curves; both by default
+    #[arg(long, value_parser = body())]
+    body: Vec<BodyKind>,
+    /// Only this curve; all by default, may be given several times
+    #[arg(long, value_parser = PossibleValuesParser::new(CURVE_NAMES))]
+    curve: Vec<String>,
+    /// Requested accuracy as a fraction of p0; the case's own by default
+    #[arg(long)]
+    tolerance: Option<f64>,
+    /// Print the summary as one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// Parses the name of an edge model.
+pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
+    PossibleValuesParser::new(EdgeModel::ALL.map(EdgeModel::name)).map(|name| {
+        let named = |model: &EdgeModel| model.name() == name;
+        EdgeModel::ALL.into_iter().find(named).expect("only these names pass")
+    })
+}
+
+fn body() -> impl TypedValueParser<Value = BodyKind> {
+    PossibleValuesParser::new(BodyKind::ALL.map(BodyKind::name)).map(|name| {
+        let named = |body: &BodyKind| body.name() == name;
+        BodyKind::ALL.into_iter().find(named).expect("only these names pass")
+    })
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+    let mut case = Case::find(&arguments.case)?;
+    if let Some(tolerance) = arguments.tolerance {
+        case.tolerance = checked_tolerance(tolerance)?;
+    }
+    let mut options = Options::new(arguments.method);
+    if !arguments.body.is_empty() {
+        options.bodies.retain(|body| arguments.body.contains(body));
+    }
+    if !arguments.curve.is_empty() {
+        options.curves.retain(|curve| arguments.curve.contains(curve));
+    }
+    if let Some(path) = &arguments.points {
+        options.points = super::points::read(path, &case)?;
+    }
+    prepare_folder(&arguments.out)?;
+    let found = solve(&case, &options)?;
+    solution::write(&found, &options, &arguments.out)?;
+    if arguments.json {
+        print_json(&solution::summary(&found))?;
+    } else {
+        print(&text(&case, &found, &arguments))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The tolerance if it is within its legal range.
+pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64> {
+    let (low, high) = Case::TOLERANCE_RANGE;
+    if (low..=high).contains(&tolerance) {
+        return Ok(tolerance);
+    }
+    Err(Error::Value {
+        key: "--tolerance".into(),
+        value: tolerance.to_string(),
+        reason: format!("it is a fraction of p0 between {low:e} and {high:e}"),
+        remedy: "give for example 1e-3".into(),
+    })
+}
+
+/// The short summary for a reader.
+fn text(case: &Case, found: &Solution, arguments: &Arguments) -> String {
+    let (factors, hertz) = (case.factors(), found.hertz);
+    let p0 = hertz.p0_pa;
+    let mut lines = vec![
+        format!(
+            "{} by {}: W {:.4e}, S_l {:.4}, L_r {:.4}",
+            found.case, found.method, factors.load, factors.slenderness, factors.length_ratio
+        ),
+        format!(
+            "  load {:.6} N, half-width C {:.4} mm, p0 {:.1} MPa",
+            found.load_n,
+            hertz.c_m * 1e3,
+            p0 * 1e-6
+        ),
+        format!(
+            "  pressure {:.4} p0 at the centre, {:.4} p0 at most, at x = {:.3} C, y = {:.3} C",
+            found.p_centre_pa / p0,
+            found.p_max_pa / p0,
+            found.p_max_at_m[0] / hertz.c_m,
+            found.p_max_at_m[1] / hertz.c_m,
+        ),
+    ];
+    if let Some(critical) = &found.critical {
+        let [x, y, z] = critical.at_m.map(|v| v / hertz.c_m);
+        lines.push(format!(
+            "  most stressed: {}, von Mises {:.4} p0 at x = {x:.3} C, y = {y:.3} C, z = {z:.3} C",
+            critical.body.name(),
+            critical.value_pa / p0,
+        ));
+    }
+    lines.push(format!(
+        "  {} iterations, load met to {:.0e}, {:.1} ms",
+        found.iterations,
+        found.load_error_rel,
+        found.seconds.total * 1e3
+    ));
+    let points = if arguments.points.is_some() { ", points.csv" } else { "" };
+    lines.push(format!(
+        "wrote summary.json, pressure.csv, curves.csv{points} into {}",
+        arguments.out.display()
+    ));
+    lines.join("\n") + "\n"
+}

@@ -1,0 +1,232 @@
+//! Recorded finite-element results, as `results/reference/README.md` describes them.
+
+use super::result::{FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines};
+use crate::base::{Error, Material, Result};
+use crate::case::{Block, Case, Roller};
+use crate::solve::{Curve, PressureLine};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The records that are built into the program: case, then `record.json`, `curves.csv` and
+/// `pressure.csv`.
+const EMBEDDED: &[(&str, [&str; 3])] = include!(concat!(env!("OUT_DIR"), "/records.rs"));
+
+/// The files of a record, in the order of [`EMBEDDED`].
+const FILES: [&str; 3] = ["record.json", "curves.csv", "pressure.csv"];
+
+/// How far one component of one curve is from the exact solution of its model, as its meshes tell.
+/// The immediate neighbourhood of the roller's end is left out of curves on the surface.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ErrorEstimate {
+    /// `block`, `roller`, or `contact` for the pressure lines.
+    pub body: String,
+    /// The curve or the pressure line.
+    pub curve: String,
+    /// `sigma_xx` to `tau_max`, or `pressure`.
+    pub component: String,
+    /// The sizes compared, finest last.
+    pub sizes: Vec<f64>,
+    /// Largest difference of the two finest meshes (p0).
+    pub difference_max: f64,
+    /// Root mean square of that difference (p0).
+    pub difference_rms: f64,
+    /// Observed order of convergence over the three finest meshes, where one is observed.
+    pub order: Option<f64>,
+    /// What a point's difference has to be multiplied with to give the finest mesh's error.
+    pub factor: Option<f64>,
+    /// `factor` times `difference_max` (p0).
+    pub error_max: Option<f64>,
+    /// `factor` times `difference_rms` (p0).
+    pub error_rms: Option<f64>,
+}
+
+/// Finite-element results of one case on one mesh or several.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    /// The problem that was solved (its tolerance means nothing here).
+    pub case: Case,
+    /// `recorded`, or `live` for a run of this program, now.
+    pub source: &'static str,
+    /// The meshes, finest first; at least one.
+    pub meshes: Vec<MeshResult>,
+    /// Errors of the finest mesh; empty for a single mesh.
+    pub errors: Vec<ErrorEstimate>,
+}
+
+/// The content of `record.json`.
+#[derive(Deserialize)]
+struct Record {
+    schema: u32,
+    case: RecordedCase,
+    meshes: BTreeMap<String, FemSummary>,
+    errors: Vec<ErrorEstimate>,
+}
+
+#[derive(Deserialize)]
+struct RecordedCase {
+    name: String,
+    roller: RecordedRoller,
+    block: RecordedBlock,
+    force_n: f64,
+}
+
+#[derive(Deserialize)]
+struct RecordedRoller {
+    radius_m: f64,
+    length_m: f64,
+    #[serde(flatten)]
+    material: Material,
+}
+
+#[derive(Deserialize)]
+struct RecordedBlock {
+    length_m: f64,
+    #[serde(flatten)]
+    material: Material,
+}
+
+impl Reference {
+    /// Names of the cases whose records are built into the program.
+    pub fn embedded_names() -> impl Iterator<Item = &'static str> {
+        EMBEDDED.iter().map(|(name, _)| *name)
+    }
+
+    /// The record of the case called `name` that is built into the program, if there is one.
+    ///
+    /// # Errors
+    /// [`Error::File`] when the record is damaged.
+    pub fn embedded(name: &str) -> Result<Option<Reference>> {
+        let Some((name, texts)) = EMBEDDED.iter().find(|(known, _)| *known == name) else {
+            return Ok(None);
+        };
+        let folder = Path::new("results/reference").join(name);
+        Reference::parse(*texts, &folder).map(Some)
+    }
+
+    /// The built-in record that solves the problem `case`, if there is one: the same bodies,
+    /// materials and load, whatever the names are.
+    ///
+    /// # Errors
+    /// As [`Reference::embedded`].
+    pub fn embedded_of(case: &Case) -> Result<Option<Reference>> {
+        // The record of the same name first: it nearly always is the one.
+        let same_name = Self::embedded_names().filter(|name| *name == case.name);
+        let others = Self::embedded_names().filter(|name| *name != case.name);
+        for name in same_name.chain(others) {
+            match Self::embedded(name)? {
+                Some(reference) if reference.is_of(case) => return Ok(Some(reference)),
+                _ => {}
+            }
+        }
+        Ok(None)
+    }
+
+    /// Reads the record in the folder `results/reference/<case>`.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be read; [`Error::File`] when it is damaged, when a run
+    /// did not carry its load, or when the points are not the standard curves'.
+    pub fn read(folder: &Path) -> Result<Reference> {
+        let mut texts = Vec::new();
+        for file in FILES {
+            let path = folder.join(file);
+            let io = |source| Error::Io { action: "read", path: path.clone(), source };
+            texts.push(std::fs::read_to_string(&path).map_err(io)?);
+        }
+        Self::parse([&texts[0], &texts[1], &texts[2]], folder)
+    }
+
+    /// Reads all records below a folder such as `results/reference`, by name.
+    ///
+    /// # Errors
+    /// As [`Reference::read`].
+    pub fn read_all(folder: &Path) -> Result<Vec<Reference>> {
+        let io = |source| Error::Io { action: "list", path: folder.to_path_buf(), source };
+        let mut folders: Vec<PathBuf> = Vec::new();
+        for entry in std::fs::read_dir(folder).map_err(io)? {
+            let path = entry.map_err(io)?.path();
+            if path.join(FILES[0]).is_file() {
+                folders.push(path);
+            }
+        }
+        folders.sort();
+        folders.iter().map(|folder| Self::read(folder)).collect()
+    }
+
+    fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
+        let path = folder.join(FILES[0]);
+        let record: Record = serde_json::from_str(record)
+            .map_err(|e| nonsense(&path, Some(e.line()), format!("is not a record: {e}")))?;
+        if record.schema != 1 {
+            let message = format!("has schema {}, this program reads 1", record.schema);
+            return Err(nonsense(&path, None, message));
+        }
+        let RecordedCase { name, roller, block, force_n } = record.case;
+        let case = Case {
+            name,
+            roller: Roller {
+                radius_m: roller.radius_m,
+                length_m: roller.length_m,
+                material: roller.material,
+            },
+            block: Block { length_m: block.length_m, material: block.material },
+            force_n,
+            tolerance: Case::DEFAULT_TOLERANCE,
+        };
+        let curves_path = folder.join(FILES[1]);
+        let mut curves = parse_curves(curves, &curves_path)?;
+        let mut lines = parse_lines(lines, &folder.join(FILES[2]))?;
+        let mut meshes = Vec::new();
+        for (size, summary) in record.meshes {
+            let parsed: f64 = size.parse().unwrap_or(f64::NAN);
+            if !(parsed.is_finite() && parsed > 0.0) {
+                return Err(nonsense(&path, None, format!("'{size}' is not the size of a mesh")));
+            }
+            summary.check(&path)?;
+            let own_curves: Vec<Curve> =
+                curves.extract_if(.., |(s, _)| *s == parsed).map(|(_, curve)| curve).collect();
+            let own_lines: Vec<PressureLine> =
+                lines.extract_if(.., |(s, _)| *s == parsed).map(|(_, line)| line).collect();
+            check_points(&case, &own_curves, &own_lines, &curves_path)?;
+            meshes.push(MeshResult { size: parsed, summary, curves: own_curves, lines: own_lines });
+        }
+        if meshes.is_empty() {
+            return Err(nonsense(&path, None, "holds no mesh"));
+        }
+        meshes.sort_by(|a, b| a.size.total_cmp(&b.size));
+        Ok(Reference { case, source: "recorded", meshes, errors: record.errors })
+    }
+
+    /// The finest mesh, the one to compare with.
+    pub fn finest(&self) -> &MeshResult {
+        &self.meshes[0]
+    }
+
+    /// Whether `case` is the same problem: bodies, materials and load agree to nine digits.
+    pub fn is_of(&self, case: &Case) -> bool {
+        let numbers = |c: &Case| {
+            let (roller, block) = (c.roller.material, c.block.material);
+            [
+                c.roller.radius_m,
+                c.roller.length_m,
+                c.block.length_m,
+                c.force_n,
+                roller.young_pa,
+                block.young_pa,
+                // 1 - nu^2 is what matters, and nu may be 0.
+                1.0 + roller.poisson,
+                1.0 + block.poisson,
+            ]
+        };
+        numbers(&self.case).iter().zip(numbers(case)).all(|(a, b)| (a - b).abs() <= 1e-9 * b)
+    }
+
+    /// The error estimate of one component (`sigma_xx` ... `tau_max`, or `pressure` with the body
+    /// `contact`) on one curve.
+    pub fn error(&self, body: &str, curve: &str, component: &str) -> Option<&ErrorEstimate> {
+        let is_it =
+            |e: &&ErrorEstimate| e.body == body && e.curve == curve && e.component == component;
+        self.errors.iter().find(is_it)
+    }
+}

@@ -1,0 +1,337 @@
+//! What the finite-element side writes: `fem.json`, `curves.csv`, `pressure.csv`.
+
+use crate::base::{Error, Result, StressTensor};
+use crate::case::Case;
+use crate::solve::{Curve, PressureLine};
+use crate::stress::BodyKind;
+use crate::stress::curves::{CURVE_NAMES, across_contact, contact_line, standard_curves};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Names of the pressure lines: x = 0, and y = 0.
+pub const LINE_NAMES: [&str; 2] = ["along-y", "along-x"];
+
+/// Points that differ by less than this part of the half-width C are the same: files hold nine
+/// digits.
+const SAME_POINT: f64 = 1e-6;
+
+/// The summary of one finite-element run: the content of `fem.json`, and of one mesh in a record.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct FemSummary {
+    /// Versions of the libraries and programs, and the processor, by name.
+    pub versions: BTreeMap<String, serde_json::Value>,
+    /// Number of MPI ranks.
+    pub ranks: usize,
+    /// Unknowns of both bodies.
+    pub unknowns: usize,
+    /// |sum of the contact forces - load| / load.
+    pub load_error_rel: f64,
+    /// Error of the supports' reaction relative to the load, the larger of both bodies.
+    pub equilibrium_residual: f64,
+    /// What is left of complementarity, relative.
+    pub complementarity_residual: f64,
+    /// Approach (m).
+    pub approach_m: f64,
+    /// Pressure at the contact's centre (Pa).
+    pub p_centre_pa: f64,
+    /// Largest nodal pressure (Pa).
+    pub p_max_pa: f64,
+    /// Seconds of each stage, `total` among them.
+    pub seconds: BTreeMap<String, f64>,
+    /// Largest resident memory, summed over the ranks (MiB).
+    pub peak_memory_mib: f64,
+    /// Everything else that the run states (mesh, solver, boundary conditions, ...).
+    #[serde(flatten)]
+    pub more: serde_json::Map<String, serde_json::Value>,
+}
+
+impl FemSummary {
+    /// Refuses a run that did not carry its load: its curves would be those of another problem.
+    pub(super) fn check(&self, path: &Path) -> Result<()> {
+        for (name, value) in [
+            ("load_error_rel", self.load_error_rel),
+            ("equilibrium_residual", self.equilibrium_residual),
+        ] {
+            if value.is_nan() || value.abs() > 1e-6 {
+                return Err(nonsense(path, None, format!("{name} = {value:e} is more than 1e-6")));
+            }
+        }
+        for (name, value) in [
+            ("p_centre_pa", self.p_centre_pa),
+            ("p_max_pa", self.p_max_pa),
+            ("unknowns", self.unknowns as f64),
+            ("seconds.total", self.seconds.get("total").copied().unwrap_or(f64::NAN)),
+        ] {
+            if !(value.is_finite() && value > 0.0) {
+                let message = format!("{name} = {value} is not a positive number");
+                return Err(nonsense(path, None, message));
+            }
+        }
+        Ok(())
+    }
+
+    /// Wall-clock seconds of all stages.
+    pub fn total_seconds(&self) -> f64 {
+        self.seconds["total"]
+    }
+
+    /// The processor that it ran on.
+    pub fn processor(&self) -> &str {
+        self.versions.get("processor").and_then(|v| v.as_str()).unwrap_or("unknown")
+    }
+}
+
+/// The result of one mesh, from a record or from a live run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct MeshResult {
+    /// Relative element size; 1 is the production mesh, smaller is finer.
+    pub size: f64,
+    /// How it was computed.
+    pub summary: FemSummary,
+    /// Stresses on the standard curves of both bodies, in the order of
+    /// [`standard_curves`], the block first.
+    pub curves: Vec<Curve>,
+    /// Contact pressure along y and along x.
+    pub lines: Vec<PressureLine>,
+}
+
+impl MeshResult {
+    /// The curve called `name` of `body`.
+    pub fn curve(&self, body: BodyKind, name: &str) -> Option<&Curve> {
+        self.curves.iter().find(|c| c.body == body && c.name == name)
+    }
+
+    /// The pressure line called `name`.
+    pub fn line(&self, name: &str) -> Option<&PressureLine> {
+        self.lines.iter().find(|l| l.name == name)
+    }
+}
+
+/// The curves that are asked of the finite-element side, points in metres.
+pub fn wanted_curves(case: &Case) -> Vec<(BodyKind, &'static str, Vec<[f64; 3]>)> {
+    let c_m = case.hertz().c_m;
+    let half_length = 0.5 * case.roller.length_m / c_m;
+    let body_half_length = |body| match body {
+        BodyKind::Block => 0.5 * case.block.length_m / c_m,
+        BodyKind::Roller => half_length,
+    };
+    BodyKind::ALL
+        .into_iter()
+        .flat_map(|body| standard_curves(body, half_length, body_half_length(body)))
+        .map(|spec| {
+            let points = spec.points.iter().map(|p| p.map(|v| v * c_m)).collect();
+            (spec.body, spec.name, points)
+        })
+        .collect()
+}
+
+/// The points where the contact pressure is asked for (m), by line.
+pub fn wanted_lines(case: &Case) -> Vec<(&'static str, Vec<[f64; 2]>)> {
+    let c_m = case.hertz().c_m;
+    let half_length = 0.5 * case.roller.length_m / c_m;
+    let along_y = contact_line(half_length).iter().map(|y| [0.0, y * c_m]).collect();
+    let along_x = across_contact().iter().map(|x| [x * c_m, 0.0]).collect();
+    LINE_NAMES.into_iter().zip([along_y, along_x]).collect()
+}
+
+/// Checks that `curves` and `lines` are those of `case`, point by point.
+///
+/// # Errors
+/// [`Error::File`] that names the first curve or line that is missing, too many, or elsewhere.
+pub fn check_points(
+    case: &Case,
+    curves: &[Curve],
+    lines: &[PressureLine],
+    path: &Path,
+) -> Result<()> {
+    let near = SAME_POINT * case.hertz().c_m;
+    let same = |got: &[f64], want: &[f64]| {
+        got.iter().zip(want).all(|(g, w)| (g - w).abs() <= near + 1e-8 * w.abs())
+    };
+    let wanted = wanted_curves(case);
+    if curves.len() != wanted.len() {
+        let message = format!("holds {} curves instead of {}", curves.len(), wanted.len());
+        return Err(nonsense(path, None, message));
+    }
+    for (curve, (body, name, points)) in curves.iter().zip(&wanted) {
+        let matches = curve.body == *body
+            && curve.name == *name
+            && curve.at_m.len() == points.len()
+            && curve.at_m.iter().zip(points).all(|(g, w)| same(g, w));
+        if !matches {
+            let message = format!(
+                "the {} points of {} {} are not the {} of {} {name}",
+                curve.at_m.len(),
+                curve.body.name(),
+                curve.name,
+                points.len(),
+                body.name(),
+            );
+            return Err(nonsense(path, None, message));
+        }
+    }
+    let wanted = wanted_lines(case);
+    let matches = lines.len() == wanted.len()
+        && lines.iter().zip(&wanted).all(|(line, (name, points))| {
+            line.name == *name
+                && line.at_m.len() == points.len()
+                && line.at_m.iter().zip(points).all(|(g, w)| same(g, w))
+        });
+    if !matches {
+        return Err(nonsense(path, None, "the pressure lines are not those that were asked for"));
+    }
+    Ok(())
+}
+
+/// Curves of a `curves.csv`, each with the size of its mesh: from the leading column `mesh` where
+/// there is one, else NaN.
+pub(super) fn parse_curves(text: &str, path: &Path) -> Result<Vec<(f64, Curve)>> {
+    let mut stress_columns = Vec::from(["body", "curve", "x_m", "y_m", "z_m"]);
+    let names = StressTensor::NAMES.map(|name| format!("{name}_pa"));
+    stress_columns.extend(names.iter().map(String::as_str));
+    let table = Csv::parse(text, path, &stress_columns)?;
+    let mut curves: Vec<(f64, Curve)> = Vec::new();
+    for row in table.rows() {
+        let row = row?;
+        let body = BodyKind::ALL
+            .into_iter()
+            .find(|body| body.name() == row.text(0))
+            .ok_or_else(|| row.nonsense(format!("there is no body '{}'", row.text(0))))?;
+        let name = row.one_of(1, &CURVE_NAMES)?;
+        let at = [row.number(2)?, row.number(3)?, row.number(4)?];
+        let mut components = [0.0; 6];
+        for (i, component) in components.iter_mut().enumerate() {
+            *component = row.number(5 + i)?;
+        }
+        let stress = StressTensor::from_components(components);
+        let size = row.mesh()?;
+        match curves.last_mut() {
+            Some((s, curve)) if same_mesh(*s, size) && curve.body == body && curve.name == name => {
+                curve.at_m.push(at);
+                curve.stress_pa.push(stress);
+            }
+            _ => {
+                let curve = Curve { body, name, at_m: vec![at], stress_pa: vec![stress] };
+                curves.push((size, curve));
+            }
+        }
+    }
+    Ok(curves)
+}
+
+/// Lines of a `pressure.csv`, each with the size of its mesh as in [`parse_curves`].
+pub(super) fn parse_lines(text: &str, path: &Path) -> Result<Vec<(f64, PressureLine)>> {
+    let table = Csv::parse(text, path, &["line", "x_m", "y_m", "p_pa"])?;
+    let mut lines: Vec<(f64, PressureLine)> = Vec::new();
+    for row in table.rows() {
+        let row = row?;
+        let name = row.one_of(0, &LINE_NAMES)?;
+        let (at, p) = ([row.number(1)?, row.number(2)?], row.number(3)?);
+        let size = row.mesh()?;
+        match lines.last_mut() {
+            Some((s, line)) if same_mesh(*s, size) && line.name == name => {
+                line.at_m.push(at);
+                line.p_pa.push(p);
+            }
+            _ => lines.push((size, PressureLine { name, at_m: vec![at], p_pa: vec![p] })),
+        }
+    }
+    Ok(lines)
+}
+
+/// Whether two sizes mean one mesh; NaN stands for "no column".
+fn same_mesh(a: f64, b: f64) -> bool {
+    a == b || (a.is_nan() && b.is_nan())
+}
+
+/// An error about the content of a file that the finite-element side wrote.
+pub(super) fn nonsense(path: &Path, line: Option<usize>, message: impl Into<String>) -> Error {
+    Error::File {
+        path: path.to_path_buf(),
+        line,
+        message: message.into(),
+        remedy: "the file was damaged or not written by this version; remove it and run FEM again"
+            .into(),
+    }
+}
+
+/// A CSV text with the columns that are wanted, wherever they stand.
+struct Csv<'t> {
+    path: &'t Path,
+    reader: csv::Reader<&'t [u8]>,
+    /// Where each wanted column stands.
+    columns: Vec<usize>,
+    /// Where the column `mesh` stands.
+    mesh: Option<usize>,
+}
+
+impl<'t> Csv<'t> {
+    fn parse(text: &'t str, path: &'t Path, wanted: &[&str]) -> Result<Self> {
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let header = reader.headers().map_err(|e| nonsense(path, Some(1), e.to_string()))?.clone();
+        let find = |name: &str| header.iter().position(|h| h == name);
+        let columns = wanted
+            .iter()
+            .map(|name| {
+                find(name).ok_or_else(|| nonsense(path, Some(1), format!("has no column {name}")))
+            })
+            .collect::<Result<_>>()?;
+        Ok(Self { path, columns, mesh: find("mesh"), reader })
+    }
+
+    fn rows(self) -> impl Iterator<Item = Result<Row<'t>>> {
+        let Csv { path, reader, columns, mesh } = self;
+        let columns = std::rc::Rc::new(columns);
+        reader.into_records().map(move |record| match record {
+            Ok(record) => Ok(Row { path, record, columns: columns.clone(), mesh }),
+            Err(e) => {
+                let line = e.position().map(|p| p.line() as usize);
+                Err(nonsense(path, line, e.to_string()))
+            }
+        })
+    }
+}
+
+/// One row of a [`Csv`].
+struct Row<'t> {
+    path: &'t Path,
+    record: csv::StringRecord,
+    columns: std::rc::Rc<Vec<usize>>,
+    mesh: Option<usize>,
+}
+
+impl Row<'_> {
+    fn text(&self, column: usize) -> &str {
+        // The reader refuses rows of another width than the header.
+        &self.record[self.columns[column]]
+    }
+
+    fn number(&self, column: usize) -> Result<f64> {
+        self.finite(self.text(column))
+    }
+
+    fn mesh(&self) -> Result<f64> {
+        self.mesh.map_or(Ok(f64::NAN), |column| self.finite(&self.record[column]))
+    }
+
+    fn one_of(&self, column: usize, names: &[&'static str]) -> Result<&'static str> {
+        let text = self.text(column);
+        names
+            .iter()
+            .copied()
+            .find(|name| *name == text)
+            .ok_or_else(|| self.nonsense(format!("'{text}' is none of {}", names.join(", "))))
+    }
+
+    fn finite(&self, text: &str) -> Result<f64> {
+        match text.trim().parse::<f64>() {
+            Ok(value) if value.is_finite() => Ok(value),
+            _ => Err(self.nonsense(format!("'{text}' is not a finite number"))),
+        }
+    }
+
+    fn nonsense(&self, message: String) -> Error {
+        nonsense(self.path, self.record.position().map(|p| p.line() as usize), message)
+    }
+}

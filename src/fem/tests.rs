@@ -1,0 +1,84 @@
+use super::*;
+use crate::case::{Case, Study};
+use crate::stress::BodyKind;
+use std::path::{Path, PathBuf};
+
+fn records() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference")
+}
+
+#[test]
+fn records_are_read_and_built_in_alike() {
+    let read = Reference::read_all(&records()).unwrap();
+    let embedded: Vec<Reference> = Reference::embedded_names()
+        .map(|name| Reference::embedded(name).unwrap().unwrap())
+        .collect();
+    assert_eq!(read, embedded);
+    assert_eq!(Reference::embedded("no such case").unwrap(), None);
+}
+
+#[test]
+fn default_study_and_validation_cases_are_on_record() {
+    let validation = ["validation-nu025", "validation-nu040", "validation-steel-aluminium"]
+        .map(|name| Case::find(Path::new(name)).unwrap());
+    for case in Study::built_in().cases().chain(&validation) {
+        let reference = Reference::embedded_of(case).unwrap().expect(&case.name);
+        assert_eq!(reference.case.name, case.name);
+        assert!(reference.meshes.is_sorted_by(|a, b| a.size < b.size));
+        // The estimates' names are those of the curves.
+        for error in &reference.errors {
+            let known = match BodyKind::ALL.iter().find(|b| b.name() == error.body) {
+                Some(&body) => reference.finest().curve(body, &error.curve).is_some(),
+                None => reference.finest().line(&error.curve).is_some(),
+            };
+            assert!(known, "{error:?}");
+        }
+        assert!(reference.error("contact", "along-y", "pressure").is_some());
+    }
+}
+
+#[test]
+fn a_record_belongs_to_a_problem_not_to_a_name() {
+    let case = Case::find(Path::new("validation-nu025")).unwrap();
+    let renamed = Case { name: "other".into(), ..case.clone() };
+    let found = Reference::embedded_of(&renamed).unwrap().unwrap();
+    assert_eq!(found.case.name, "validation-nu025");
+    let heavier = Case { force_n: case.force_n * 1.001, ..case };
+    assert_eq!(Reference::embedded_of(&heavier).unwrap(), None);
+}
+
+#[test]
+fn damaged_records_are_refused_with_their_place() {
+    let source = records().join("validation-nu025");
+    let folder = tempfile::tempdir().unwrap();
+    let damage = |file: &str, change: &dyn Fn(String) -> String| {
+        for name in ["record.json", "curves.csv", "pressure.csv"] {
+            let text = std::fs::read_to_string(source.join(name)).unwrap();
+            let text = if name == file { change(text) } else { text };
+            std::fs::write(folder.path().join(name), text).unwrap();
+        }
+        Reference::read(folder.path()).unwrap_err().to_string()
+    };
+    let line_three = |text: String, from: &str, to: &str| {
+        let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
+        lines[2] = lines[2].replacen(from, to, 1);
+        lines.join("\n")
+    };
+    let message = damage("curves.csv", &|t| line_three(t, ",0,", ",nan,"));
+    assert!(message.contains("curves.csv:3: 'nan' is not a finite number"), "{message}");
+    let message = damage("curves.csv", &|t| line_three(t, "block", "blok"));
+    assert!(message.contains("curves.csv:3: there is no body 'blok'"), "{message}");
+    let message = damage("curves.csv", &|t| line_three(t, ",0,", ","));
+    assert!(message.contains("curves.csv:3: "), "{message}");
+    let message = damage("curves.csv", &|t| t[..t.len() / 2].to_string());
+    assert!(message.contains("curves.csv"), "{message}");
+    let message = damage("curves.csv", &|t| t.replace("sigma_xy_pa", "tau_xy_pa"));
+    assert!(message.contains("curves.csv:1: has no column sigma_xy_pa"), "{message}");
+    let message = damage("pressure.csv", &|t| t.lines().take(5).collect::<Vec<_>>().join("\n"));
+    assert!(message.contains("pressure lines are not those"), "{message}");
+    let message = damage("record.json", &|t| t[..t.len() / 2].to_string());
+    assert!(message.contains("record.json:"), "{message}");
+    let message =
+        damage("record.json", &|t| t.replace("\"load_error_rel\": ", "\"load_error_rel\": 1"));
+    assert!(message.contains("load_error_rel = 1"), "{message}");
+}

@@ -1,0 +1,206 @@
+//! The program as a user meets it: exit codes, messages, files.
+
+use assert_cmd::Command;
+use serde_json::Value;
+use std::path::Path;
+
+/// The program, with nothing from the outside that it might pick up.
+fn edgeline(folder: &Path) -> Command {
+    let mut command = Command::cargo_bin("edgeline").unwrap();
+    command.current_dir(folder).env_remove("EDGELINE_PYTHON");
+    command
+}
+
+/// Runs it where it has to fail with exit code 2, and returns what it said.
+fn refused(folder: &Path, arguments: &[&str]) -> String {
+    let output = edgeline(folder).args(arguments).output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
+    assert!(output.stdout.is_empty(), "{arguments:?} printed results");
+    said
+}
+
+fn files(folder: &Path) -> Vec<String> {
+    let mut names: Vec<String> = std::fs::read_dir(folder)
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// Rows of a CSV file, by column.
+fn table(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &std::collections::HashMap<String, String>, column: &str) -> f64 {
+    row[column].parse().unwrap()
+}
+
+#[test]
+fn help_says_what_is_written_and_how_long_it_takes() {
+    let folder = tempfile::tempdir().unwrap();
+    let help = edgeline(folder.path()).arg("--help").output().unwrap();
+    assert!(help.status.success());
+    let text = String::from_utf8(help.stdout).unwrap();
+    let commands: Vec<&str> = text
+        .lines()
+        .skip_while(|line| !line.starts_with("Commands:"))
+        .skip(1)
+        .map_while(|line| line.split_whitespace().next())
+        .filter(|name| *name != "help")
+        .collect();
+    assert!(commands.contains(&"solve") && commands.contains(&"doctor"), "{commands:?}");
+    for command in commands {
+        let help = edgeline(folder.path()).args([command, "--help"]).output().unwrap();
+        assert!(help.status.success(), "{command}");
+        let text = String::from_utf8(help.stdout).unwrap();
+        assert!(text.contains("Takes "), "{command} --help does not say how long it takes");
+        assert!(text.contains("rites "), "{command} --help does not say what it writes");
+    }
+}
+
+#[test]
+fn wrong_usage_exits_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(folder.path(), &[]);
+    refused(folder.path(), &["sovle"]);
+    assert!(refused(folder.path(), &["solve"]).contains("CASE"));
+    let said = refused(folder.path(), &["solve", "flush-short", "--method", "quarter"]);
+    assert!(said.contains("quarter-space"), "{said}");
+    let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "2"]);
+    assert!(said.contains("--tolerance") && said.contains("1e-1"), "{said}");
+    assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
+fn bad_case_files_exit_with_two_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let said = refused(folder.path(), &["solve", "nowhere.toml", "--out", "o"]);
+    assert!(said.contains("nowhere.toml") && said.contains("flush-short"), "{said}");
+    let good = include_str!("../cases/flush-short.toml");
+    for (from, to, wanted) in [
+        ("poisson = 0.3", "poison = 0.3", "unknown key roller.poison; did you mean poisson?"),
+        ("poisson = 0.3", "poisson = 0.5", "roller.poisson = 0.5"),
+        ("L_r = 1.0", "L_r = 1.2", "dimensionless.L_r = 1.2"),
+        ("radius_m = 10e-3", "radius_m = -1", "roller.radius_m = -1"),
+        ("W = 5e-4", "W = nan", "dimensionless.W = nan"),
+        ("[block]", "[block", "is not valid TOML"),
+    ] {
+        let text = good.replacen(from, to, 1);
+        let line = 1 + text.lines().position(|l| l == to).unwrap();
+        std::fs::write(folder.path().join("bad.toml"), text).unwrap();
+        let said = refused(folder.path(), &["solve", "bad.toml", "--out", "o"]);
+        assert!(said.contains(wanted), "{to}: {said}");
+        assert!(said.contains(&format!("bad.toml:{line}: ")), "{to}: {said}");
+    }
+    assert_eq!(files(folder.path()), ["bad.toml"]);
+}
+
+#[test]
+fn output_folder_that_cannot_be_made_exits_with_two() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("taken"), "").unwrap();
+    for out in ["taken", "taken/below"] {
+        let said = refused(folder.path(), &["solve", "flush-short", "--out", out]);
+        assert!(said.contains("cannot create the folder taken"), "{said}");
+    }
+    assert_eq!(files(folder.path()), ["taken"]);
+}
+
+#[test]
+fn bad_points_exit_with_two_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.csv"), "body,x_m,y_m,z_m\nblock,0,0,-1\n").unwrap();
+    let arguments = ["solve", "flush-short", "--points", "p.csv", "--out", "o"];
+    let said = refused(folder.path(), &arguments);
+    assert!(said.contains("p.csv:2: z_m = -1e0 is outside the block"), "{said}");
+    assert_eq!(files(folder.path()), ["p.csv"]);
+}
+
+#[test]
+fn solve_writes_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let points = "body,x_m,y_m,z_m\nroller,0,0,1e-4\nblock,1e-5,-1e-4,0\nblock,1e-5,1e-4,0\n";
+    std::fs::write(folder.path().join("p.csv"), points).unwrap();
+    for method in ["half-space", "mirror", "guilbault", "quarter-space"] {
+        let out = format!("out/{method}");
+        let arguments =
+            ["solve", "flush-short", "--method", method, "--points", "p.csv", "--out", &out];
+        let output = edgeline(folder.path()).args(arguments).output().unwrap();
+        assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert!(said.contains(&format!("flush-short by {method}")), "{said}");
+        let out = folder.path().join(out);
+        assert_eq!(files(&out), ["curves.csv", "points.csv", "pressure.csv", "summary.json"]);
+
+        let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(summary["case"], "flush-short");
+        assert_eq!(summary["method"], method);
+        assert_eq!(summary["converged"], true);
+        assert!(summary["load_error_rel"].as_f64().unwrap() <= 1e-10, "{method}");
+        for key in ["setup", "contact", "stress", "total"] {
+            assert!(summary["seconds"][key].as_f64().unwrap() >= 0.0, "{key}");
+        }
+        for key in ["body", "measure", "value_pa", "at_m"] {
+            assert!(!summary["critical"][key].is_null(), "{key}");
+        }
+        let p0 = summary["hertz"]["p0_pa"].as_f64().unwrap();
+
+        // The pressure of all cells is the load, and is the same on either side of both planes.
+        let cells = table(&out.join("pressure.csv"));
+        let of = |row, keys: [&str; 3]| keys.iter().map(|k| number(row, k)).product::<f64>();
+        let load: f64 = cells.iter().map(|row| of(row, ["p_pa", "dx_m", "dy_m"])).sum();
+        let wanted = summary["load_n"].as_f64().unwrap();
+        assert!((load / wanted - 1.0).abs() < 1e-9, "{method}: {load} of {wanted} N");
+        assert!(cells.iter().all(|row| number(row, "p_pa") >= 0.0));
+        for moment in [["p_pa", "dx_m", "x_m"], ["p_pa", "dy_m", "y_m"]] {
+            let sum: f64 = cells.iter().map(|row| of(row, moment)).sum();
+            let size: f64 = cells.iter().map(|row| of(row, moment).abs()).sum();
+            assert!(sum.abs() <= 1e-9 * size, "{method}: {moment:?}");
+        }
+
+        let curves = table(&out.join("curves.csv"));
+        for body in ["block", "roller"] {
+            for name in [
+                "surface-along-y",
+                "surface-along-x",
+                "depth-centre",
+                "depth-0.9",
+                "depth-end",
+                "along-y-0.5C",
+                "along-y-0.78C",
+            ] {
+                let rows: Vec<_> =
+                    curves.iter().filter(|r| r["body"] == body && r["curve"] == name).collect();
+                assert!(rows.len() > 10, "{body} {name}");
+                let sane = |r: &&_| (0.0..2.0 * p0).contains(&number(r, "tau_max_pa"));
+                assert!(rows.iter().all(sane), "{body} {name}");
+            }
+        }
+
+        let points = table(&out.join("points.csv"));
+        let bodies: Vec<&str> = points.iter().map(|row| row["body"].as_str()).collect();
+        assert_eq!(bodies, ["roller", "block", "block"]);
+        assert_eq!(number(&points[1], "y_m"), -1e-4);
+        for column in ["sigma_xx_pa", "von_mises_pa"] {
+            let (a, b) = (number(&points[1], column), number(&points[2], column));
+            assert!((a - b).abs() <= 1e-9 * a.abs(), "{column} is not symmetric in y");
+        }
+    }
+}
+
+#[test]
+fn json_is_the_only_thing_on_standard_output() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["solve", "half-short", "--method", "mirror", "--json", "--body", "block"];
+    let output = edgeline(folder.path()).args(arguments).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let text = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
+    assert_eq!(printed, serde_json::from_str::<Value>(&text).unwrap());
+    let curves = table(&folder.path().join("out/curves.csv"));
+    assert!(curves.iter().all(|row| row["body"] == "block"));
+}
