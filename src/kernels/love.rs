@@ -257,8 +257,7 @@ impl Cell {
             let lateral = (-4.0 * ab * real).atan2(real * real + 4.0 * (xy - ab) * (xy + ab));
             return Sums { lateral, ..Default::default() };
         }
-        // Inside or on the boundary every term has one sign; on an edge the mean of both sides is
-        // 0.
+        // Inside and on the boundary every term has one sign; an edge's two sides average to 0.
         let turn = |w: f64| if w == 0.0 { 1.0 } else { 2.0 };
         let angle = FRAC_PI_2 * turn(u2) * turn(v2);
         let term = |u: f64, v: f64| if v == 0.0 { 0.0 } else { (u / v).atan() };
