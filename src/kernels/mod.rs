@@ -1,6 +1,10 @@
 //! Closed forms only: pure functions, no allocation.
 
 pub mod bessel;
+pub mod boussinesq;
+pub mod deflection;
+pub mod hertz;
+pub mod love;
 pub mod plate;
 pub mod strip;
 pub mod wave;
