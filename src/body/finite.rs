@@ -29,8 +29,11 @@ pub struct Body {
     pub surface: Panels,
     /// Axis of the depth along an end face.
     pub face: Panels,
-    /// Images of the surface axis, itself and its mirror in y = 0 included.
-    pub images: Vec<Image>,
+    /// Images of the surface axis, itself and its mirror in y = 0 included, as they act on the
+    /// displacement.
+    images: Vec<Image>,
+    /// The same as they act on the stresses: an image that psi weighs has its full weight here.
+    pub stress_images: Vec<Image>,
     /// Nodes of `surface` that belong to the contact; they come first.
     contact: usize,
     /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
@@ -68,8 +71,7 @@ impl Body {
         let complete = model == EdgeModel::QuarterSpace;
         let contact_axis = resolution.contact_axis(half_length);
         let contact = contact_axis.len();
-        let surface =
-            if complete { resolution.body_axis(half_length, half) } else { contact_axis };
+        let surface = if complete { resolution.body_axis(half_length, half) } else { contact_axis };
         let ledge = half - half_length;
         let face = resolution.face_axis(ledge);
         let image = |sign: f64, lengths: i32, weight: f64| Image {
@@ -89,8 +91,10 @@ impl Body {
                 images.extend([image(1.0, lengths, weight), image(-1.0, lengths, weight)]);
             }
         }
+        let stress_images = images.iter().map(|i| Image { weight: 1.0, ..*i }).collect();
         let mut body = Self {
             half,
+            stress_images,
             nu,
             model,
             face_wavenumbers: resolution.face_wavenumbers(half),
@@ -126,20 +130,15 @@ impl Body {
             step *= 2.0;
         }
         let strip = Panels::new(breaks, self.resolution.order);
-        self.strips =
-            strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
+        self.strips = strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
         self.to_face = self
             .face
             .nodes()
             .iter()
             .map(|&z| Stencil::new(&self.surface, &self.images, half, z))
             .collect();
-        self.from_faces = self
-            .surface
-            .nodes()
-            .iter()
-            .map(|&y| self.face_stencils(y, 0.0))
-            .collect();
+        self.from_faces =
+            self.surface.nodes().iter().map(|&y| self.face_stencils(y, 0.0)).collect();
         let (face, axis) = (&self.face, &self.face_wavenumbers);
         let order = face.order();
         self.cosines = DMatrix::zeros(axis.len(), face.len());
@@ -171,9 +170,8 @@ impl Body {
     /// Face nodes that a wavenumber reaches.
     pub fn face_len(&self, k: f64) -> usize {
         let deepest = self.resolution.face_reach / k;
-        let panels = (0..self.face.panel_count())
-            .take_while(|&i| self.face.panel(i)[0] < deepest)
-            .count();
+        let panels =
+            (0..self.face.panel_count()).take_while(|&i| self.face.panel(i)[0] < deepest).count();
         panels * self.face.order()
     }
 
@@ -260,11 +258,7 @@ impl Body {
             row.fill(0.0);
             for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
                 if k * depth < REACH {
-                    stencil.add_row(
-                        REACH / k,
-                        |u| -line_load(k, self.nu, u, depth).ww,
-                        &mut row,
-                    );
+                    stencil.add_row(REACH / k, |u| -line_load(k, self.nu, u, depth).ww, &mut row);
                 }
             }
             matrix.row_mut(i).copy_from_slice(&row);
@@ -281,8 +275,8 @@ impl Body {
         matrix
     }
 
-    /// Amplitudes of the plate's remainder at (`y`, `z`) under the face load `q` (at the first
-    /// face nodes), in the components of [`plate::remainder`]; zero where it does not matter.
+    /// Amplitudes of the plate's remainder at (`y`, `z`) under face loads with the given
+    /// [`Body::plate_transform`], in the components of [`plate::remainder`].
     pub fn plate_stress(&self, k: f64, transform: &[f64], y: f64, z: f64) -> [f64; 6] {
         let mut sum = [0.0; 6];
         let axis = &self.face_wavenumbers;

@@ -25,8 +25,9 @@ pub struct Stencil {
     order: usize,
 }
 
-/// Pieces are not cut below this part of their panel: what an integrable singularity of ln r leaves
-/// in such a piece is below 1e-4 of the panel's own share.
+/// For a target on the axis's line pieces are not cut below this part of their panel: what an
+/// integrable singularity of ln r leaves in such a piece is below 1e-4 of the panel's own share.
+/// Off the line the depth bounds the pieces by itself.
 const SMALLEST_PIECE: f64 = 1.0 / 512.0;
 
 impl Stencil {
@@ -49,6 +50,7 @@ impl Stencil {
                     }
                     continue;
                 }
+                let smallest = if depth > 0.0 { 0.0 } else { SMALLEST_PIECE * (b - a) };
                 let mut pieces = vec![[a, b]];
                 // Cut at the target first, so that pieces end there.
                 if a < own && own < b {
@@ -57,7 +59,7 @@ impl Stencil {
                 while let Some([c, d]) = pieces.pop() {
                     let length = d - c;
                     let far = distance(c, d, own, depth) >= length;
-                    if !far && length > SMALLEST_PIECE * (b - a) {
+                    if !far && length > smallest {
                         let mid = 0.5 * (c + d);
                         pieces.extend([[c, mid], [mid, d]]);
                         continue;
