@@ -1,0 +1,107 @@
+"""Command line of the package; see docs/fem.md for the protocol."""
+
+import argparse
+import json
+import logging
+import os
+import sys
+from pathlib import Path
+
+# One thread a process: ranks and jobs are what runs in parallel here, and BLAS reads this when loaded.
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+from .request import FemError, read_request  # noqa: E402
+
+
+def _log(text):
+    print(text, file=sys.stderr, flush=True)
+
+
+def _mesh(arguments):
+    from .meshing import make_meshes
+
+    summary = make_meshes(read_request(arguments.request), arguments.folder)
+    for body, data in summary["bodies"].items():
+        _log(f"{body}: {data['elements']} elements, {data['unknowns']} unknowns, scaled Jacobian at least "
+             f"{data['quality_min']:.2f}, {summary['seconds'][body]:.1f} s")
+
+
+def _solve(arguments):
+    from mpi4py import MPI
+
+    from .model import solve_case
+
+    comm = MPI.COMM_WORLD
+    summary = solve_case(read_request(arguments.request), arguments.folder, comm,
+                         _log if comm.rank == 0 else lambda text: None)
+    if comm.rank == 0:
+        _log(f"done: {summary['unknowns']} unknowns, {summary['seconds']['total']:.1f} s, "
+             f"{summary['peak_memory_mib'] / 1024:.2f} GiB")
+
+
+def _probe(arguments):
+    from .meshing import gmsh_version
+    from .model import versions
+
+    try:
+        gmsh = gmsh_version(arguments.gmsh)
+    except FemError:
+        gmsh = None
+    print(json.dumps({**versions(), "gmsh": gmsh}))
+
+
+def _record(arguments):
+    from .record import read_cases, record
+
+    cases = read_cases(arguments.folder / "cases.toml")
+    names = arguments.cases or list(cases)
+    unknown = [name for name in names if name not in cases]
+    if unknown:
+        raise FemError(f"there is no case '{unknown[0]}' in {arguments.folder / 'cases.toml'}; "
+                       f"known are {', '.join(cases)}")
+    # Coarse meshes of all cases come first: an early stop leaves something of every case.
+    for size in sorted(arguments.sizes, reverse=True):
+        for name in names:
+            _log(f"{name}, size {size:g}")
+            if not record(cases[name], size, arguments.folder, _log):
+                _log("recorded already")
+
+
+def main():
+    """Run one subcommand; exit code 2 with one message if it cannot be done."""
+    parser = argparse.ArgumentParser(prog="edgeline_fem", description=sys.modules[__package__].__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    for name, run, what in (
+        ("mesh", _mesh, "write .geo files and run gmsh on them"),
+        ("solve", _solve, "solve the contact and write curves.csv, pressure.csv and fem.json"),
+    ):
+        command = commands.add_parser(name, help=what)
+        command.add_argument("request", help="JSON file that describes the calculation")
+        command.add_argument("folder", help="folder of the meshes and results")
+        command.set_defaults(run=run)
+    command = commands.add_parser("record", help="add meshes of cases to the recorded reference curves")
+    command.add_argument("folder", type=Path, help="folder with cases.toml, one subfolder a case")
+    command.add_argument("--cases", nargs="+", help="names of cases; all of cases.toml if left out")
+    command.add_argument("--sizes", nargs="+", type=float, default=[2.0, 1.4, 1.0],
+                         help="mesh sizes, 1 is the production mesh (default: 2 1.4 1)")
+    command.set_defaults(run=_record)
+    command = commands.add_parser("probe", help="print the versions of what is installed, as JSON")
+    command.add_argument("--gmsh", default="gmsh", help="name or path of the gmsh program")
+    command.set_defaults(run=_probe)
+    arguments = parser.parse_args()
+    # The form compiler's own progress would drown ours.
+    logging.getLogger().setLevel(logging.WARNING)
+    try:
+        arguments.run(arguments)
+    except (FemError, OSError) as error:
+        _log(f"error: {error}")
+        # Under MPI the other ranks may be waiting for this one.
+        mpi = sys.modules.get("mpi4py.MPI")
+        if mpi is not None and mpi.COMM_WORLD.size > 1:
+            mpi.COMM_WORLD.Abort(2)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,261 @@
+"""One elastic body: its stiffness, the compliance of its contact nodes, and stresses inside it."""
+
+import time
+
+import numpy as np
+import ufl
+from dolfinx import fem, mesh
+from petsc4py import PETSc
+
+from . import compat
+from .meshing import read_msh
+from .request import FemError
+
+# Exact for the polynomial part of a quadratic hexahedron's stiffness on a parallelepiped.
+_QUADRATURE = {"quadrature_degree": 4}
+
+STRESS = ("xx", "yy", "zz", "xy", "xz", "yz")
+
+
+def load_mesh(comm, path):
+    """The mesh in a gmsh file, read by rank 0 and spread over the ranks of ``comm``."""
+    points, cells, failure = np.zeros((0, 3)), np.zeros((0, 27), dtype=np.int64), None
+    if comm.rank == 0:
+        try:
+            points, cells, _ = read_msh(path)
+        except FemError as error:
+            failure = str(error)
+    failure = comm.bcast(failure)
+    if failure is not None:
+        raise FemError(failure)
+    return compat.hexahedral_mesh(comm, points, cells)
+
+
+class Body:
+    """An elastic body on its supports, loaded by forces along z at its contact nodes.
+
+    ``domain``: its mesh; ``young`` (units of p0) and ``poisson``: its material; ``fixed``: pairs
+    ``(component, on)`` that hold a displacement component at zero where ``on(x)`` is true, x being of
+    shape (3, n), on the body's surface. Together they must exclude rigid motion, so that the stiffness is
+    positive definite. ``linear`` is ``direct`` or ``iterative``, ``tolerance`` the latter's.
+    """
+
+    def __init__(self, domain, young, poisson, fixed, linear="direct", tolerance=1e-10):
+        self.domain = domain
+        self.comm = domain.comm
+        self.young, self.poisson = young, poisson
+        self.seconds = {}
+        began = time.perf_counter()
+        self.space = compat.quadratic_space(domain, 3)
+        self._owned, self._known = compat.local_size(self.space)
+        self.nodes = self.space.tabulate_dof_coordinates()[: self._known]
+        self._mu = fem.Constant(domain, PETSc.ScalarType(0.5 * young / (1.0 + poisson)))
+        self._lame = fem.Constant(
+            domain, PETSc.ScalarType(young * poisson / ((1.0 + poisson) * (1.0 - 2.0 * poisson)))
+        )
+        self.displacement = fem.Function(self.space)
+        conditions, self._held = [], {}
+        boundary = domain.topology.dim - 1
+        for component, on in fixed:
+            facets = mesh.locate_entities_boundary(domain, boundary, on)
+            dofs = fem.locate_dofs_topological(self.space.sub(component), boundary, facets)
+            conditions.append(fem.dirichletbc(PETSc.ScalarType(0), dofs, self.space.sub(component)))
+            held = self._held.setdefault(component, set())
+            held.update(int(d) for d in dofs if d < 3 * self._owned)
+        trial, test = ufl.TrialFunction(self.space), ufl.TestFunction(self.space)
+        volume = ufl.Measure("dx", domain=domain, metadata=_QUADRATURE)
+        energy = ufl.inner(self._stress(trial), self._strain(test)) * volume
+        self.matrix = compat.assemble_stiffness(energy, conditions)
+        self.matrix.setOption(PETSc.Mat.Option.SPD, True)
+        self.seconds["assemble"] = time.perf_counter() - began
+        began = time.perf_counter()
+        self._solver = self._make_solver(linear, tolerance)
+        self.seconds["factor"] = time.perf_counter() - began
+        self.iterations = 0
+        self.solves = 0
+        self._load = self.matrix.createVecRight()
+        self._answer = self.matrix.createVecRight()
+        self._contact = None
+
+    def _strain(self, u):
+        return ufl.sym(ufl.grad(u))
+
+    def _stress(self, u):
+        strain = self._strain(u)
+        return 2.0 * self._mu * strain + self._lame * ufl.tr(strain) * ufl.Identity(3)
+
+    def _make_solver(self, linear, tolerance):
+        solver = PETSc.KSP().create(self.comm)
+        solver.setOperators(self.matrix)
+        prefix = f"body_{id(self)}_"
+        solver.setOptionsPrefix(prefix)
+        self.matrix.setOptionsPrefix(prefix)
+        options = PETSc.Options(prefix)
+        if linear == "direct":
+            solver.setType("preonly")
+            preconditioner = solver.getPC()
+            preconditioner.setType("cholesky")
+            preconditioner.setFactorSolverType("mumps")
+            # MUMPS underestimates its workspace on stretched meshes.
+            options["mat_mumps_icntl_14"] = 60
+        else:
+            solver.setType("cg")
+            solver.setTolerances(rtol=tolerance, max_it=5000)
+            self.matrix.setNearNullSpace(self._rigid_motions())
+            options["pc_type"] = "gamg"
+            options["mg_levels_ksp_type"] = "chebyshev"
+            options["mg_levels_pc_type"] = "jacobi"
+        solver.setFromOptions()
+        try:
+            solver.setUp()
+        except PETSc.Error as error:
+            raise FemError(f"the {linear} solver failed to set up ({error})") from error
+        if linear == "direct" and solver.getPC().getFactorMatrix().getMumpsInfog(1) < 0:
+            raise FemError("MUMPS failed to factor a stiffness matrix (out of memory?)")
+        return solver
+
+    def _rigid_motions(self):
+        """The six rigid-body modes, orthonormal, which the multigrid's coarse spaces must contain."""
+        modes = [self.matrix.createVecRight() for _ in range(6)]
+        x = self.nodes[: self._owned]
+        for mode, vector in enumerate(modes):
+            values = np.zeros((self._owned, 3))
+            if mode < 3:
+                values[:, mode] = 1.0
+            else:
+                a, b = ((0, 1), (0, 2), (1, 2))[mode - 3]
+                values[:, a], values[:, b] = -x[:, b], x[:, a]
+            vector.array[:] = values.ravel()
+        for i, vector in enumerate(modes):
+            for other in modes[:i]:
+                vector.axpy(-vector.dot(other), other)
+            vector.normalize()
+        return PETSc.NullSpace().create(vectors=modes, comm=self.comm)
+
+    def number_contact_nodes(self, count, find):
+        """Tell the body its contact nodes.
+
+        ``find(nodes)`` maps coordinates (n, 3) to numbers in [0, ``count``), or -1 for nodes that are not
+        in the contact. Every number must be found exactly once over all ranks.
+        """
+        numbers = find(self.nodes[: self._owned])
+        local = np.flatnonzero(numbers >= 0)
+        self._contact = (3 * local + 2, numbers[local], count)
+        found = np.zeros(count, dtype=np.int64)
+        np.add.at(found, numbers[local], 1)
+        self.comm.Allreduce(found.copy(), found)
+        if np.any(found != 1):
+            raise FemError(
+                f"{np.count_nonzero(found != 1)} of {count} contact nodes are missing from the mesh or "
+                "stand twice in it"
+            )
+
+    def _at_contact(self, values):
+        """A whole array over the contact nodes from this rank's values of dofs."""
+        dofs, numbers, count = self._contact
+        whole = np.zeros(count)
+        whole[numbers] = values[dofs]
+        self.comm.Allreduce(whole.copy(), whole)
+        return whole
+
+    def contact_coordinates(self, axis):
+        """Coordinate ``axis`` of every contact node."""
+        return self._at_contact(np.repeat(self.nodes[: self._owned, axis], 3))
+
+    def press(self, forces):
+        """Displacement into the body (units of C) of its contact nodes under nodal ``forces`` into it."""
+        dofs, numbers, _ = self._contact
+        self._load.set(0.0)
+        self._load.array[dofs] = forces[numbers]
+        self._solver.solve(self._load, self._answer)
+        if self._solver.getConvergedReason() < 0:
+            raise FemError(
+                f"the linear solver did not converge (PETSc reason {self._solver.getConvergedReason()}, "
+                f"{self._solver.getIterationNumber()} iterations)"
+            )
+        self.iterations += self._solver.getIterationNumber()
+        self.solves += 1
+        return self._at_contact(self._answer.array)
+
+    def keep(self):
+        """Make the last solve the body's state; returns the force that its supports carry along z."""
+        self.displacement.x.array[: 3 * self._owned] = self._answer.array
+        self.displacement.x.scatter_forward()
+        test = ufl.TestFunction(self.space)
+        volume = ufl.Measure("dx", domain=self.domain, metadata=_QUADRATURE)
+        inner = compat.assemble_vector(
+            ufl.inner(self._stress(self.displacement), self._strain(test)) * volume
+        )
+        held = np.fromiter(self._held[2], dtype=np.int64, count=len(self._held[2]))
+        return self.comm.allreduce(-float(inner.array[held].sum()))
+
+    def nodal_stress(self):
+        """Stress at the nodes: evaluated in every element and averaged over those that share a node.
+
+        Returns a :class:`StressField` with the components :data:`STRESS` (units of p0), nothing enforced.
+        """
+        stress = self._stress(self.displacement)
+        pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
+        space = compat.quadratic_space(self.domain, 6)
+        expression = fem.Expression(
+            ufl.as_vector([stress[i, j] for i, j in pairs]), compat.element_nodes(self.space)
+        )
+        cells = np.arange(self.domain.topology.index_map(3).size_local, dtype=np.int32)
+        values = compat.evaluate_on_cells(expression, self.domain, cells).reshape(-1, 6)
+        nodes = np.concatenate([space.dofmap.cell_dofs(c) for c in cells])
+        mean, sharing = fem.Function(space), fem.Function(space)
+        known = compat.local_size(space)[1]
+        for component in range(6):
+            mean.x.array[component::6] = np.bincount(nodes, values[:, component], known)
+            sharing.x.array[component::6] = np.bincount(nodes, minlength=known)
+        for vector in (mean.x, sharing.x):
+            compat.add_ghosts(vector)
+        mean.x.array[:] /= sharing.x.array
+        return StressField(mean)
+
+
+class StressField:
+    """A stress tensor per node of a body's mesh, with quadratic interpolation between nodes."""
+
+    def __init__(self, function):
+        self._function = function
+        space = function.function_space
+        self.comm = space.mesh.comm
+        self.nodes = space.tabulate_dof_coordinates()[: compat.local_size(space)[1]]
+        self.values = function.x.array.reshape(-1, 6)
+        """The components at :attr:`nodes`, ghosts included; writing to them changes the field."""
+
+    def sample(self, points):
+        """Stress at ``points`` (n, 3), in the order of :data:`STRESS`, as an array (n, 6).
+
+        A point that rounding or a curved face puts just outside the mesh takes the nearest element's
+        value. Raises :class:`FemError` for a point farther out.
+        """
+        points = np.ascontiguousarray(points, dtype=np.float64)
+        domain = self._function.function_space.mesh
+        corners = domain.geometry.x[compat.geometry_nodes(domain)]
+        owned = domain.topology.index_map(3).size_local
+        low, high = corners[:owned].min(axis=1), corners[:owned].max(axis=1)
+        slack = 1e-3 * (high - low)
+        low, high = low - slack, high + slack
+        best = np.full(len(points), np.inf)
+        cells = np.full(len(points), -1, dtype=np.int32)
+        for number, point in enumerate(points):
+            candidates = np.flatnonzero(np.all((low <= point) & (point <= high), axis=1)).astype(np.int32)
+            if len(candidates):
+                distance = compat.squared_distances(
+                    domain, candidates, np.repeat(point[None, :], len(candidates), axis=0)
+                )
+                nearest = int(np.argmin(distance))
+                best[number], cells[number] = distance[nearest], candidates[nearest]
+        # Each point is evaluated by the first rank that is nearest to it.
+        everywhere = np.array(self.comm.allgather(best))
+        if not np.all(np.isfinite(everywhere.min(axis=0))):
+            lost = points[np.flatnonzero(~np.isfinite(everywhere.min(axis=0)))[0]]
+            raise FemError(f"the point {lost.tolist()} (units of C, z is depth) lies outside the body")
+        mine = np.flatnonzero(np.argmin(everywhere, axis=0) == self.comm.rank)
+        values = np.zeros((len(points), 6))
+        if len(mine):
+            values[mine] = np.reshape(self._function.eval(points[mine], cells[mine]), (-1, 6))
+        self.comm.Allreduce(values.copy(), values)
+        return values

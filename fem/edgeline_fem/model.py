@@ -1,0 +1,326 @@
+"""The two-body model of one case: solve the contact, recover stresses, write the results."""
+
+import csv
+import dataclasses
+import io
+import json
+import os
+import platform
+import resource
+import time
+from pathlib import Path
+
+import numpy as np
+
+from . import compat
+from .contact import ContactGrid, half_space_compliance, solve_contact
+from .elasticity import STRESS, Body, load_mesh
+from .meshing import write_atomically
+from .request import FemError
+
+CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m", *(f"sigma_{c}_pa" for c in STRESS),
+                "von_mises_pa", "tau_max_pa")
+PRESSURE_HEADER = ("line", "x_m", "y_m", "p_pa", "p_lumped_pa", "p_stress_pa")
+
+BOUNDARY_CONDITIONS = {
+    "block": "x = 0 and y = 0: symmetry planes; bottom z = block_depth: u_z = 0, free of shear; far side "
+    "x = block_width, end face and surface: free of traction",
+    "roller": "x = 0 and y = 0: symmetry planes; mid-plane z = R: u_z uniform (the approach), free of "
+    "shear; end face and surface: free of traction",
+    "contact": "frictionless; nodal gaps along z are never negative, nodal forces along z never pull, "
+    "their sum is the load",
+}
+
+
+def processor():
+    """The processor's name as the system states it."""
+    try:
+        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
+            if line.startswith("model name"):
+                return line.split(":", 1)[1].strip()
+    except OSError:
+        pass
+    return platform.processor() or platform.machine()
+
+
+def blas():
+    """File name of the BLAS library that this process has loaded."""
+    try:
+        maps = Path("/proc/self/maps").read_text(encoding="utf-8")
+    except OSError:
+        return "unknown"
+    names = {os.path.realpath(line.split()[-1]) for line in maps.splitlines() if "blas" in line}
+    kept = sorted({"/".join(Path(name).parts[-2:]) for name in names if "libblas" in name})
+    return kept[0] if kept else "unknown"
+
+
+def build_bodies(comm, folder, request, plane_strain=False):
+    """Both bodies as ``{"block": Body, "roller": Body}`` from the meshes in ``folder``.
+
+    ``plane_strain`` also holds the end faces along y. Returns the bodies and the seconds spent reading.
+    """
+    case, options = request.case, request.mesh
+    scales = case.scales()
+    supports = {"block": options.block_depth, "roller": scales.radius}
+    ends = {"block": case.block_half_length(), "roller": case.roller_half_length()}
+    bodies, seconds = {}, 0.0
+    for name in ("block", "roller"):
+        began = time.perf_counter()
+        domain = load_mesh(comm, Path(folder) / f"{name}.msh")
+        seconds += time.perf_counter() - began
+        material = getattr(case, name)
+
+        def on(axis, value, tolerance=1e-7 * supports[name]):
+            return lambda x: np.abs(x[axis] - value) < tolerance
+
+        fixed = [(0, on(0, 0.0)), (1, on(1, 0.0)), (2, on(2, supports[name]))]
+        if plane_strain:
+            fixed.append((1, on(1, ends[name])))
+        bodies[name] = Body(
+            domain, material.young_pa / scales.p0_pa, material.poisson, fixed,
+            request.solver.linear, request.solver.linear_tolerance,
+        )
+    return bodies, seconds
+
+
+def surface_depth(name, x, radius):
+    """z of a body's unloaded surface at ``x`` (units of C): 0 on the block, the arc on the roller."""
+    x = np.asarray(x, dtype=float)
+    return np.zeros_like(x) if name == "block" else x**2 / (radius + np.sqrt(radius**2 - x**2))
+
+
+def press_bodies(bodies, grid, case, solver, log):
+    """Solve the contact of ``bodies`` on ``grid`` under the load of ``case``.
+
+    Leaves the bodies in their final state. Returns the :class:`~edgeline_fem.contact.ContactSolution` and
+    the relative error of the supports' reaction, the larger of both bodies.
+    """
+    radius = case.scales().radius
+    # A quarter of the Hertz pressure's load on the whole contact line, pi/2 * 2 S_l.
+    load = 0.25 * np.pi * case.roller_half_length()
+    for name, body in bodies.items():
+        def find(nodes, name=name):
+            surface = surface_depth(name, np.minimum(nodes[:, 0], radius), radius)
+            numbers = grid.find(nodes)
+            return np.where(np.abs(nodes[:, 2] - surface) < 1e-6, numbers, -1)
+
+        body.number_contact_nodes(len(grid), find)
+    flush = case.block_length_m <= case.roller_length_m * (1.0 + 1e-9)
+    roller, block = ((1.0 - bodies[n].poisson**2) / bodies[n].young for n in ("roller", "block"))
+    gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2)
+    solution = solve_contact(
+        compliance=lambda forces: bodies["block"].press(forces) + bodies["roller"].press(forces),
+        gap=gap,
+        weights=grid.weights,
+        load=load,
+        model=half_space_compliance(grid, roller + flush * block, (not flush) * block),
+        scale=0.5 / radius,
+        tolerance=solver.tolerance,
+        max_iterations=solver.max_iterations,
+        progress=lambda i, r: log(f"contact iteration {i}, residual {r:.1e}"),
+    )
+    edge = grid.x[-1]
+    if np.any(solution.forces.reshape(grid.shape)[-1] > 0.0):
+        raise FemError(
+            f"contact reaches the edge of the strip where it is looked for, x = {edge:.3g} C: enlarge "
+            "contact_reach in the request's mesh"
+        )
+    worst = 0.0
+    for body in bodies.values():
+        body.press(solution.forces)
+        worst = max(worst, abs(body.keep() / load - 1.0))
+    return solution, worst
+
+
+def enforce_boundaries(field, poisson, end, surface_normal, pressure):
+    """Put known tractions into a recovered stress ``field``; returns how far off they were.
+
+    On a face the tractions are known and the strains within the face are well resolved, while the
+    recovered normal and shear stresses are one-sided values. So the latter are replaced and the stresses
+    within the face follow at unchanged strains: both gain nu / (1 - nu) times the normal stress's change.
+    Where two faces meet, the strain along the edge is kept.
+
+    ``poisson``; ``end``: y of the free end face; ``surface_normal(nodes)``: sine of the angle between the
+    loaded surface's outward normal and -z, NaN for nodes off that surface; ``pressure(nodes)``: contact
+    pressure per area of the (x, y) plane. Returns the largest traction error met on the end face and on
+    the surface (units of p0), over all ranks.
+    """
+    nodes, values = field.nodes, field.values
+    xx, yy, zz, xy, xz, yz = (values[:, i] for i in range(6))
+    xy[nodes[:, 0] < 1e-9] = 0.0
+    xz[nodes[:, 0] < 1e-9] = 0.0
+    xy[nodes[:, 1] < 1e-9] = 0.0
+    yz[nodes[:, 1] < 1e-9] = 0.0
+
+    share = poisson / (1.0 - poisson)
+    at_end = np.abs(nodes[:, 1] - end) < 1e-7 * end
+    sine = surface_normal(nodes)
+    on_surface = np.isfinite(sine)
+    s = np.where(on_surface, sine, 0.0)
+    c = np.sqrt(1.0 - s**2)
+    p = np.where(on_surface, pressure(nodes), 0.0)
+    # The surface's frame: t within the (x, z) plane along it, n into the body.
+    nn = xx * s**2 - 2.0 * xz * s * c + zz * c**2
+    tt = xx * c**2 + 2.0 * xz * s * c + zz * s**2
+    nt = (zz - xx) * s * c + xz * (c**2 - s**2)
+    ty = xy * c + yz * s
+    # A force p along z per projected area is p c per area: p c^2 along n and p c s along t.
+    known_nn, known_nt = -p * c**2, -p * c * s
+    both, face = on_surface & at_end, on_surface & ~at_end
+    errors = (
+        np.abs(yy[at_end & ~on_surface]).max(initial=0.0),
+        np.abs(nn - known_nn)[face].max(initial=0.0),
+    )
+    free = at_end & ~on_surface
+    for within in (xx, zz):
+        within[free] -= share * yy[free]
+    yy[free] = xy[free] = yz[free] = 0.0
+
+    change = known_nn - nn
+    tt = tt + np.where(face, share * change, poisson * (change - yy))
+    new_yy = np.where(face, yy + share * change, 0.0)
+    new_ty = np.where(face, ty, 0.0)
+    on = on_surface
+    xx[on] = (tt * c**2 - 2.0 * known_nt * s * c + known_nn * s**2)[on]
+    zz[on] = (tt * s**2 + 2.0 * known_nt * s * c + known_nn * c**2)[on]
+    xz[on] = ((tt - known_nn) * s * c + known_nt * (c**2 - s**2))[on]
+    yy[on] = new_yy[on]
+    xy[on] = (new_ty * c)[on]
+    yz[on] = (new_ty * s)[on]
+    return tuple(field.comm.allreduce(float(e), op=compat.MPI.MAX) for e in errors)
+
+
+def invariants(stress):
+    """Von Mises stress and largest shear stress of tensors (n, 6), as two arrays."""
+    xx, yy, zz, xy, xz, yz = np.asarray(stress).T
+    von_mises = np.sqrt(
+        0.5 * ((xx - yy) ** 2 + (yy - zz) ** 2 + (zz - xx) ** 2) + 3.0 * (xy**2 + xz**2 + yz**2)
+    )
+    tensors = np.stack([np.stack([xx, xy, xz], -1), np.stack([xy, yy, yz], -1), np.stack([xz, yz, zz], -1)], -2)
+    principal = np.linalg.eigvalsh(tensors)
+    return von_mises, 0.5 * (principal[:, 2] - principal[:, 0])
+
+
+def peak_memory(comm):
+    """Largest resident memory so far, summed over the ranks (MiB)."""
+    kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return comm.allreduce(kib) / 1024.0
+
+
+def versions():
+    """Versions of everything that a result depends on, and the processor."""
+    return {**compat.versions(), "blas": blas(), "python": platform.python_version(),
+            "processor": processor()}
+
+
+def solve_case(request, folder, comm, log):
+    """Solve the case meshed in ``folder``; write curves.csv, pressure.csv and, last, fem.json there.
+
+    Returns the content of fem.json. Works on any number of ranks; rank 0 writes.
+    """
+    began = time.perf_counter()
+    folder = Path(folder)
+    case, scales = request.case, request.case.scales()
+    try:
+        meshed = json.loads((folder / "mesh.json").read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise FemError(f"{folder / 'mesh.json'}: run the mesh stage first ({error})") from error
+    if comm.rank == 0:
+        (folder / "fem.json").unlink(missing_ok=True)
+    if meshed["options"] != dataclasses.asdict(request.mesh):
+        raise FemError(f"{folder / 'mesh.json'}: was made for other mesh options; run the mesh stage again")
+
+    seconds = {"mesh": sum(meshed["seconds"].values())}
+    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
+    bodies, seconds["read"] = build_bodies(comm, folder, request)
+    for stage in ("assemble", "factor"):
+        seconds[stage] = sum(body.seconds[stage] for body in bodies.values())
+    log(f"stiffness assembled in {seconds['assemble']:.1f} s, solvers set up in {seconds['factor']:.1f} s")
+
+    mark = time.perf_counter()
+    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, log)
+    seconds["contact"] = time.perf_counter() - mark
+
+    mark = time.perf_counter()
+    pressure, lumped = grid.pressure(solution.forces), grid.lumped_pressure(solution.forces)
+    fields, face_errors, from_stress = {}, {}, {}
+    ends = {"block": case.block_half_length(), "roller": case.roller_half_length()}
+    for name, body in bodies.items():
+        field = body.nodal_stress()
+
+        def sine(nodes, name=name):
+            x = nodes[:, 0]
+            near = x <= (np.inf if name == "block" else 0.75 * scales.radius)
+            depth = surface_depth(name, np.where(near, x, 0.0), scales.radius)
+            slope = x / scales.radius if name == "roller" else np.zeros_like(x)
+            return np.where(near & (np.abs(nodes[:, 2] - depth) < 1e-6), slope, np.nan)
+
+        def pressure_at(nodes):
+            return grid.sample(pressure, nodes[:, :2])
+
+        if name == "block":
+            lines = {
+                line: -field.sample([(x / scales.c_m, y / scales.c_m, 0.0) for x, y in points])[:, 2]
+                for line, points in request.pressure_points_m.items()
+            }
+            from_stress.update(lines)
+        errors = enforce_boundaries(field, body.poisson, ends[name], sine, pressure_at)
+        face_errors[name] = {"end": errors[0], "surface": errors[1]}
+        fields[name] = field
+    seconds["recover"] = time.perf_counter() - mark
+
+    mark = time.perf_counter()
+    curves = io.StringIO()
+    writer = csv.writer(curves, lineterminator="\n")
+    writer.writerow(CURVE_HEADER)
+    for curve in request.curves:
+        points = np.array(curve.points_m) / scales.c_m
+        inside = points.copy()
+        inside[:, 2] += surface_depth(curve.body, points[:, 0], scales.radius)
+        stress = fields[curve.body].sample(inside)
+        derived = np.stack(invariants(stress), axis=1)
+        for point, row in zip(curve.points_m, np.hstack([stress, derived]) * scales.p0_pa):
+            writer.writerow([curve.body, curve.name, *(f"{v:.9g}" for v in point), *(f"{v:.6g}" for v in row)])
+    lines = io.StringIO()
+    writer = csv.writer(lines, lineterminator="\n")
+    writer.writerow(PRESSURE_HEADER)
+    for line, points in request.pressure_points_m.items():
+        at = np.array(points) / scales.c_m
+        columns = np.stack([grid.sample(pressure, at), grid.sample(lumped, at), from_stress[line]], axis=1)
+        for point, row in zip(points, columns * scales.p0_pa):
+            writer.writerow([line, *(f"{v:.9g}" for v in point), *(f"{v:.6g}" for v in row)])
+    seconds["sample"] = time.perf_counter() - mark
+    seconds["total"] = time.perf_counter() - began + seconds["mesh"]
+
+    peak = int(np.argmax(pressure))
+    summary = {
+        "schema": 1,
+        "case": case.name,
+        "versions": {**versions(), "gmsh": meshed["gmsh"]},
+        "ranks": comm.size,
+        "hertz": {"c_m": scales.c_m, "p0_pa": scales.p0_pa},
+        "mesh": {key: meshed[key] for key in ("options", "smallest_c", "bodies")},
+        "solver": dataclasses.asdict(request.solver),
+        "boundary_conditions": BOUNDARY_CONDITIONS,
+        "unknowns": sum(body["unknowns"] for body in meshed["bodies"].values()),
+        "contact_nodes": len(grid),
+        "contact_iterations": solution.iterations,
+        "compliance_applications": solution.applications,
+        "linear_iterations": sum(body.iterations for body in bodies.values()),
+        "complementarity_residual": solution.residual,
+        "smallest_gap_rel": solution.smallest_gap,
+        "load_error_rel": abs(4.0 * float(solution.forces.sum()) / (np.pi * case.roller_half_length()) - 1.0),
+        "equilibrium_residual": reaction_error,
+        "approach_m": solution.approach * scales.c_m,
+        "p_centre_pa": float(pressure[0]) * scales.p0_pa,
+        "p_max_pa": float(pressure[peak]) * scales.p0_pa,
+        "p_max_at_m": [grid.x[peak // grid.shape[1]] * scales.c_m, grid.y[peak % grid.shape[1]] * scales.c_m],
+        "traction_error_before_enforcing": face_errors,
+        "seconds": {key: round(value, 3) for key, value in seconds.items()},
+        "peak_memory_mib": round(peak_memory(comm), 1),
+    }
+    if comm.rank == 0:
+        write_atomically(folder / "curves.csv", curves.getvalue())
+        write_atomically(folder / "pressure.csv", lines.getvalue())
+        write_atomically(folder / "fem.json", json.dumps(summary, indent=1) + "\n")
+    return summary

@@ -1,0 +1,233 @@
+"""Recorded reference curves: several meshes of each case, with provenance and error estimates.
+
+The layout of a record is described in results/reference/README.md.
+"""
+
+import csv
+import datetime
+import io
+import json
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import numpy as np
+
+from .meshing import write_atomically
+from .request import Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions
+from .standard_points import pressure_lines, standard_curves
+
+COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
+              "tau_max")
+# Errors leave out this neighbourhood of the roller's end (units of C) on curves at the surface: for a
+# longer block the pressure has no limit there.
+EDGE_RANGE = 0.1
+
+
+def read_cases(path):
+    """Cases of a TOML file with one ``[name]`` table each, as ``{name: Case}``.
+
+    A table has ``W``, ``S_l``, ``L_r`` and the tables ``roller`` (radius_m, young_pa, poisson) and
+    ``block`` (young_pa, poisson). Raises :class:`FemError` that names the case and the key.
+    """
+    try:
+        data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    except (OSError, tomllib.TOMLDecodeError) as error:
+        raise FemError(f"{path}: cannot be read: {error}") from error
+    cases = {}
+    for name, table in data.items():
+        try:
+            roller, block = table["roller"], table["block"]
+            cases[name] = Case.from_dimensionless(
+                name, table["W"], table["S_l"], table["L_r"], roller["radius_m"],
+                Material(roller["young_pa"], roller["poisson"]),
+                Material(block["young_pa"], block["poisson"]),
+            )
+        except KeyError as error:
+            raise FemError(f"{path}: case {name} has no {error}") from error
+    return cases
+
+
+def standard_request(case, size, **overrides):
+    """The request that records ``case`` on the mesh of ``size``: all standard curves and pressures."""
+    c_m = case.scales().c_m
+    length = case.roller_half_length()
+
+    def metres(points):
+        return [[v * c_m for v in point] for point in points]
+
+    curves = [
+        Curve(body, name, metres(points))
+        for body, own in (("block", case.block_half_length()), ("roller", length))
+        for name, points in standard_curves(length, own).items()
+    ]
+    lines = {name: metres(points) for name, points in pressure_lines(length).items()}
+    return Request(case, MeshOptions(size=size, **overrides), SolverOptions(), curves, lines)
+
+
+def _rows(path):
+    """Header and rows of a CSV file; ``(None, [])`` if there is none."""
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    except FileNotFoundError:
+        return None, []
+    return rows[0], rows[1:]
+
+
+def _merge(path, size, new):
+    """Put the rows of the CSV file ``new`` into the one at ``path`` as the mesh of ``size``."""
+    _, old = _rows(path)
+    header, rows = _rows(new)
+    kept = [row for row in old if float(row[0]) != size]
+    kept += [[f"{size:g}", *row] for row in rows]
+    kept.sort(key=lambda row: -float(row[0]))  # stable: rows of one mesh stay in order
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(["mesh", *header])
+    writer.writerows(kept)
+    write_atomically(path, text.getvalue())
+
+
+def order_and_factor(differences, sizes):
+    """Observed order q of convergence, and the finest mesh's error relative to the last difference.
+
+    ``differences``: norms of coarse - middle and middle - fine; ``sizes``: the three sizes, descending.
+    The error is taken to be a multiple of size^q (Richardson). Returns ``(None, None)`` where the
+    differences do not decrease as any order in (0, 8] would have it.
+    """
+    coarse, middle, fine = sizes
+    first, last = differences
+
+    def ratio(order):
+        return (coarse**order - middle**order) / (middle**order - fine**order)
+
+    low, high = 1e-3, 8.0
+    if last <= 0.0 or not ratio(low) < first / last < ratio(high):
+        return None, None
+    for _ in range(60):
+        order = 0.5 * (low + high)
+        low, high = (order, high) if ratio(order) < first / last else (low, order)
+    return order, fine**order / (middle**order - fine**order)
+
+
+def _series(folder, half_length_m, c_m, p0_pa):
+    """Curves by name and mesh: ``{(body, curve, component): {size: values}}`` in p0, edges left out."""
+    series = {}
+    _, rows = _rows(Path(folder) / "curves.csv")
+    for mesh, body, curve, _, y, _, *values in rows:
+        if curve.startswith("surface-along-y") and abs(float(y) - half_length_m) < EDGE_RANGE * c_m * 0.999:
+            continue
+        for component, value in zip(COMPONENTS, values):
+            series.setdefault((body, curve, component), {}).setdefault(float(mesh), []).append(
+                float(value) / p0_pa
+            )
+    _, rows = _rows(Path(folder) / "pressure.csv")
+    for mesh, line, _, y, value, *_ in rows:
+        if abs(float(y) - half_length_m) < EDGE_RANGE * c_m * 0.999:
+            continue
+        series.setdefault(("contact", line, "pressure"), {}).setdefault(float(mesh), []).append(
+            float(value) / p0_pa
+        )
+    return {key: {size: np.array(v) for size, v in meshes.items()} for key, meshes in series.items()}
+
+
+def estimate_errors(folder, half_length_m, c_m, p0_pa):
+    """Errors of the finest mesh in ``folder``, one entry a curve and component (units of p0).
+
+    ``difference_max`` and ``difference_rms`` compare the two finest meshes; ``order`` is the observed one
+    of the root mean square over the three finest, and ``error_max`` and ``error_rms`` are what Richardson
+    makes of it; ``factor`` turns any point's difference into its estimated error. The last four are null
+    where the meshes are fewer than three or the order is not observed.
+    """
+    found = []
+    for (body, curve, component), meshes in sorted(
+        _series(folder, half_length_m, c_m, p0_pa).items()
+    ):
+        sizes = sorted(meshes, reverse=True)[-3:]
+        if len(sizes) < 2:
+            continue
+        last = np.abs(meshes[sizes[-2]] - meshes[sizes[-1]])
+        rms = float(np.sqrt(np.mean(last**2)))
+        order = factor = None
+        # Components that vanish by symmetry have no error to speak of.
+        if len(sizes) == 3 and rms > 1e-7:
+            first = float(np.sqrt(np.mean((meshes[sizes[0]] - meshes[sizes[1]]) ** 2)))
+            order, factor = order_and_factor((first, rms), sizes)
+        entry = {
+            "body": body, "curve": curve, "component": component, "sizes": sizes,
+            "difference_max": float(last.max()), "difference_rms": rms, "order": order, "factor": factor,
+            "error_max": None if factor is None else factor * float(last.max()),
+            "error_rms": None if factor is None else factor * rms,
+        }
+        found.append({k: round(v, 6) if isinstance(v, float) else v for k, v in entry.items()})
+    return found
+
+
+def _stage(stage, request, folder, log):
+    """Run one stage as a process of its own, so that its memory is its own; raise if it fails."""
+    command = [sys.executable, "-m", "edgeline_fem", stage, str(request), str(folder)]
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    if done.returncode != 0:
+        tail = "\n".join(done.stderr.strip().splitlines()[-10:])
+        raise FemError(f"{request}: stage {stage} failed with exit code {done.returncode}:\n{tail}")
+    log(done.stderr.strip().splitlines()[-1])
+
+
+def record(case, size, folder, log, **overrides):
+    """Solve ``case`` on the mesh of ``size`` and add it to the record in ``folder``/<case name>.
+
+    Returns False if the record holds that mesh already. Other meshes of the record are kept; the record
+    is complete and readable at any moment, also if this process is killed.
+    """
+    target = Path(folder) / case.name
+    path = target / "record.json"
+    request = standard_request(case, size, **overrides)
+    options = request.to_json()["mesh"]
+    data = json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
+    if data is not None:
+        known = data["meshes"].get(f"{size:g}")
+        if data["case"] != case.to_json():
+            raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
+        if known is not None and known["mesh"]["options"] == options:
+            return False
+    work = target / f".work-{size:g}"
+    shutil.rmtree(work, ignore_errors=True)
+    work.mkdir(parents=True)
+    asked = work / "request.json"
+    asked.write_text(json.dumps(request.to_json()), encoding="utf-8")
+    began = datetime.datetime.now(datetime.timezone.utc)
+    for stage in ("mesh", "solve"):
+        _stage(stage, asked, work, log)
+    summary = json.loads((work / "fem.json").read_text(encoding="utf-8"))
+    scales = case.scales()
+    length = case.roller_half_length()
+    if data is None:
+        data = {
+            "schema": 1,
+            "case": case.to_json(),
+            "hertz": summary["hertz"],
+            "dimensionless": {
+                "W": np.pi / (4.0 * scales.radius**2),
+                "S_l": length,
+                "L_r": case.roller_length_m / case.block_length_m,
+            },
+            "edge_range_c": EDGE_RANGE,
+            "meshes": {},
+        }
+    for key in ("schema", "case", "hertz"):
+        summary.pop(key)
+    data["meshes"][f"{size:g}"] = {
+        "date": began.isoformat(timespec="seconds"),
+        "command": f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}",
+        **summary,
+    }
+    data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
+    for name in ("curves.csv", "pressure.csv"):
+        _merge(target / name, size, work / name)
+    data["errors"] = estimate_errors(target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    write_atomically(path, json.dumps(data, indent=1) + "\n")
+    shutil.rmtree(work)
+    return True

@@ -1,0 +1,316 @@
+"""The request that describes one calculation, and the scales that make it dimensionless."""
+
+import dataclasses
+import json
+import math
+from pathlib import Path
+
+SCHEMA = 1
+
+
+class FemError(Exception):
+    """A calculation that cannot be done; the message says what, where and what to do."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material. ``young_pa`` > 0 (Pa); 0 <= ``poisson`` < 0.5."""
+
+    young_pa: float
+    poisson: float
+
+
+@dataclasses.dataclass(frozen=True)
+class Scales:
+    """Hertz scales of the line contact (Johnson, Contact Mechanics, 1985, Eqs. 4.43 to 4.45).
+
+    ``c_m`` (m) half-width, ``p0_pa`` (Pa) maximum pressure, ``radius`` the roller's radius in units of
+    C; in these units the contact modulus E* is ``2 * radius``.
+    """
+
+    c_m: float
+    p0_pa: float
+    radius: float
+
+    @property
+    def e_star(self):
+        """Contact modulus in units of p0."""
+        return 2.0 * self.radius
+
+
+@dataclasses.dataclass(frozen=True)
+class Case:
+    """Two bodies and the force that presses them together (SI units)."""
+
+    name: str
+    radius_m: float
+    roller_length_m: float
+    block_length_m: float
+    roller: Material
+    block: Material
+    force_n: float
+
+    def scales(self):
+        """The case's :class:`Scales`."""
+        compliance = sum((1.0 - m.poisson**2) / m.young_pa for m in (self.roller, self.block))
+        e_star_pa = 1.0 / compliance
+        w = self.force_n / (e_star_pa * self.radius_m * self.roller_length_m)
+        c_m = 2.0 * self.radius_m * math.sqrt(w / math.pi)
+        return Scales(c_m, e_star_pa * c_m / (2.0 * self.radius_m), self.radius_m / c_m)
+
+    def roller_half_length(self):
+        """Half the contact line, S_l (units of C)."""
+        return 0.5 * self.roller_length_m / self.scales().c_m
+
+    def block_half_length(self):
+        """Half the block's length, S_l / L_r (units of C)."""
+        return 0.5 * self.block_length_m / self.scales().c_m
+
+    def to_json(self):
+        """The ``case`` object of a request."""
+        return {
+            "name": self.name,
+            "roller": {
+                "radius_m": self.radius_m,
+                "length_m": self.roller_length_m,
+                "young_pa": self.roller.young_pa,
+                "poisson": self.roller.poisson,
+            },
+            "block": {
+                "length_m": self.block_length_m,
+                "young_pa": self.block.young_pa,
+                "poisson": self.block.poisson,
+            },
+            "force_n": self.force_n,
+        }
+
+    @staticmethod
+    def from_dimensionless(name, load_factor, slenderness, length_ratio, radius_m, roller, block):
+        """The case with W = ``load_factor``, S_l = ``slenderness`` and L_r = ``length_ratio``."""
+        e_star_pa = 1.0 / sum((1.0 - m.poisson**2) / m.young_pa for m in (roller, block))
+        c_m = 2.0 * radius_m * math.sqrt(load_factor / math.pi)
+        length_m = 2.0 * c_m * slenderness
+        force_n = load_factor * e_star_pa * radius_m * length_m
+        return Case(name, radius_m, length_m, length_m / length_ratio, roller, block, force_n)
+
+
+@dataclasses.dataclass(frozen=True)
+class MeshOptions:
+    """The mesh family. All lengths are in units of C.
+
+    ``size`` is the family's one parameter: every element is ``size`` times as large as in the
+    production mesh, in every direction and everywhere. The rest shapes the family and is left alone
+    except in studies of the mesh itself.
+    """
+
+    size: float = 1.0
+    across: float = 0.16
+    """Element size across the contact as far as ``contact_reach`` (size 1)."""
+    edge: float = 0.045
+    """The same at the contact's edge x = 1, where the pressure has a vertical tangent."""
+    depth: float = 0.08
+    """Element size at the surface, along z (size 1)."""
+    end: float = 0.065
+    """Element size at the roller's end, along y (size 1)."""
+    free_end: float = 1.2
+    """Element size at the end of a block that is longer than the roller, along y (size 1)."""
+    growth: float = 0.42
+    """Increase of element size per unit of distance along x and y, near the contact (size 1)."""
+    depth_growth: float = 0.34
+    """The same along z."""
+    far_growth: float = 1.4
+    """Increase of element size per unit of distance, in every direction, beyond ``far_from``."""
+    far_from: float = 5.0
+    """Distance at which the mesh starts to grow faster."""
+    contact_reach: float = 1.5
+    """Half-width of the strip of the surface in which contact is looked for."""
+    block_width: float = 640.0
+    """The block's half-width in x."""
+    block_depth: float = 640.0
+    """The block's depth in z."""
+    vtk: bool = False
+    """Also write the meshes as .vtk, for ParaView."""
+
+
+@dataclasses.dataclass(frozen=True)
+class SolverOptions:
+    """``linear``: ``direct`` (MUMPS Cholesky) or ``iterative`` (CG with algebraic multigrid).
+
+    ``tolerance`` bounds the contact's relative residual, ``linear_tolerance`` that of an iterative
+    linear solve, ``max_iterations`` the number of contact iterations.
+    """
+
+    linear: str = "direct"
+    tolerance: float = 1e-8
+    linear_tolerance: float = 1e-10
+    max_iterations: int = 200
+
+
+@dataclasses.dataclass(frozen=True)
+class Curve:
+    """Points (x, y, z) of one body at which stresses are wanted (m, z is depth below its surface)."""
+
+    body: str
+    name: str
+    points_m: list
+
+
+@dataclasses.dataclass(frozen=True)
+class Request:
+    """Everything that a calculation depends on."""
+
+    case: Case
+    mesh: MeshOptions
+    solver: SolverOptions
+    curves: list
+    pressure_points_m: dict
+    gmsh: str = "gmsh"
+
+    def to_json(self):
+        """The request as the JSON object that :func:`read_request` accepts."""
+        return {
+            "schema": SCHEMA,
+            "case": self.case.to_json(),
+            "mesh": dataclasses.asdict(self.mesh),
+            "solver": dataclasses.asdict(self.solver),
+            "curves": [{"body": c.body, "curve": c.name, "points_m": c.points_m} for c in self.curves],
+            "pressure_points_m": self.pressure_points_m,
+            "gmsh": self.gmsh,
+        }
+
+
+def _table(parent, key, where):
+    value = parent.get(key)
+    if not isinstance(value, dict):
+        raise FemError(f"{where}: '{key}' is missing or is not an object")
+    return value
+
+
+def _only(table, known, where):
+    unknown = sorted(set(table) - set(known))
+    if unknown:
+        raise FemError(f"{where}: unknown key '{unknown[0]}'; known are {', '.join(sorted(known))}")
+
+
+def _positive(table, key, where):
+    value = table.get(key)
+    number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or value <= 0.0:
+        raise FemError(f"{where}: '{key}' must be a finite number above 0, not {value!r}")
+    return float(value)
+
+
+def _material(table, where):
+    young_pa = _positive(table, "young_pa", where)
+    poisson = table.get("poisson")
+    number = isinstance(poisson, (int, float)) and not isinstance(poisson, bool)
+    if not number or not 0.0 <= poisson < 0.5:
+        raise FemError(f"{where}: 'poisson' must lie in [0, 0.5), not {poisson!r}")
+    return Material(young_pa, float(poisson))
+
+
+def _options(cls, table, where):
+    """An options dataclass from a JSON object, each value checked against the default's type."""
+    fields = {field.name: field for field in dataclasses.fields(cls)}
+    _only(table, fields, where)
+    values = {}
+    for key, value in table.items():
+        default = fields[key].default
+        if isinstance(default, bool):
+            if not isinstance(value, bool):
+                raise FemError(f"{where}: '{key}' must be true or false, not {value!r}")
+            values[key] = value
+        elif isinstance(default, int):
+            if not isinstance(value, int) or isinstance(value, bool) or value < 1:
+                raise FemError(f"{where}: '{key}' must be a whole number above 0, not {value!r}")
+            values[key] = value
+        elif isinstance(default, float):
+            values[key] = _positive(table, key, where)
+        else:
+            values[key] = value
+    return cls(**values)
+
+
+def _points(points, width, where):
+    """A list of points with ``width`` finite coordinates each."""
+    good = isinstance(points, list) and points and all(
+        isinstance(p, list)
+        and len(p) == width
+        and all(isinstance(v, (int, float)) and math.isfinite(v) for v in p)
+        for p in points
+    )
+    if not good:
+        raise FemError(f"{where}: must be a non-empty list of points of {width} finite numbers")
+    return [[float(v) for v in p] for p in points]
+
+
+def parse_request(data, where="request"):
+    """A :class:`Request` from a JSON object.
+
+    Raises :class:`FemError` that names the key at fault and, through ``where``, the file.
+    """
+    if not isinstance(data, dict):
+        raise FemError(f"{where}: must be a JSON object")
+    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh"}, where)
+    if data.get("schema") != SCHEMA:
+        raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
+
+    case = _table(data, "case", where)
+    at = f"{where}: case"
+    _only(case, {"name", "roller", "block", "force_n"}, at)
+    roller, block = _table(case, "roller", at), _table(case, "block", at)
+    _only(roller, {"radius_m", "length_m", "young_pa", "poisson"}, f"{at}.roller")
+    _only(block, {"length_m", "young_pa", "poisson"}, f"{at}.block")
+    parsed = Case(
+        name=str(case.get("name", "")),
+        radius_m=_positive(roller, "radius_m", f"{at}.roller"),
+        roller_length_m=_positive(roller, "length_m", f"{at}.roller"),
+        block_length_m=_positive(block, "length_m", f"{at}.block"),
+        roller=_material(roller, f"{at}.roller"),
+        block=_material(block, f"{at}.block"),
+        force_n=_positive(case, "force_n", at),
+    )
+    if parsed.block_length_m < parsed.roller_length_m * (1.0 - 1e-9):
+        raise FemError(f"{at}: the block is shorter than the roller, which is not modelled")
+
+    solver = _options(SolverOptions, _table(data, "solver", where) if "solver" in data else {},
+                      f"{where}: solver")
+    if solver.linear not in ("direct", "iterative"):
+        raise FemError(f"{where}: solver: 'linear' must be direct or iterative, not {solver.linear!r}")
+
+    curves = []
+    for number, curve in enumerate(data.get("curves", [])):
+        at = f"{where}: curves[{number}]"
+        if not isinstance(curve, dict):
+            raise FemError(f"{at}: must be an object")
+        _only(curve, {"body", "curve", "points_m"}, at)
+        if curve.get("body") not in ("block", "roller"):
+            raise FemError(f"{at}: 'body' must be block or roller, not {curve.get('body')!r}")
+        name = curve.get("curve")
+        if not isinstance(name, str) or not name or "," in name:
+            raise FemError(f"{at}: 'curve' must be a name without commas")
+        curves.append(Curve(curve["body"], name, _points(curve.get("points_m"), 3, f"{at}.points_m")))
+
+    lines = data.get("pressure_points_m", {})
+    if not isinstance(lines, dict):
+        raise FemError(f"{where}: 'pressure_points_m' must be an object of lists of points")
+    lines = {
+        name: _points(points, 2, f"{where}: pressure_points_m.{name}") for name, points in lines.items()
+    }
+    gmsh = data.get("gmsh", "gmsh")
+    if not isinstance(gmsh, str) or not gmsh:
+        raise FemError(f"{where}: 'gmsh' must be the name or path of the gmsh program")
+    mesh = _options(MeshOptions, _table(data, "mesh", where) if "mesh" in data else {},
+                    f"{where}: mesh")
+    return Request(parsed, mesh, solver, curves, lines, gmsh)
+
+
+def read_request(path):
+    """The request in the file at ``path``; :class:`FemError` if it cannot be read or used."""
+    try:
+        data = json.loads(Path(path).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise FemError(f"{path}: cannot be read: {error.strerror}") from error
+    except ValueError as error:
+        raise FemError(f"{path}: is not JSON: {error}") from error
+    return parse_request(data, str(path))

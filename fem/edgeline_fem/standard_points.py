@@ -1,0 +1,78 @@
+"""The points at which every method is compared, in units of C.
+
+They are those of the solver's ``standard_curves``; a test on either side pins them.
+"""
+
+CURVES = (
+    "surface-along-y",
+    "surface-along-x",
+    "depth-centre",
+    "depth-0.9",
+    "depth-end",
+    "along-y-0.5C",
+    "along-y-0.78C",
+)
+
+_NEAR = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5,
+         3.0, 4.0, 5.0, 6.5, 8.0)
+_DECADE = (1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
+_OUTWARD = 3.0
+
+
+def end_distances(half_length):
+    """Distances from the roller's end, ascending from 0 to ``half_length`` (> 0)."""
+    distances = [s for s in _NEAR if s < half_length]
+    decade = 10.0
+    while decade < half_length:
+        distances += [decade * step for step in _DECADE if decade * step < half_length]
+        decade *= 10.0
+    return distances + [half_length]
+
+
+def contact_line(half_length):
+    """y from the middle of the contact line (0) to the roller's end (``half_length``)."""
+    return [half_length - s for s in reversed(end_distances(half_length))]
+
+
+def across_contact():
+    """x across the contact, 0 to 1.5."""
+    return [0.05 * i for i in range(31)]
+
+
+def depths():
+    """z of the depth profiles, 0 to 5."""
+    return ([0.0, 0.02] + [0.05 * i for i in range(1, 31)] + [0.1 * i for i in range(16, 31)]
+            + [3.5, 4.0, 5.0])
+
+
+def standard_curves(half_length, body_half_length):
+    """Curves of one body as ``{name: [(x, y, z), ...]}`` in the order of the running coordinate.
+
+    ``half_length`` is the roller's half-length, ``body_half_length`` (not less) that of the body; a
+    longer body's curves along y go on past the roller's end for up to 3 C.
+    """
+    y = contact_line(half_length)
+    ledge = body_half_length - half_length
+    # A flush block's two lengths may differ by rounding; that is no ledge.
+    if ledge > 1e-9 * half_length:
+        reach = min(ledge, _OUTWARD)
+        y += [half_length + s for s in _NEAR if 0.0 < s < reach] + [half_length + reach]
+    x = across_contact() + [1.75, 2.0, 2.5, 3.0]
+
+    def along_y(depth):
+        return [(0.0, v, depth) for v in y]
+
+    def along_z(at):
+        return [(0.0, at, z) for z in depths()]
+
+    points = (along_y(0.0), [(v, 0.0, 0.0) for v in x], along_z(0.0), along_z(0.9 * half_length),
+              along_z(half_length), along_y(0.5), along_y(0.78))
+    return dict(zip(CURVES, points))
+
+
+def pressure_lines(half_length):
+    """Points (x, y) of the contact pressure: along the contact line and across its middle."""
+    return {
+        "along-y": [(0.0, y) for y in contact_line(half_length)],
+        "along-x": [(x, 0.0) for x in across_contact()],
+    }

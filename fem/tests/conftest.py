@@ -1,0 +1,47 @@
+"""Shared pieces of the tests: the package on the path, a steel pair, small live models."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+FEM = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(FEM))
+
+from edgeline_fem.record import standard_request  # noqa: E402
+from edgeline_fem.request import Case, Material  # noqa: E402
+
+STEEL = Material(210e9, 0.3)
+
+
+def steel_case(load_factor, slenderness, length_ratio):
+    """A steel roller of 10 mm radius on a steel block."""
+    return Case.from_dimensionless("test", load_factor, slenderness, length_ratio, 0.01, STEEL, STEEL)
+
+
+def run_stage(stage, request, folder, ranks=1):
+    """Run a stage as the driver does; returns the finished process."""
+    command = [sys.executable, "-m", "edgeline_fem", stage, str(request), str(folder)]
+    if ranks > 1:
+        command = ["mpirun", "--oversubscribe", "-n", str(ranks), *command]
+    environment = {
+        **os.environ, "PYTHONPATH": str(FEM), "OMPI_ALLOW_RUN_AS_ROOT": "1",
+        "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+    return subprocess.run(command, capture_output=True, text=True, env=environment, cwd="/", check=False)
+
+
+@pytest.fixture(scope="session")
+def live(tmp_path_factory):
+    """A coarse flush contact, meshed and solved by the command line: (case, request, folder)."""
+    folder = tmp_path_factory.mktemp("live")
+    case = steel_case(5e-4, 5.0, 1.0)
+    request = folder / "request.json"
+    request.write_text(json.dumps(standard_request(case, 2.0).to_json()))
+    for stage in ("mesh", "solve"):
+        done = run_stage(stage, request, folder)
+        assert done.returncode == 0, done.stderr
+    return case, request, folder

@@ -1,0 +1,195 @@
+"""The contact: grid, solver, Hertz's line contact in plane strain, and a live finite contact."""
+
+import csv
+import json
+import math
+
+import numpy as np
+import pytest
+from mpi4py import MPI
+
+from conftest import FEM, run_stage, steel_case
+from edgeline_fem.contact import ContactGrid, solve_contact
+from edgeline_fem.meshing import make_meshes
+from edgeline_fem.model import build_bodies, enforce_boundaries, invariants, press_bodies
+from edgeline_fem.record import standard_request
+from edgeline_fem.request import FemError
+
+
+def silent(*_):
+    """A log that nobody reads."""
+
+
+def test_grid_recovers_smooth_pressures():
+    grid = ContactGrid([0.0, 0.2, 0.5, 1.0], [0.0, 1.0, 1.5])
+    x, y = (v.ravel() for v in np.meshgrid(grid.x, grid.y, indexing="ij"))
+    assert grid.weights.sum() == pytest.approx(1.5, rel=1e-12)
+    assert np.all(grid.weights > 0.0)
+    pressure = np.cos(0.8 * x) * (1.0 - 0.3 * y**2)
+    forces = (grid._mass_x @ pressure.reshape(grid.shape) @ grid._mass_y).ravel()
+    error = np.abs(grid.pressure(forces) - pressure).max()
+    assert error < 0.6 * np.abs(grid.lumped_pressure(forces) - pressure).max()
+    found = grid.find(np.array([[0.35, 1.25, 0.0], [0.2, 1.0, 0.0], [0.3, 1.0, 0.0]]))
+    assert found.tolist() == [3 * 5 + 3, 2 * 5 + 2, -1]
+
+
+def test_grid_samples_an_ellipse_exactly():
+    """The square of a Hertz pressure is quadratic, so its samples are exact."""
+    grid = ContactGrid([0.0, 0.5, 1.0], [0.0, 1.0])
+    nodal = np.sqrt(np.maximum(0.0, 1.0 - grid.x**2))[:, None] * np.ones(grid.shape[1])
+    points = [(0.3, 0.7), (0.95, 0.1), (1.0, 1.0), (1.2, 0.5)]
+    expected = [math.sqrt(max(0.0, 1.0 - x * x)) for x, _ in points]
+    assert grid.sample(nodal.ravel(), points) == pytest.approx(expected, abs=1e-7)
+
+
+def test_contact_solver_on_a_small_dense_problem():
+    """Against the optimality conditions: gap >= 0, force >= 0, one of them zero, load exact."""
+    rng = np.random.default_rng(1)
+    root = rng.normal(size=(30, 30))
+    compliance = root @ root.T / 30.0 + np.eye(30)
+    gap = np.linspace(0.0, 2.0, 30) ** 2
+    weights = rng.uniform(0.5, 1.5, 30)
+    model = np.diag(np.diag(compliance))
+    found = solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 200, silent)
+    left = compliance @ found.forces + gap - found.approach
+    assert found.forces.sum() == pytest.approx(1.0, rel=1e-12)
+    assert found.forces.min() >= 0.0 and left.min() >= -1e-9
+    assert np.abs(left * found.forces).max() < 1e-9
+    with pytest.raises(FemError, match="did not converge in 2 iterations"):
+        solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 2, silent)
+
+
+def test_invariants():
+    von_mises, tau_max = invariants([[3.0, 1.0, 2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    assert von_mises == pytest.approx([math.sqrt(3.0), math.sqrt(3.0)])
+    assert tau_max == pytest.approx([1.0, 1.0])
+
+
+def test_enforced_tractions_are_exact_and_keep_a_right_field():
+    """A field that meets its tractions passes unchanged; a wrong normal stress is put right."""
+
+    class Field:
+        comm = MPI.COMM_SELF
+        nodes = np.array([[0.3, 0.5, 0.0], [0.3, 1.0, 0.7], [0.3, 1.0, 0.0]])
+        values = np.array([[-0.4, -0.3, -0.8, 0.02, 0.0, 0.0], [0.1, 0.0, -0.2, 0.0, 0.03, 0.0],
+                           [-0.2, 0.0, -0.6, 0.0, 0.0, 0.0]])
+
+    def flat(nodes):
+        return np.where(nodes[:, 2] == 0.0, 0.0, np.nan)
+
+    def pressure(nodes):
+        return np.where(nodes[:, 1] == 1.0, 0.6, 0.8)
+
+    right = Field.values.copy()
+    assert enforce_boundaries(Field, 0.3, 1.0, flat, pressure) == (0.0, 0.0)
+    assert Field.values == pytest.approx(right)
+    Field.values[0, 2] -= 0.07
+    Field.values[1, 1] += 0.05
+    assert enforce_boundaries(Field, 0.3, 1.0, flat, pressure) == pytest.approx((0.05, 0.07))
+    assert Field.values[:, 2] == pytest.approx([-0.8, -0.2 - 0.05 * 0.3 / 0.7, -0.6])
+    assert Field.values[0, 0] == pytest.approx(-0.4 + 0.07 * 0.3 / 0.7)
+    assert Field.values[1:, 1] == pytest.approx([0.0, 0.0])
+
+
+def test_hertz_line_contact(tmp_path):
+    """A slice in plane strain: peak pressure and half-width within half a percent, stresses too."""
+    case = steel_case(2e-5, 0.5, 1.0)
+    request = standard_request(case, 1.0, end=1.0, free_end=1.0)
+    meshed = make_meshes(request, tmp_path)
+    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
+    bodies, _ = build_bodies(MPI.COMM_SELF, tmp_path, request, plane_strain=True)
+    load = math.pi * 0.5 / 4.0
+    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, silent)
+    assert solution.forces.sum() == pytest.approx(load, rel=1e-12)
+    assert reaction_error < 1e-8
+    assert solution.smallest_gap > -1e-7
+
+    pressure = grid.pressure(solution.forces).reshape(grid.shape)
+    assert pressure[0] == pytest.approx(1.0, abs=5e-3)
+    assert np.abs(pressure - pressure[:, :1]).max() < 1e-6
+    # p^2 = p0^2 (1 - x^2 / a^2): the half-width from a straight line through the contact's inside.
+    inside = pressure[:, 0] > 0.3
+    slope, level = np.polyfit(grid.x[inside] ** 2, pressure[inside, 0] ** 2, 1)
+    assert math.sqrt(-level / slope) == pytest.approx(1.0, abs=5e-3)
+
+    z = np.array([0.2, 0.5, 0.78, 1.0, 2.0])
+    s = np.sqrt(1.0 + z**2)
+    # Johnson, Contact Mechanics, 1985, Eq. 4.45.
+    xx, zz = -((1.0 + 2.0 * z**2) / s - 2.0 * z), -1.0 / s
+    for body in bodies.values():
+        found = body.nodal_stress().sample([(0.0, 0.2, v) for v in z])
+        assert found[:, 2] == pytest.approx(zz, abs=1e-2)
+        assert found[:, 0] == pytest.approx(xx, abs=1e-2)
+        assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=1e-2)
+
+
+def rows(path):
+    with open(path, newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def test_live_contact(live):
+    """A coarse flush contact through the command line: balance, level, symmetry, shape of the files."""
+    case, _, folder = live
+    scales = case.scales()
+    summary = json.loads((folder / "fem.json").read_text())
+    assert summary["equilibrium_residual"] < 1e-8
+    assert summary["load_error_rel"] < 1e-12
+    assert summary["complementarity_residual"] <= 1e-8
+    assert summary["smallest_gap_rel"] > -1e-7
+    # An independent calculation gives 1.023 p0 in the middle and 0.735 p0 at 0.1 C from the end.
+    assert summary["p_centre_pa"] / scales.p0_pa == pytest.approx(1.023, rel=0.02)
+    pressure = {float(r["y_m"]) / scales.c_m: float(r["p_pa"]) / scales.p0_pa
+                for r in rows(folder / "pressure.csv") if r["line"] == "along-y"}
+    assert min(pressure.values()) > 0.4
+    at = min(pressure, key=lambda y: abs(y - 4.9))
+    assert pressure[at] == pytest.approx(0.735, abs=0.03)
+    curves = rows(folder / "curves.csv")
+    assert len(curves) == 2 * (20 + 35 + 3 * 50 + 2 * 20)
+    for row in curves:
+        if row["curve"] == "depth-end":
+            assert abs(float(row["sigma_yy_pa"])) < 1e-9 * scales.p0_pa
+        if row["curve"] == "surface-along-y":
+            nearest = min(pressure, key=lambda y, row=row: abs(y - float(row["y_m"]) / scales.c_m))
+            assert -float(row["sigma_zz_pa"]) / scales.p0_pa == pytest.approx(pressure[nearest], abs=0.02)
+    # Like materials and nearly like shapes: the two bodies' stresses differ by the roller's roundness.
+    both = [[float(r["von_mises_pa"]) / scales.p0_pa for r in curves
+             if r["body"] == body and r["curve"] == "along-y-0.78C"] for body in ("block", "roller")]
+    assert both[0] == pytest.approx(both[1], abs=0.03)
+
+
+def test_recorded_value_is_met_live(tmp_path):
+    """A coarse live run of a recorded case against its production mesh: 3 % in the middle."""
+    record = json.loads((FEM.parent / "results/reference/w1e-3_sl5_lr1/record.json").read_text())
+    request = tmp_path / "request.json"
+    request.write_text(json.dumps(standard_request(steel_case(1e-3, 5.0, 1.0), 2.0).to_json()))
+    for stage in ("mesh", "solve"):
+        assert run_stage(stage, request, tmp_path).returncode == 0
+    found = json.loads((tmp_path / "fem.json").read_text())
+    assert found["p_centre_pa"] == pytest.approx(record["meshes"]["1"]["p_centre_pa"], rel=0.03)
+    assert found["equilibrium_residual"] < 1e-6
+
+
+def deviation(one, other, p0_pa):
+    """Largest difference between two folders' curves and pressures (units of p0)."""
+    worst = 0.0
+    for name in ("curves.csv", "pressure.csv"):
+        for a, b in zip(rows(one / name), rows(other / name), strict=True):
+            worst = max([worst, *(abs(float(a[k]) - float(b[k])) / p0_pa for k in a if k.endswith("_pa"))])
+    return worst
+
+
+@pytest.mark.parametrize(("linear", "ranks"), [("iterative", 1), ("direct", 2), ("iterative", 2)])
+@pytest.mark.slow
+def test_solvers_and_ranks_agree(live, tmp_path, linear, ranks):
+    """Iterative against direct, two ranks against one: the same curves to 1e-6 p0."""
+    case, request, reference = live
+    data = json.loads(request.read_text())
+    data["solver"]["linear"] = linear
+    changed = tmp_path / "request.json"
+    changed.write_text(json.dumps(data))
+    assert run_stage("mesh", changed, tmp_path).returncode == 0
+    done = run_stage("solve", changed, tmp_path, ranks)
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "fem.json").read_text())["ranks"] == ranks
+    assert deviation(reference, tmp_path, case.scales().p0_pa) < 1e-6

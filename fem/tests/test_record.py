@@ -1,0 +1,55 @@
+"""Records: resumable, error estimates with known answers."""
+
+import json
+
+import pytest
+
+from conftest import STEEL, steel_case
+from edgeline_fem.record import order_and_factor, read_cases, record
+from edgeline_fem.request import FemError
+
+
+def test_order_and_factor_of_a_known_sequence():
+    """Values 1 + h^2 on sizes 2, 1.4 and 1: second order, the finest is off by 1."""
+    values = [1.0 + h**2 for h in (2.0, 1.4, 1.0)]
+    order, factor = order_and_factor((values[0] - values[1], values[1] - values[2]), (2.0, 1.4, 1.0))
+    assert order == pytest.approx(2.0, abs=1e-9)
+    assert factor * (values[1] - values[2]) == pytest.approx(1.0, rel=1e-9)
+    assert order_and_factor((1.0, 2.0), (2.0, 1.4, 1.0)) == (None, None)
+
+
+def test_cases_file(tmp_path):
+    path = tmp_path / "cases.toml"
+    path.write_text(
+        '["a"]\nW = 1e-4\nS_l = 5.0\nL_r = 0.5\n'
+        "roller = { radius_m = 0.01, young_pa = 210e9, poisson = 0.3 }\n"
+        "block = { young_pa = 210e9, poisson = 0.3 }\n"
+    )
+    case = read_cases(path)["a"]
+    assert case.roller == STEEL
+    assert case.to_json() == {**steel_case(1e-4, 5.0, 0.5).to_json(), "name": "a"}
+    path.write_text('["a"]\nW = 1e-4\n')
+    with pytest.raises(FemError, match="case a has no 'roller'"):
+        read_cases(path)
+
+
+def test_a_record_grows_and_is_not_made_twice(tmp_path):
+    case = steel_case(5e-4, 5.0, 1.0)
+    lines = []
+    # Coarser than any mesh in use: what is tested is the file, not the numbers.
+    assert record(case, 4.0, tmp_path, lines.append)
+    assert record(case, 3.0, tmp_path, lines.append)
+    before = (tmp_path / "test" / "record.json").read_bytes()
+    assert not record(case, 3.0, tmp_path, lines.append)
+    assert (tmp_path / "test" / "record.json").read_bytes() == before
+    data = json.loads(before)
+    assert list(data["meshes"]) == ["4", "3"]
+    assert data["dimensionless"] == pytest.approx({"W": 5e-4, "S_l": 5.0, "L_r": 1.0})
+    assert {e["curve"] for e in data["errors"]} >= {"along-y", "depth-centre"}
+    curves = (tmp_path / "test" / "curves.csv").read_text().splitlines()
+    assert curves[0].startswith("mesh,body,curve,x_m")
+    assert sum(line.startswith("4,") for line in curves) == sum(line.startswith("3,") for line in curves)
+    assert not list((tmp_path / "test").glob(".work*"))
+    with pytest.raises(FemError, match="holds another case"):
+        other = steel_case(6e-4, 5.0, 1.0)
+        record(other, 3.0, tmp_path, lines.append)

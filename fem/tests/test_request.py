@@ -1,0 +1,80 @@
+"""What a request must hold, and the scales that follow from it."""
+
+import json
+import math
+
+import pytest
+
+from conftest import run_stage, steel_case
+from edgeline_fem.record import standard_request
+from edgeline_fem.request import FemError, parse_request
+
+
+def sound():
+    return json.loads(json.dumps(standard_request(steel_case(5e-4, 5.0, 0.5), 2.0).to_json()))
+
+
+def test_scales_and_lengths():
+    case = steel_case(5e-4, 5.0, 0.5)
+    scales = case.scales()
+    assert scales.radius == pytest.approx(1.0 / (2.0 * math.sqrt(5e-4 / math.pi)), rel=1e-12)
+    assert scales.p0_pa == pytest.approx(210e9 / 1.82 * math.sqrt(5e-4 / math.pi), rel=1e-12)
+    assert case.roller_half_length() == pytest.approx(5.0, rel=1e-12)
+    assert case.block_half_length() == pytest.approx(10.0, rel=1e-12)
+    # The load is that of the Hertz pressure on the whole length: pi/2 p0 C 2 S_l C.
+    assert case.force_n == pytest.approx(math.pi * 5.0 * scales.p0_pa * scales.c_m**2, rel=1e-12)
+
+
+def test_a_request_survives_its_own_json():
+    assert parse_request(sound()) == standard_request(steel_case(5e-4, 5.0, 0.5), 2.0)
+
+
+def change(data, path, value):
+    *parents, last = path
+    for key in parents:
+        data = data[key]
+    data[last] = value
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "complaint"),
+    [
+        (["schema"], 2, "'schema' is 2"),
+        (["case", "force_n"], -1.0, "'force_n' must be a finite number above 0"),
+        (["case", "force_n"], float("nan"), "'force_n' must be a finite number above 0"),
+        (["case", "roller", "poisson"], 0.5, r"'poisson' must lie in \[0, 0.5\)"),
+        (["case", "block", "length_m"], 1e-4, "shorter than the roller"),
+        (["case", "block", "lenght_m"], 1.0, "unknown key 'lenght_m'; known are length_m"),
+        (["mesh", "sise"], 1.0, "unknown key 'sise'"),
+        (["mesh", "size"], 0, "'size' must be a finite number above 0"),
+        (["solver", "linear"], "magic", "'linear' must be direct or iterative"),
+        (["solver", "max_iterations"], 1.5, "'max_iterations' must be a whole number"),
+        (["curves", 0, "body"], "ball", "'body' must be block or roller"),
+        (["curves", 0, "points_m"], [[0.0, 1.0]], "points of 3 finite numbers"),
+        (["gmsh"], "", "'gmsh' must be"),
+    ],
+)
+def test_a_bad_request_is_named(path, value, complaint):
+    data = sound()
+    change(data, path, value)
+    with pytest.raises(FemError, match=complaint):
+        parse_request(data)
+
+
+def test_the_command_line_fails_with_code_2_and_leaves_nothing(tmp_path):
+    request = tmp_path / "request.json"
+    request.write_text("{")
+    done = run_stage("mesh", request, tmp_path / "out")
+    assert done.returncode == 2
+    assert done.stderr.startswith("error: ") and "is not JSON" in done.stderr
+    assert not (tmp_path / "out").exists()
+
+    data = sound()
+    data["gmsh"] = "no-such-gmsh"
+    request.write_text(json.dumps(data))
+    done = run_stage("mesh", request, tmp_path / "out")
+    assert done.returncode == 2 and "no-such-gmsh" in done.stderr
+    assert not (tmp_path / "out" / "mesh.json").exists()
+
+    done = run_stage("solve", request, tmp_path / "out")
+    assert done.returncode == 2 and "run the mesh stage first" in done.stderr
