@@ -19,10 +19,6 @@ impl HertzScales {
     pub fn new(e_star_pa: f64, radius_m: f64, length_m: f64, force_n: f64) -> Self {
         let w = force_n / (e_star_pa * radius_m * length_m);
         let c_m = 2.0 * radius_m * (w / PI).sqrt();
-        Self {
-            e_star_pa,
-            c_m,
-            p0_pa: e_star_pa * c_m / (2.0 * radius_m),
-        }
+        Self { e_star_pa, c_m, p0_pa: e_star_pa * c_m / (2.0 * radius_m) }
     }
 }

@@ -14,9 +14,8 @@ pub struct StressTensor {
 
 impl StressTensor {
     /// Names of the components, in the order of [`StressTensor::components`].
-    pub const NAMES: [&'static str; 6] = [
-        "sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz",
-    ];
+    pub const NAMES: [&'static str; 6] =
+        ["sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz"];
 
     /// The six components: xx, yy, zz, xy, xz, yz.
     pub fn components(&self) -> [f64; 6] {
@@ -25,14 +24,7 @@ impl StressTensor {
 
     /// The inverse of [`StressTensor::components`].
     pub fn from_components([xx, yy, zz, xy, xz, yz]: [f64; 6]) -> Self {
-        Self {
-            xx,
-            yy,
-            zz,
-            xy,
-            xz,
-            yz,
-        }
+        Self { xx, yy, zz, xy, xz, yz }
     }
 
     /// Von Mises equivalent stress, sqrt(3 J2).
@@ -118,37 +110,19 @@ mod tests {
 
     #[test]
     fn invariants_of_simple_states() {
-        let uniaxial = StressTensor {
-            xx: 3.0,
-            ..Default::default()
-        };
+        let uniaxial = StressTensor { xx: 3.0, ..Default::default() };
         assert!((uniaxial.von_mises() - 3.0).abs() < 1e-14);
         assert!((uniaxial.tau_max() - 1.5).abs() < 1e-14);
-        let shear = StressTensor {
-            yz: 2.0,
-            ..Default::default()
-        };
+        let shear = StressTensor { yz: 2.0, ..Default::default() };
         assert!((shear.von_mises() - 2.0 * 3f64.sqrt()).abs() < 1e-14);
         assert!((shear.tau_max() - 2.0).abs() < 1e-14);
-        let hydrostatic = StressTensor {
-            xx: -1.0,
-            yy: -1.0,
-            zz: -1.0,
-            ..Default::default()
-        };
+        let hydrostatic = StressTensor { xx: -1.0, yy: -1.0, zz: -1.0, ..Default::default() };
         assert_eq!(hydrostatic.tau_max(), 0.0);
     }
 
     #[test]
     fn principal_stresses_solve_the_cubic() {
-        let s = StressTensor {
-            xx: 1.0,
-            yy: -2.0,
-            zz: 0.5,
-            xy: 0.7,
-            xz: -0.3,
-            yz: 1.1,
-        };
+        let s = StressTensor { xx: 1.0, yy: -2.0, zz: 0.5, xy: 0.7, xz: -0.3, yz: 1.1 };
         let m = nalgebra::Matrix3::new(s.xx, s.xy, s.xz, s.xy, s.yy, s.yz, s.xz, s.yz, s.zz);
         let mut expected: Vec<f64> = m.symmetric_eigenvalues().iter().copied().collect();
         expected.sort_by(|a, b| b.total_cmp(a));

@@ -16,12 +16,8 @@ pub enum EdgeModel {
 
 impl EdgeModel {
     /// All models, simplest first.
-    pub const ALL: [EdgeModel; 4] = [
-        EdgeModel::HalfSpace,
-        EdgeModel::Mirror,
-        EdgeModel::Guilbault,
-        EdgeModel::QuarterSpace,
-    ];
+    pub const ALL: [EdgeModel; 4] =
+        [EdgeModel::HalfSpace, EdgeModel::Mirror, EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 
     /// The name used in files and on the command line.
     pub fn name(self) -> &'static str {

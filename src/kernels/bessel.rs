@@ -146,9 +146,8 @@ impl Table {
     fn build() -> Self {
         let n = Self::ORDER;
         // Interpolation at Chebyshev nodes, expressed in powers (n = 6 keeps this well conditioned).
-        let nodes: Vec<f64> = (0..n)
-            .map(|i| (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).cos())
-            .collect();
+        let nodes: Vec<f64> =
+            (0..n).map(|i| (std::f64::consts::PI * (i as f64 + 0.5) / n as f64).cos()).collect();
         let vandermonde = nalgebra::DMatrix::from_fn(n, n, |i, j| nodes[i].powi(j as i32));
         let inverse = vandermonde.try_inverse().expect("distinct nodes");
         let mut patches = Vec::new();

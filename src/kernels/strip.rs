@@ -98,7 +98,13 @@ pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
     for (m, o) in out.iter_mut().enumerate() {
         let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
         // J_1(s)/s tends to 1/2; the others vanish.
-        let ratio = if s > 1e-8 { *o / s } else if m == 0 { 0.5 } else { 0.0 };
+        let ratio = if s > 1e-8 {
+            *o / s
+        } else if m == 0 {
+            0.5
+        } else {
+            0.0
+        };
         *o = PI * half_width * (2 * m + 1) as f64 * sign * ratio;
     }
     PI * half_width * j0
@@ -112,7 +118,11 @@ pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
 pub fn logarithmic(half_width: f64, t: f64, out: &mut [f64]) -> f64 {
     let angle = t.clamp(-1.0, 1.0).acos();
     let potential = |n: usize| {
-        if n == 0 { PI * (LN_2 - half_width.ln()) } else { PI / n as f64 * (n as f64 * angle).cos() }
+        if n == 0 {
+            PI * (LN_2 - half_width.ln())
+        } else {
+            PI / n as f64 * (n as f64 * angle).cos()
+        }
     };
     for (m, o) in out.iter_mut().enumerate() {
         *o = 0.5 * half_width * (potential(2 * m) - potential(2 * m + 2));

@@ -103,7 +103,8 @@ mod tests {
             tangent(x, y) / (2.0 * PI),
             tangent(y, x) / (2.0 * PI),
             -3.0 * z.powi(3) / big.powi(5) / (2.0 * PI),
-            (f * (a * 2.0 * x * y / r2 - c * x * y / r2) - 3.0 * x * y * z / big.powi(5)) / (2.0 * PI),
+            (f * (a * 2.0 * x * y / r2 - c * x * y / r2) - 3.0 * x * y * z / big.powi(5))
+                / (2.0 * PI),
             -3.0 * x * z * z / big.powi(5) / (2.0 * PI),
             -3.0 * y * z * z / big.powi(5) / (2.0 * PI),
         ]
@@ -111,15 +112,18 @@ mod tests {
 
     #[test]
     fn waves_add_up_to_boussinesq() {
-        let breaks = (0..=90).map(|i| if i == 0 { 0.0 } else { 2f64.powf(f64::from(i - 60) / 4.0) });
+        let breaks =
+            (0..=90).map(|i| if i == 0 { 0.0 } else { 2f64.powf(f64::from(i - 60) / 4.0) });
         let axis = Panels::new(breaks.collect(), 10);
         for nu in [0.0, 0.3, 0.45] {
-            for (x, u, v) in [(0.4, 0.3, 0.5), (0.0, -0.7, 0.4), (1.2, 0.6, 0.3), (-0.5, 0.1, 1.0)] {
+            for (x, u, v) in [(0.4, 0.3, 0.5), (0.0, -0.7, 0.4), (1.2, 0.6, 0.3), (-0.5, 0.1, 1.0)]
+            {
                 let mut got = [0.0; 6];
                 for (&k, w) in axis.nodes().iter().zip(axis.weights()) {
                     let s = line_load(k, nu, u, v);
                     let (sin, cos) = (k * x).sin_cos();
-                    let all = [s.xx * cos, s.ww * cos, s.dd * cos, s.xw * sin, s.xd * sin, s.wd * cos];
+                    let all =
+                        [s.xx * cos, s.ww * cos, s.dd * cos, s.xw * sin, s.xd * sin, s.wd * cos];
                     for (g, a) in got.iter_mut().zip(all) {
                         *g += w * a / PI;
                     }

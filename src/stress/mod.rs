@@ -1,5 +1,7 @@
 //! Stresses at points, standard curves, critical points.
 
 pub mod curves;
+pub mod field;
 
 pub use curves::{BodyKind, CurveSpec};
+pub use field::{Field, Pressure};

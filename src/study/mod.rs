@@ -1,1 +1,22 @@
-//! See the crate's list of layers.
+//! Pairing of curves, error measures, factorial effects, timing, gates, and the run of a study.
+//!
+//! Everything here works in units of C and p0 (see [`crate::base::HertzScales`]): a study compares
+//! cases of different loads, and the fraction of p0 is what a user can judge.
+
+pub mod effects;
+pub mod errors;
+pub mod factorial;
+pub mod gate;
+mod run;
+mod sampled;
+pub mod timing;
+
+pub use errors::{ErrorRow, Range};
+pub use run::{
+    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, StudyRun, problem_key,
+    run,
+};
+pub use sampled::{Quantity, Sampled, SampledCurve, SampledLine};
+
+#[cfg(test)]
+pub(crate) mod synthetic;

@@ -1,0 +1,160 @@
+//! Axes chosen from a requested accuracy.
+
+use crate::base::Panels;
+use serde::Serialize;
+
+/// How finely everything is resolved; all lengths are in units of C.
+///
+/// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
+/// every extent, which is how convergence is shown.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Resolution {
+    /// Gauss nodes per panel along y and along the end faces' depth.
+    pub order: usize,
+    /// Panel next to a loaded corner.
+    pub corner: f64,
+    /// Growth of panels away from a corner.
+    pub ratio: f64,
+    /// Modes of the pressure across the contact.
+    pub modes: usize,
+    /// Largest wavenumber.
+    pub k_max: f64,
+    /// Gauss nodes per panel of wavenumbers.
+    pub k_order: usize,
+    /// Width of the wavenumber panels above 2.
+    pub k_step: f64,
+    /// Smallest wavenumber panel's end: 1 / the extent in x and z that is resolved.
+    pub k_min: f64,
+    /// Images of the corrected pressure in the end faces on either side, in lengths of the body;
+    /// beyond them its mean is carried by uniform strips.
+    pub images: usize,
+    /// How many decay lengths 1/k an end face's axis reaches.
+    pub face_reach: f64,
+}
+
+impl Resolution {
+    /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
+    /// roller's corner.
+    pub fn for_tolerance(tolerance: f64) -> Self {
+        if tolerance >= 5e-3 {
+            Self {
+                order: 3,
+                corner: 0.04,
+                ratio: 2.5,
+                modes: 3,
+                k_max: 16.0,
+                k_order: 4,
+                k_step: 3.5,
+                k_min: 1e-3,
+                images: 1,
+                face_reach: 10.0,
+            }
+        } else {
+            Self {
+                order: 4,
+                corner: 0.01,
+                ratio: 2.0,
+                modes: 4,
+                k_max: 40.0,
+                k_order: 6,
+                k_step: 4.0,
+                k_min: 2e-4,
+                images: 1,
+                face_reach: 14.0,
+            }
+        }
+    }
+
+    /// Every panel halved (its growth ratio's root taken) and every extent doubled.
+    pub fn refined(&self) -> Self {
+        Self {
+            order: self.order,
+            corner: 0.5 * self.corner,
+            ratio: self.ratio.sqrt(),
+            modes: self.modes + 2,
+            k_max: 2.0 * self.k_max,
+            k_order: self.k_order,
+            k_step: 0.5 * self.k_step,
+            k_min: 0.5 * self.k_min,
+            images: 2 * self.images,
+            face_reach: 2.0 * self.face_reach,
+        }
+    }
+
+    /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).
+    fn graded(&self, first: f64, length: f64) -> Vec<f64> {
+        let mut s = vec![0.0];
+        let mut next = first;
+        // A last panel much shorter than its neighbour would be waste.
+        while next * self.ratio.sqrt() < length {
+            s.push(next);
+            next *= self.ratio;
+        }
+        s.push(length);
+        s
+    }
+
+    /// Panels on [0, `half_length`] of the contact line, graded towards its end.
+    pub fn contact_axis(&self, half_length: f64) -> Panels {
+        let s = self.graded(self.corner, half_length);
+        Panels::new(s.iter().rev().map(|s| half_length - s).collect(), self.order)
+    }
+
+    /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
+    /// wants the finest panels, one that is farther away sees fields that vary over its distance.
+    fn end_panel(&self, ledge: f64) -> f64 {
+        self.corner.max(ledge / 16.0)
+    }
+
+    /// [`Resolution::contact_axis`] and panels on to a body's end face at `half`, graded from the
+    /// contact's end and towards the face.
+    pub fn body_axis(&self, half_length: f64, half: f64) -> Panels {
+        let mut breaks = self.contact_axis(half_length).breaks().to_vec();
+        let ledge = half - half_length;
+        if ledge > 0.0 {
+            let outward = self.graded(self.corner.min(0.25 * ledge), 0.5 * ledge);
+            let inward = self.graded(self.end_panel(ledge).min(0.25 * ledge), 0.5 * ledge);
+            breaks.extend(outward[1..].iter().map(|s| half_length + s));
+            breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
+        }
+        Panels::new(breaks, self.order)
+    }
+
+    /// Panels of the depth along an end face, graded towards the edge, deep enough for the
+    /// smallest wavenumber.
+    pub fn face_axis(&self, ledge: f64) -> Panels {
+        let deepest = self.face_reach / self.k_min;
+        Panels::new(self.graded(self.end_panel(ledge), deepest), self.order)
+    }
+
+    /// Wavenumbers across the contact and their quadrature weights: panels growing by four from
+    /// `k_min`, then equal ones that resolve the transforms' oscillation.
+    pub fn wavenumbers(&self) -> Panels {
+        let mut breaks = vec![0.0];
+        let mut next = self.k_min;
+        while next < 0.3 {
+            breaks.push(next);
+            next *= 4.0;
+        }
+        breaks.extend([0.5, 1.0, 2.0]);
+        let count = ((self.k_max - 2.0) / self.k_step).ceil().max(1.0);
+        let step = (self.k_max - 2.0) / count;
+        breaks.extend((1..=count as usize).map(|i| 2.0 + step * i as f64));
+        Panels::new(breaks, self.k_order)
+    }
+
+    /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
+    /// fades beyond 8 / `half`, and varies over the wavenumber across the contact, hence panels
+    /// that grow from `k_min`.
+    pub fn face_wavenumbers(&self, half: f64) -> Panels {
+        let top = 8.0 / half;
+        let mut breaks = vec![0.0];
+        let mut next = self.k_min;
+        while next < 0.6 * top {
+            breaks.push(next);
+            next *= 2.0 * self.ratio.sqrt();
+        }
+        breaks.push(top);
+        Panels::new(breaks, self.order)
+    }
+}

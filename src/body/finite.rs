@@ -1,0 +1,314 @@
+//! A body that ends at y = -H and y = +H, as a stack of layers, one per wavenumber across the
+//! contact.
+//!
+//! Symmetry: pressures are even in x and in y, so only y >= 0 is stored; the loads q on the two end
+//! faces are equal, and even in z. Lengths are in units of C. A layer's displacement is f p with
+//! u = (1 - nu^2)/(pi E) f p, so a half-space's f is 2 K0(k |y|).
+
+use super::axes::Resolution;
+use super::model::EdgeModel;
+use super::stencil::{Image, Stencil};
+use crate::base::Panels;
+use crate::kernels::bessel::k0;
+use crate::kernels::plate;
+use crate::kernels::wave::{REACH, line_load};
+use nalgebra::DMatrix;
+use std::f64::consts::PI;
+
+/// A finite body and everything about it that does not depend on the wavenumber.
+#[derive(Debug, Clone)]
+pub struct Body {
+    /// Half-length along y.
+    pub half: f64,
+    /// Poisson's ratio.
+    pub nu: f64,
+    /// The edge model.
+    pub model: EdgeModel,
+    /// Axis of the surface pressure P that acts on the half-space: the contact, and for the
+    /// complete model the surface on to the end face.
+    pub surface: Panels,
+    /// Axis of the depth along an end face.
+    pub face: Panels,
+    /// Images of the surface axis, itself and its mirror in y = 0 included, as they act on the
+    /// displacement.
+    images: Vec<Image>,
+    /// The same as they act on the stresses: an image that psi weighs has its full weight here.
+    pub stress_images: Vec<Image>,
+    /// Nodes of `surface` that belong to the contact; they come first.
+    contact: usize,
+    /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
+    pub strips: Vec<(f64, f64)>,
+    face_wavenumbers: Panels,
+    resolution: Resolution,
+    compliance_stencils: Vec<Stencil>,
+    to_face: Vec<Stencil>,
+    from_faces: Vec<[Stencil; 2]>,
+    cosines: DMatrix<f64>,
+}
+
+/// A body at one wavenumber.
+#[derive(Debug, Clone)]
+pub struct Layer {
+    /// Surface displacement f at the contact nodes per contact pressure at the contact nodes.
+    pub compliance: DMatrix<f64>,
+    /// P at the surface nodes per contact pressure (identity-like for models without q).
+    pub surface: Option<DMatrix<f64>>,
+    /// q at the face nodes per P at the surface nodes; none where the end is not felt.
+    pub face: Option<DMatrix<f64>>,
+}
+
+impl Body {
+    /// A body of half-length `half` under a contact of half-length `half_length` <= `half`.
+    /// `psi` weighs the images of [`EdgeModel::Guilbault`].
+    pub fn new(
+        half_length: f64,
+        half: f64,
+        nu: f64,
+        model: EdgeModel,
+        psi: f64,
+        resolution: &Resolution,
+    ) -> Self {
+        let complete = model == EdgeModel::QuarterSpace;
+        let contact_axis = resolution.contact_axis(half_length);
+        let contact = contact_axis.len();
+        let surface =
+            if complete { resolution.body_axis(half_length, half) } else { contact_axis };
+        let ledge = half - half_length;
+        let face = resolution.face_axis(ledge);
+        let image = |sign: f64, lengths: i32, weight: f64| Image {
+            sign,
+            shift: 2.0 * half * f64::from(lengths),
+            weight,
+        };
+        let mut images = vec![image(1.0, 0, 1.0), image(-1.0, 0, 1.0)];
+        let (count, weight) = match model {
+            EdgeModel::HalfSpace => (0, 0.0),
+            EdgeModel::Mirror => (1, 1.0),
+            EdgeModel::Guilbault => (1, psi),
+            EdgeModel::QuarterSpace => (resolution.images as i32, 1.0),
+        };
+        for n in 1..=count {
+            for lengths in [-n, n] {
+                images.extend([image(1.0, lengths, weight), image(-1.0, lengths, weight)]);
+            }
+        }
+        let stress_images = images.iter().map(|i| Image { weight: 1.0, ..*i }).collect();
+        let mut body = Self {
+            half,
+            stress_images,
+            nu,
+            model,
+            face_wavenumbers: resolution.face_wavenumbers(half),
+            resolution: resolution.clone(),
+            contact,
+            images,
+            strips: Vec::new(),
+            compliance_stencils: Vec::new(),
+            to_face: Vec::new(),
+            from_faces: Vec::new(),
+            cosines: DMatrix::zeros(0, 0),
+            surface,
+            face,
+        };
+        body.compliance_stencils = body.surface.nodes()[..contact]
+            .iter()
+            .map(|&y| Stencil::new(&body.surface, &body.images, y, 0.0))
+            .collect();
+        if complete {
+            body.prepare_faces();
+        }
+        body
+    }
+
+    /// Stencils between the surface and the end faces, the strips and the plate's transforms.
+    fn prepare_faces(&mut self) {
+        let half = self.half;
+        let near = (2 * self.resolution.images + 1) as f64 * half;
+        let mut breaks = vec![near];
+        let mut step = half;
+        while breaks[breaks.len() - 1] < near + REACH / self.resolution.k_min {
+            breaks.push(breaks[breaks.len() - 1] + step);
+            step *= 2.0;
+        }
+        let strip = Panels::new(breaks, self.resolution.order);
+        self.strips =
+            strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
+        self.to_face = self
+            .face
+            .nodes()
+            .iter()
+            .map(|&z| Stencil::new(&self.surface, &self.images, half, z))
+            .collect();
+        self.from_faces = self
+            .surface
+            .nodes()
+            .iter()
+            .map(|&y| self.face_stencils(y, 0.0))
+            .collect();
+        let (face, axis) = (&self.face, &self.face_wavenumbers);
+        let order = face.order();
+        self.cosines = DMatrix::zeros(axis.len(), face.len());
+        let mut moments = vec![0.0; order];
+        for (row, &l) in axis.nodes().iter().enumerate() {
+            for panel in 0..face.panel_count() {
+                face.cosine_moments(panel, l, &mut moments);
+                for (i, m) in moments.iter().enumerate() {
+                    self.cosines[(row, panel * order + i)] = 2.0 * m;
+                }
+            }
+        }
+    }
+
+    /// Stencils from the loads of the faces at +H and -H, both even in z, to the point (`y`, `z`).
+    pub fn face_stencils(&self, y: f64, z: f64) -> [Stencil; 2] {
+        let even = [
+            Image { sign: 1.0, shift: 0.0, weight: 1.0 },
+            Image { sign: -1.0, shift: 0.0, weight: 1.0 },
+        ];
+        [self.half - y, self.half + y].map(|depth| Stencil::new(&self.face, &even, z, depth))
+    }
+
+    /// Number of contact nodes.
+    pub fn contact_len(&self) -> usize {
+        self.contact
+    }
+
+    /// Face nodes that a wavenumber reaches.
+    pub fn face_len(&self, k: f64) -> usize {
+        let deepest = self.resolution.face_reach / k;
+        let panels = (0..self.face.panel_count())
+            .take_while(|&i| self.face.panel(i)[0] < deepest)
+            .count();
+        panels * self.face.order()
+    }
+
+    /// Whether the plate's part beyond its two half-spaces matters at wavenumber `k`.
+    fn plate_matters(&self, k: f64) -> bool {
+        k * self.half < 8.0
+    }
+
+    /// Adds the kernel of the uniform strips to every entry of a row over the surface nodes.
+    fn add_strips(&self, k: f64, y: f64, depth: f64, kernel: impl Fn(f64) -> f64, row: &mut [f64]) {
+        let sum = self.strip_sum(k, y, depth, kernel);
+        if sum != 0.0 {
+            for (r, w) in row.iter_mut().zip(self.surface.weights()) {
+                *r += sum * w / self.half;
+            }
+        }
+    }
+
+    /// Integral of a kernel of the offset over the strips, as seen from (`y`, `depth`).
+    pub fn strip_sum(&self, k: f64, y: f64, depth: f64, kernel: impl Fn(f64) -> f64) -> f64 {
+        let mut sum = 0.0;
+        for &(s, w) in &self.strips {
+            for u in [y - s, y + s] {
+                if k * u.hypot(depth) < REACH {
+                    sum += w * kernel(u);
+                }
+            }
+        }
+        sum
+    }
+
+    /// The body at wavenumber `k` > 0.
+    pub fn layer(&self, k: f64) -> Layer {
+        let n = self.surface.len();
+        let reach = REACH / k;
+        let mut displacement = DMatrix::zeros(self.contact, n);
+        let mut row = vec![0.0; n];
+        for (i, stencil) in self.compliance_stencils.iter().enumerate() {
+            row.fill(0.0);
+            let kernel = |u: f64| 2.0 * k0(k * u.abs());
+            stencil.add_row(reach, kernel, &mut row);
+            self.add_strips(k, self.surface.nodes()[i], 0.0, kernel, &mut row);
+            displacement.row_mut(i).copy_from_slice(&row);
+        }
+        if self.model != EdgeModel::QuarterSpace {
+            return Layer { compliance: displacement, surface: None, face: None };
+        }
+        let to_face = self.to_face_matrix(k);
+        let from_face = self.from_face_matrix(k, to_face.nrows());
+        let system = DMatrix::identity(n, n) - from_face * &to_face;
+        let contact_columns = DMatrix::identity(n, self.contact);
+        let surface = system.lu().solve(&contact_columns).expect("I - T T is regular for k > 0");
+        Layer {
+            compliance: displacement * &surface,
+            face: Some(-(to_face * &surface)),
+            surface: Some(surface),
+        }
+    }
+
+    /// T_zy: compressive stress yy on the end face per P.
+    fn to_face_matrix(&self, k: f64) -> DMatrix<f64> {
+        let n = self.surface.len();
+        let rows = self.face_len(k);
+        let mut matrix = DMatrix::zeros(rows, n);
+        let mut row = vec![0.0; n];
+        for (i, stencil) in self.to_face[..rows].iter().enumerate() {
+            let z = self.face.nodes()[i];
+            row.fill(0.0);
+            let kernel = |u: f64| -line_load(k, self.nu, u, z).ww;
+            stencil.add_row(REACH / k, kernel, &mut row);
+            self.add_strips(k, self.half, z, kernel, &mut row);
+            matrix.row_mut(i).copy_from_slice(&row);
+        }
+        matrix
+    }
+
+    /// T_yz: compressive stress zz on z = 0 per q on both end faces.
+    fn from_face_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
+        let n = self.surface.len();
+        let mut matrix = DMatrix::zeros(n, columns);
+        let mut row = vec![0.0; columns];
+        for (i, stencils) in self.from_faces.iter().enumerate() {
+            let y = self.surface.nodes()[i];
+            row.fill(0.0);
+            for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
+                if k * depth < REACH {
+                    stencil.add_row(
+                        REACH / k,
+                        |u| -line_load(k, self.nu, u, depth).ww,
+                        &mut row,
+                    );
+                }
+            }
+            matrix.row_mut(i).copy_from_slice(&row);
+        }
+        if self.plate_matters(k) {
+            let axis = &self.face_wavenumbers;
+            let plate = DMatrix::from_fn(n, axis.len(), |i, m| {
+                let y = self.surface.nodes()[i];
+                let weight = axis.weights()[m] / PI;
+                -weight * plate::remainder(self.half, self.nu, k, axis.nodes()[m], y)[2]
+            });
+            matrix += plate * self.cosines.columns(0, columns);
+        }
+        matrix
+    }
+
+    /// Amplitudes of the plate's remainder at (`y`, `z`) under face loads with the given
+    /// [`Body::plate_transform`], in the components of [`plate::remainder`].
+    pub fn plate_stress(&self, k: f64, transform: &[f64], y: f64, z: f64) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        let axis = &self.face_wavenumbers;
+        for ((&l, w), q) in axis.nodes().iter().zip(axis.weights()).zip(transform) {
+            let s = plate::remainder(self.half, self.nu, k, l, y);
+            let (sin, cos) = (l * z).sin_cos();
+            let amplitude = w * q / PI;
+            for (i, (sum, s)) in sum.iter_mut().zip(s).enumerate() {
+                *sum += amplitude * s * if i >= 4 { sin } else { cos };
+            }
+        }
+        sum
+    }
+
+    /// Cosine transform in z of the face load, at the plate's wavenumbers; empty where the
+    /// plate's remainder does not matter.
+    pub fn plate_transform(&self, k: f64, q: &[f64]) -> Vec<f64> {
+        if !self.plate_matters(k) {
+            return Vec::new();
+        }
+        let q = nalgebra::DVector::from_column_slice(q);
+        (self.cosines.columns(0, q.len()) * q).data.into()
+    }
+}

@@ -1,0 +1,304 @@
+use crate::base::{Error, Panels, Result};
+use crate::kernels::strip;
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+
+/// The compliance of both bodies together, one matrix per wavenumber.
+#[derive(Debug, Clone)]
+pub struct Compliance<'a> {
+    /// Wavenumbers > 0, ascending, and the weights of their quadrature over (0, infinity).
+    pub wavenumbers: &'a Panels,
+    /// C(k): displacement at the axis's nodes per pressure at the nodes; it tends to 2 pi / k
+    /// times the identity for large k.
+    pub matrices: Vec<DMatrix<f64>>,
+}
+
+/// Settings of the contact solve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactSettings {
+    /// Modes of the pressure across the contact.
+    pub modes: usize,
+    /// Distance from the line's end within which the half-width is not an unknown of its own.
+    pub end_zone: f64,
+    /// Depth to which the approach refers (units of C).
+    pub reference_depth: f64,
+    /// Largest amplitude of the pressure's edge singularity that counts as none (p0).
+    pub tolerance: f64,
+    /// Iterations after which it gives up.
+    pub max_iterations: usize,
+}
+
+/// Contact pressure of the whole line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSolution {
+    /// Half-width of the contact at each node.
+    pub half_widths: Vec<f64>,
+    /// Coefficients of the modes at each node.
+    pub coefficients: Vec<Vec<f64>>,
+    /// Approach in units of C^2 / (2 R), relative to points at the reference depth.
+    pub approach: f64,
+    /// Iterations done.
+    pub iterations: usize,
+    /// Amplitude of the edge singularity that was left (p0).
+    pub residual: f64,
+    /// |load - prescribed| / prescribed.
+    pub load_error: f64,
+}
+
+/// Distance at which the closed logarithmic kernel of the local, plane part is screened, so that
+/// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
+const SCREEN: f64 = 2.0;
+
+/// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
+const SCREEN_POINTS: usize = 12;
+
+/// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
+///
+/// For half-widths that are held the problem is linear: at every node the modes and the amplitude
+/// b of the singular mode 1/sqrt(1 - t^2) are found by collocation at M + 1 points, with the
+/// approach from the load. A boundary that lies right leaves b = 0. To first order
+/// b / sqrt(1 - t^2) is what moving the boundary of S sqrt(1 - t^2) to a sqrt(1 + 2 b / S) does, so
+/// the update is Newton's and converges quadratically.
+///
+/// # Errors
+/// [`Error::NotConverged`] when the boundary does not settle.
+pub fn solve(
+    compliance: &Compliance,
+    axis: &Panels,
+    settings: &ContactSettings,
+) -> Result<ContactSolution> {
+    let n = axis.len();
+    let length: f64 = axis.weights().iter().sum();
+    let load = 0.5 * PI * length;
+    let layout = Layout::new(axis, settings);
+    let remainders = remainders(compliance, n);
+    let mut half_widths = vec![1.0; n];
+    // Edge slopes S of the end zone relative to the outermost free node's.
+    let mut zone = vec![1.0; n - layout.free];
+    let mut last = f64::INFINITY;
+    for iteration in 1..=settings.max_iterations {
+        let unknowns = linear_solve(compliance, &remainders, axis, &layout, &half_widths, &zone, load)?;
+        let mut worst: f64 = 0.0;
+        let mut next = half_widths.clone();
+        let slopes: Vec<f64> = (0..n)
+            .map(|j| {
+                let own = &unknowns.as_slice()[layout.unknowns(j)][..layout.modes(j)];
+                own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum()
+            })
+            .collect();
+        for j in 0..layout.free {
+            let singular = unknowns[layout.unknowns(j).end - 1];
+            let slope = slopes[j];
+            worst = worst.max(singular.abs());
+            // A step beyond a factor of two would leave the region where the linearisation holds.
+            let grow = if slope > 0.0 { 1.0 + 2.0 * singular / slope } else { 0.25 };
+            next[j] *= grow.clamp(0.25, 4.0).sqrt();
+        }
+        let outermost = next[layout.free - 1];
+        next[layout.free..].fill(outermost);
+        for (ratio, slope) in zone.iter_mut().zip(&slopes[layout.free..]) {
+            *ratio = (slope / slopes[layout.free - 1]).clamp(0.1, 10.0);
+        }
+        if std::env::var("TRACE").is_ok() { eprintln!("it {iteration} worst {worst:.2e} a {:?}", &half_widths[n.saturating_sub(14)..]); }
+        last = worst;
+        if worst <= settings.tolerance {
+            let coefficients: Vec<Vec<f64>> = (0..n)
+                .map(|j| {
+                    let mut own = unknowns.as_slice()[layout.unknowns(j)].to_vec();
+                    own.truncate(layout.modes(j));
+                    own
+                })
+                .collect();
+            let carried: f64 = (0..n)
+                .map(|j| {
+                    let a = half_widths[j];
+                    axis.weights()[j] * strip::cumulative(a, &coefficients[j], a)
+                })
+                .sum();
+            let approach = unknowns[layout.size() - 1]
+                - reference(compliance, &half_widths, &coefficients, settings.reference_depth);
+            return Ok(ContactSolution {
+                half_widths,
+                coefficients,
+                approach,
+                iterations: iteration,
+                residual: worst,
+                load_error: (carried / load - 1.0).abs(),
+            });
+        }
+        half_widths = next;
+    }
+    Err(Error::NotConverged {
+        iterations: settings.max_iterations,
+        residual: last,
+        remedy: "ask for a coarser [accuracy] tolerance, or check the case's lengths".into(),
+    })
+}
+
+/// Which unknowns each node has: the free nodes, which come first, have all modes and the singular
+/// one; the nodes of the end zone have two modes and the half-width of the outermost free node.
+/// There wavenumbers beyond the largest one decide the shape, and a half-width of their own would
+/// be noise.
+struct Layout {
+    nodes: usize,
+    free: usize,
+    all_modes: usize,
+    end_modes: usize,
+}
+
+impl Layout {
+    fn new(axis: &Panels, settings: &ContactSettings) -> Self {
+        let end = axis.breaks()[axis.panel_count()] - settings.end_zone;
+        let free = axis.nodes().iter().filter(|&&y| y <= end).count().max(1);
+        Self {
+            nodes: axis.len(),
+            free,
+            all_modes: settings.modes,
+            end_modes: settings.modes.min(2),
+        }
+    }
+
+    fn modes(&self, j: usize) -> usize {
+        if j < self.free { self.all_modes } else { self.end_modes }
+    }
+
+    /// Unknowns and collocation equations of node `j`: its modes, then the singular one.
+    fn unknowns(&self, j: usize) -> std::ops::Range<usize> {
+        let block = self.all_modes + 1;
+        let start = j.min(self.free) * block + j.saturating_sub(self.free) * self.end_modes;
+        let len = if j < self.free { block } else { self.end_modes };
+        start..start + len
+    }
+
+    /// Unknowns in all, the approach included.
+    fn size(&self) -> usize {
+        self.unknowns(self.nodes).start + 1
+    }
+}
+
+/// C(k) less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the diagonal.
+fn remainders(compliance: &Compliance, n: usize) -> Vec<DMatrix<f64>> {
+    let ks = compliance.wavenumbers.nodes();
+    ks.iter()
+        .zip(&compliance.matrices)
+        .map(|(&k, c)| c - DMatrix::identity(n, n) * (-2.0 * PI / k * (-k * SCREEN).exp_m1()))
+        .collect()
+}
+
+/// The linear problem for held half-widths: the unknowns of each node, then the approach.
+fn linear_solve(
+    compliance: &Compliance,
+    remainders: &[DMatrix<f64>],
+    axis: &Panels,
+    layout: &Layout,
+    half_widths: &[f64],
+    zone: &[f64],
+    load: f64,
+) -> Result<DVector<f64>> {
+    let n = axis.len();
+    // The end zone moves with the outermost free node: so does its singular mode.
+    let shared = layout.unknowns(layout.free - 1).end - 1;
+    let size = layout.size();
+    // Collocation points: the positive zeros of T_2n for n equations.
+    let points = |j: usize| {
+        let count = layout.unknowns(j).len();
+        (0..count).map(move |l| (PI * (2 * l + 1) as f64 / (4 * count) as f64).cos())
+    };
+    let mut matrix = DMatrix::zeros(size, size);
+    let mut right = DVector::zeros(size);
+    let mut transform = vec![0.0; size - 1];
+    let mut singular_transform = vec![0.0; n];
+    let mut cosine = vec![0.0; size - 1];
+    let wavenumbers = compliance.wavenumbers;
+    for ((&k, w), remainder) in
+        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(remainders)
+    {
+        for (j, &a) in half_widths.iter().enumerate() {
+            let modes = layout.modes(j);
+            let own = &mut transform[layout.unknowns(j)];
+            singular_transform[j] = strip::transforms(a, k, &mut own[..modes]);
+            for (c, t) in cosine[layout.unknowns(j)].iter_mut().zip(points(j)) {
+                *c = (k * a * t).cos();
+            }
+        }
+        for j in 0..n {
+            let own = layout.unknowns(j);
+            let modes = own.start..own.start + layout.modes(j);
+            let ratio = if j < layout.free { 1.0 } else { zone[j - layout.free] };
+            let singular = (shared.min(own.end - 1), ratio * singular_transform[j]);
+            for (m, transform) in modes.map(|m| (m, transform[m])).chain([singular]) {
+                let factor = w / (PI * PI) * transform;
+                let column = &mut matrix.column_mut(m);
+                let column = column.as_mut_slice();
+                for (i, r) in remainder.column(j).iter().enumerate() {
+                    let r = factor * r;
+                    let rows = layout.unknowns(i);
+                    for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
+                        *entry += r * c;
+                    }
+                }
+            }
+        }
+    }
+    let mut local = vec![0.0; layout.all_modes];
+    for (i, &a) in half_widths.iter().enumerate() {
+        let modes = layout.modes(i);
+        let own = layout.unknowns(i);
+        let ratio = if i < layout.free { 1.0 } else { zone[i - layout.free] };
+        let singular_column = shared.min(own.end - 1);
+        for (row, t) in own.clone().zip(points(i)) {
+            let singular = strip::logarithmic(a, t, &mut local[..modes]);
+            for (m, value) in local[..modes].iter().enumerate() {
+                matrix[(row, own.start + m)] += 2.0 / PI * value;
+            }
+            matrix[(row, singular_column)] += 2.0 / PI * ratio * singular;
+            // (1/2) int ln((x - x')^2 + d^2) p(x') dx' by Gauss-Chebyshev of the first kind, with
+            // sqrt(1-t^2) U_2m = sin((2m+1) f).
+            for q in 0..SCREEN_POINTS {
+                let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
+                let offset = a * (t - angle.cos());
+                let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
+                let weight = 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64;
+                for m in 0..modes {
+                    let mode = ((2 * m + 1) as f64 * angle).sin() * angle.sin();
+                    matrix[(row, own.start + m)] += weight * mode;
+                }
+                matrix[(row, singular_column)] += weight * ratio;
+            }
+            matrix[(row, size - 1)] = -1.0;
+            right[row] = -(a * t).powi(2);
+        }
+        matrix[(size - 1, own.start)] = axis.weights()[i] * a * 0.5 * PI;
+        matrix[(size - 1, singular_column)] += axis.weights()[i] * a * PI * ratio;
+    }
+    right[size - 1] = load;
+    matrix.lu().solve(&right).ok_or_else(|| Error::NotConverged {
+        iterations: 0,
+        residual: f64::INFINITY,
+        remedy: "the collocation matrix is singular: check the case's lengths".into(),
+    })
+}
+
+/// Mean displacement along the line that the load causes at the reference depth: with the kernel
+/// e^(-k depth) the displacement's logarithmic growth with the extent of the bodies drops out.
+fn reference(
+    compliance: &Compliance,
+    half_widths: &[f64],
+    coefficients: &[Vec<f64>],
+    depth: f64,
+) -> f64 {
+    let n = half_widths.len();
+    let mut sum = 0.0;
+    let wavenumbers = compliance.wavenumbers;
+    for ((&k, w), c) in
+        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(&compliance.matrices)
+    {
+        let p = DVector::from_fn(n, |j, _| {
+            let mut modes = vec![0.0; coefficients[j].len()];
+            strip::transforms(half_widths[j], k, &mut modes);
+            modes.iter().zip(&coefficients[j]).map(|(t, c)| t * c).sum()
+        });
+        sum += w / (PI * PI) * (-k * depth).exp() * (c * p).mean();
+    }
+    sum
+}

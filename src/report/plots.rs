@@ -1,0 +1,479 @@
+//! The plots of a study, from the files of its run.
+
+use super::chart::{Bar, Figure, Note, Panel, Rule, Series, look};
+use super::study_files::StudyFiles;
+use super::table::{self, Table};
+use crate::base::Result;
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// Names of the quantities with their symbols, for axes.
+pub const SYMBOLS: [(&str, &str); 9] = [
+    ("pressure", "p / p0"),
+    ("sigma_xx", "σxx / p0"),
+    ("sigma_yy", "σyy / p0"),
+    ("sigma_zz", "σzz / p0"),
+    ("sigma_xy", "σxy / p0"),
+    ("sigma_xz", "σxz / p0"),
+    ("sigma_yz", "σyz / p0"),
+    ("von_mises", "von Mises / p0"),
+    ("tau_max", "τmax / p0"),
+];
+
+fn symbol(quantity: &str) -> &'static str {
+    SYMBOLS.iter().find(|(name, _)| *name == quantity).map_or("", |(_, s)| s)
+}
+
+/// One case's rows of a table, with its scales.
+struct Case<'a> {
+    files: &'a StudyFiles,
+    name: &'a str,
+    c_m: f64,
+    p0_pa: f64,
+    half_length: f64,
+}
+
+/// Rows of a table whose columns have the given texts.
+fn rows<'a>(table: &'a Table, filter: &[(&str, &str)]) -> Vec<&'a Vec<String>> {
+    let columns: Vec<(usize, &str)> =
+        filter.iter().filter_map(|(name, v)| Some((table.column(name)?, *v))).collect();
+    table.rows.iter().filter(|r| columns.iter().all(|(c, v)| r[*c] == *v)).collect()
+}
+
+impl<'a> Case<'a> {
+    fn all(files: &'a StudyFiles) -> Vec<Case<'a>> {
+        let mut cases: Vec<Case> = Vec::new();
+        for row in &files.study.rows {
+            let name = files.study.text(row, "case");
+            let number = |column| files.study.number(row, column);
+            let (c, p0, s) = (number("c_m"), number("p0_pa"), number("S_l"));
+            if let (Some(c_m), Some(p0_pa), Some(half_length)) = (c, p0, s) {
+                if !cases.iter().any(|c| c.name == name) {
+                    cases.push(Case { files, name, c_m, p0_pa, half_length });
+                }
+            }
+        }
+        cases
+    }
+
+    /// Sources, FEM first: its points are drawn under the methods' curves.
+    fn sources(&self) -> Vec<&'a str> {
+        let study = &self.files.study;
+        let of_case = rows(study, &[("case", self.name)]);
+        let mut all: Vec<&str> = of_case.iter().map(|r| study.text(r, "source")).collect();
+        all.sort_by_key(|source| *source != "fem");
+        all
+    }
+
+    /// Points (coordinate, value) of a table in units of C and p0, and the error of FEM at them.
+    fn points(&self, table: &Table, filter: &[(&str, &str)], x: &str, y: &str) -> Vec<(f64, f64)> {
+        let mut filter = filter.to_vec();
+        filter.push(("case", self.name));
+        let (Some(x), Some(y)) = (table.column(x), table.column(y)) else { return Vec::new() };
+        rows(table, &filter)
+            .iter()
+            .filter_map(|r| {
+                let (x, y) = (r[x].parse::<f64>().ok()?, r[y].parse::<f64>().ok()?);
+                Some((x / self.c_m, y / self.p0_pa))
+            })
+            .collect()
+    }
+
+    /// One series for each source: `value` over `coordinate`.
+    fn series(
+        &self,
+        table: &Table,
+        filter: &[(&str, &str)],
+        axis: &str,
+        value: &str,
+    ) -> Vec<Series> {
+        let coordinate = format!("{axis}_m");
+        self.sources()
+            .into_iter()
+            .filter_map(|source| {
+                let mut with_source = filter.to_vec();
+                with_source.push(("source", source));
+                let points = self.points(table, &with_source, &coordinate, value);
+                let fem = source == "fem";
+                let band = fem.then(|| self.band(filter, &coordinate, value, points.len()));
+                (!points.is_empty()).then(|| Series {
+                    name: if fem { "FEM".to_string() } else { source.to_string() },
+                    look: look(source),
+                    points,
+                    line: !fem,
+                    markers: true,
+                    band: band.flatten(),
+                })
+            })
+            .collect()
+    }
+
+    /// FEM's own error at the points of a curve, where every one of them has it.
+    fn band(&self, filter: &[(&str, &str)], axis: &str, value: &str, n: usize) -> Option<Vec<f64>> {
+        let filter: Vec<(&str, &str)> = filter
+            .iter()
+            .map(|&(name, v)| if name == "line" { ("curve", v) } else { (name, v) })
+            .chain(filter.iter().any(|f| f.0 == "line").then_some(("body", "contact")))
+            .collect();
+        let value = if value == "p_pa" { "pressure_pa" } else { value };
+        let band: Vec<f64> =
+            self.points(&self.files.fem_error, &filter, axis, value).iter().map(|p| p.1).collect();
+        (band.len() == n && n > 0).then_some(band)
+    }
+
+    fn pressure(&self) -> Figure {
+        let table = &self.files.pressure;
+        let panel = |title: &str, line: &str, axis: &str| Panel {
+            title: title.to_string(),
+            x_label: format!("{axis} / C"),
+            y_label: symbol("pressure").to_string(),
+            series: self.series(table, &[("line", line)], axis, "p_pa"),
+            ..Default::default()
+        };
+        let end = Panel {
+            x_range: Some(((self.half_length - 2.0).max(0.0), self.half_length)),
+            ..panel("last 2 C before the roller's end", "along-y", "y")
+        };
+        Figure {
+            title: format!("{}: contact pressure", self.name),
+            columns: 3,
+            panels: vec![
+                panel("along the contact line, x = 0", "along-y", "y"),
+                end,
+                panel("across the contact, y = 0", "along-x", "x"),
+            ],
+            panel_size: (380, 330),
+        }
+    }
+
+    /// A panel of one quantity on one curve of a body.
+    fn stress(&self, title: &str, body: &str, curve: &str, axis: &str, quantity: &str) -> Panel {
+        let filter = [("body", body), ("curve", curve)];
+        Panel {
+            title: title.to_string(),
+            x_label: format!("{axis} / C"),
+            y_label: symbol(quantity).to_string(),
+            series: self.series(&self.files.curves, &filter, axis, &format!("{quantity}_pa")),
+            ..Default::default()
+        }
+    }
+
+    fn surface(&self, body: &str) -> Figure {
+        let quantities = ["sigma_xx", "sigma_yy", "sigma_zz", "von_mises", "tau_max"].into_iter();
+        Figure {
+            title: format!("{}: surface of the {body} along y (x = 0, z = 0)", self.name),
+            columns: 3,
+            panels: quantities
+                .map(|q| self.stress(symbol(q), body, "surface-along-y", "y", q))
+                .collect(),
+            panel_size: (380, 300),
+        }
+    }
+
+    fn depth(&self, body: &str, quantities: &[&str], what: &str) -> Figure {
+        let places = [
+            ("depth-centre", "y = 0"),
+            ("depth-0.9", "y = 0.9 L1/2"),
+            ("depth-end", "y = L1/2 (end)"),
+        ];
+        let panels = quantities.iter().flat_map(|q| {
+            places.iter().map(move |(curve, place)| {
+                self.stress(&format!("{}, {place}", symbol(q)), body, curve, "z", q)
+            })
+        });
+        Figure {
+            title: format!("{}: {what} over depth in the {body} (x = 0)", self.name),
+            columns: 3,
+            panels: panels.collect(),
+            panel_size: (380, 290),
+        }
+    }
+}
+
+/// Rows of `effects.csv` of one method and response.
+struct EffectRows<'a> {
+    table: &'a Table,
+    rows: Vec<&'a Vec<String>>,
+    unit: &'a str,
+}
+
+impl<'a> EffectRows<'a> {
+    fn of(files: &'a StudyFiles, method: &str, response: &str) -> Option<Self> {
+        let table = &files.effects;
+        let rows = rows(table, &[("method", method), ("response", response)]);
+        let unit = table.text(rows.first()?, "unit");
+        Some(Self { table, rows, unit })
+    }
+
+    fn number(&self, row: &[String], name: &str) -> f64 {
+        self.table.number(row, name).unwrap_or(f64::NAN)
+    }
+
+    fn limits(&self) -> [(f64, String); 2] {
+        let get = |name| self.rows.first().map_or(f64::NAN, |r| self.number(r, name));
+        [(get("me"), "ME".to_string()), (get("sme"), "SME".to_string())]
+    }
+
+    fn half_normal(&self, response: &str) -> Panel {
+        let points: Vec<(f64, f64)> = self
+            .rows
+            .iter()
+            .map(|r| (self.number(r, "half_normal_quantile"), self.number(r, "effect").abs()))
+            .collect();
+        let notes = self
+            .rows
+            .iter()
+            .zip(&points)
+            .map(|(r, &at)| Note { at, text: self.table.text(r, "term").replace(" x ", " × ") });
+        Panel {
+            title: response.replace('_', " "),
+            x_label: "half-normal quantile".to_string(),
+            y_label: format!("|effect| ({})", self.unit),
+            series: vec![Series {
+                name: String::new(),
+                look: look("quarter-space"),
+                points: points.clone(),
+                line: false,
+                markers: true,
+                band: None,
+            }],
+            notes: notes.collect(),
+            rules: self
+                .limits()
+                .into_iter()
+                .filter(|(v, _)| v.is_finite())
+                .map(|(v, name)| Rule::Horizontal(v, name))
+                .chain([Rule::Horizontal(0.0, String::new())])
+                .collect(),
+            x_range: Some((0.0, 2.1)),
+            ..Default::default()
+        }
+    }
+
+    fn pareto(&self, response: &str) -> Panel {
+        let mut bars: Vec<Bar> = self
+            .rows
+            .iter()
+            .map(|r| Bar {
+                name: self.table.text(r, "term").replace(" x ", " × "),
+                value: self.number(r, "effect").abs(),
+                strong: self.table.text(r, "verdict") == "active",
+            })
+            .collect();
+        bars.sort_by(|a, b| b.value.total_cmp(&a.value));
+        Panel {
+            title: response.replace('_', " "),
+            x_label: format!("|effect| ({}); full: beyond SME", self.unit),
+            bars,
+            rules: self
+                .limits()
+                .into_iter()
+                .filter(|(v, _)| v.is_finite())
+                .map(|(v, name)| Rule::Vertical(v, name))
+                .collect(),
+            ..Default::default()
+        }
+    }
+}
+
+/// Interaction plots of a response: its mean over the runs at each pair of levels of two factors.
+fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> {
+    let names: Vec<&str> = files.summary["factors"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .filter_map(|f| f["name"].as_str())
+        .collect();
+    let unit = EffectRows::of(files, method, response).map_or("", |e| e.unit);
+    let study = &files.study;
+    let corners = rows(study, &[("source", method), ("role", "corner")]);
+    let mut panels = Vec::new();
+    for (i, a) in names.iter().enumerate() {
+        for b in &names[i + 1..] {
+            // Texts as keys: the levels of one factor are printed alike in every row.
+            let mut means: BTreeMap<(String, String), (f64, usize)> = BTreeMap::new();
+            for row in &corners {
+                let Some(v) = study.number(row, response) else { continue };
+                let key = (study.text(row, b).to_string(), study.text(row, a).to_string());
+                let slot = means.entry(key).or_default();
+                (slot.0, slot.1) = (slot.0 + v, slot.1 + 1);
+            }
+            let sorted = |texts: Vec<&String>| {
+                let mut all: Vec<String> = texts.into_iter().cloned().collect();
+                all.sort_by(|x, y| {
+                    let number = |t: &String| t.parse::<f64>().unwrap_or(0.0);
+                    number(x).total_cmp(&number(y))
+                });
+                all.dedup();
+                all
+            };
+            let (lines, levels) = (
+                sorted(means.keys().map(|k| &k.0).collect()),
+                sorted(means.keys().map(|k| &k.1).collect()),
+            );
+            let looks = [look("guilbault"), look("quarter-space")];
+            let series: Vec<Series> = lines
+                .iter()
+                .zip(looks)
+                .map(|(line, look)| Series {
+                    name: String::new(),
+                    look,
+                    points: levels
+                        .iter()
+                        .enumerate()
+                        .filter_map(|(x, level)| {
+                            let (sum, n) = means.get(&(line.clone(), level.clone()))?;
+                            Some((x as f64, sum / *n as f64))
+                        })
+                        .collect(),
+                    line: true,
+                    markers: true,
+                    band: None,
+                })
+                .collect();
+            let notes = series
+                .iter()
+                .zip(&lines)
+                .filter_map(|(s, line)| {
+                    let at = *s.points.last()?;
+                    Some(Note { at, text: format!("{b} = {line}") })
+                })
+                .collect();
+            panels.push(Panel {
+                title: format!("{}: {a} × {b}", response.replace('_', " ")),
+                x_label: a.to_string(),
+                y_label: format!("mean of the runs ({unit})"),
+                series,
+                notes,
+                x_names: levels,
+                ..Default::default()
+            });
+        }
+    }
+    panels
+}
+
+/// Run time against error: each method and FEM in each case.
+fn time_and_error(files: &StudyFiles) -> Figure {
+    let study = &files.study;
+    let mut sources: Vec<&str> = Vec::new();
+    for row in &study.rows {
+        let source = study.text(row, "source");
+        if !sources.contains(&source) {
+            sources.push(source);
+        }
+    }
+    let panel = |title: &str, error: &str, own: &str| Panel {
+        title: title.to_string(),
+        x_label: "seconds a case (one thread; FEM: on its own machine)".to_string(),
+        y_label: "error / p0".to_string(),
+        series: sources
+            .iter()
+            .map(|source| Series {
+                name: if *source == "fem" { "FEM (its own error)" } else { source }.to_string(),
+                look: look(source),
+                points: rows(study, &[("source", source)])
+                    .iter()
+                    .filter_map(|r| {
+                        let e = study.number(r, if *source == "fem" { own } else { error })?;
+                        Some((study.number(r, "seconds")?, e))
+                    })
+                    .collect(),
+                line: false,
+                markers: true,
+                band: None,
+            })
+            .collect(),
+        log: (true, true),
+        ..Default::default()
+    };
+    Figure {
+        title: "Run time against error, one point a case".to_string(),
+        columns: 2,
+        panels: vec![
+            panel("largest error of the pressure", "pressure_max", "fem_error_pressure"),
+            panel("largest error of the six stresses", "stress_max", "fem_error_stress"),
+        ],
+        panel_size: (470, 370),
+    }
+}
+
+/// A response's half-normal plot, Pareto chart and interactions are shown for these.
+pub const SHOWN_RESPONSES: [&str; 3] = ["pressure_rms", "stress_rms", "von_mises_max"];
+
+/// All plots of a run: names without the folder, and SVG.
+pub fn all(files: &StudyFiles) -> Vec<(String, String)> {
+    let mut plots: Vec<(String, Figure)> = Vec::new();
+    for case in Case::all(files) {
+        let name = case.name;
+        plots.push((format!("{name}-pressure"), case.pressure()));
+        for body in ["block", "roller"] {
+            plots.push((format!("{name}-surface-{body}"), case.surface(body)));
+            let normal = ["sigma_xx", "sigma_yy", "sigma_zz", "sigma_yz"];
+            plots.push((format!("{name}-depth-{body}"), case.depth(body, &normal, "stresses")));
+            let invariants = case.depth(body, &["von_mises", "tau_max"], "equivalent stresses");
+            plots.push((format!("{name}-invariants-{body}"), invariants));
+        }
+    }
+    plots.extend(effects_plots(files));
+    plots.push(("time-error".to_string(), time_and_error(files)));
+    plots.into_iter().map(|(name, figure)| (format!("{name}.svg"), figure.to_svg())).collect()
+}
+
+/// Half-normal, Pareto and interaction plots of each method.
+fn effects_plots(files: &StudyFiles) -> Vec<(String, Figure)> {
+    let mut plots = Vec::new();
+    let methods = files.summary["methods"].as_array().cloned().unwrap_or_default();
+    for method in methods.iter().filter_map(|m| m.as_str()) {
+        let of: Vec<(&str, EffectRows)> = SHOWN_RESPONSES
+            .iter()
+            .filter_map(|r| Some((*r, EffectRows::of(files, method, r)?)))
+            .collect();
+        if of.is_empty() {
+            continue;
+        }
+        let figure = |title: String, panels: Vec<Panel>, size| Figure {
+            title,
+            columns: 3,
+            panels,
+            panel_size: size,
+        };
+        plots.push((
+            format!("half-normal-{method}"),
+            figure(
+                format!("{method}: half-normal plot of the effects on the errors"),
+                of.iter().map(|(r, e)| e.half_normal(r)).collect(),
+                (380, 320),
+            ),
+        ));
+        plots.push((
+            format!("pareto-{method}"),
+            figure(
+                format!("{method}: effects on the errors by size"),
+                of.iter().map(|(r, e)| e.pareto(r)).collect(),
+                (380, 300),
+            ),
+        ));
+        plots.push((
+            format!("interactions-{method}"),
+            figure(
+                format!("{method}: interactions"),
+                of.iter().flat_map(|(r, _)| interactions(files, method, r)).collect(),
+                (380, 270),
+            ),
+        ));
+    }
+    plots
+}
+
+/// Writes all plots into `folder`, which is made.
+///
+/// # Errors
+/// [`crate::base::Error::Io`] when a file cannot be written.
+pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
+    table::prepare_folder(folder)?;
+    for (name, svg) in all(files) {
+        table::write(&folder.join(name), svg)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,627 @@
+//! The files of a study's run: tidy tables and `summary.json`. Plots, page and Markdown are made
+//! from these files alone, so whatever they show can be looked up here.
+
+use super::table::{self, Table, number, optional};
+use crate::base::{Error, Result};
+use crate::study::effects::{self, Effects};
+use crate::study::errors::CriticalPoint;
+use crate::study::factorial::half_normal_quantile;
+use crate::study::gate::Outcome;
+use crate::study::{CaseRun, MethodRun, Quantity, Role, Sampled, StudyRun};
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// A finished run, as its files hold it.
+#[derive(Debug, Clone)]
+pub struct StudyFiles {
+    /// `summary.json`.
+    pub summary: Value,
+    /// `study.csv`: one row for each case and source.
+    pub study: Table,
+    /// `curves.csv`: stresses of every source on the standard curves (Pa).
+    pub curves: Table,
+    /// `pressure.csv`: contact pressure of every source on the two lines (Pa).
+    pub pressure: Table,
+    /// `fem_error.csv`: FEM's own error at the points where the record has it (Pa).
+    pub fem_error: Table,
+    /// `errors.csv`: one row for each case, method, body, curve and quantity (C, p0).
+    pub errors: Table,
+    /// `effects.csv`: one row for each method, response and effect.
+    pub effects: Table,
+}
+
+/// What the files state about a run beyond its numbers.
+pub struct Context<'a> {
+    /// When it ran (UTC, ISO 8601).
+    pub date: &'a str,
+    /// The command.
+    pub command: &'a str,
+    /// `recorded` or `live`.
+    pub fem: &'a str,
+    /// The processor of this machine, and how many threads it runs.
+    pub machine: (&'a str, usize),
+    /// Wall-clock seconds of the whole run.
+    pub seconds: f64,
+    /// Outcomes of the gates.
+    pub gates: &'a [Outcome],
+}
+
+/// Columns of a point and its stresses, as everywhere in the program.
+const STRESS_COLUMNS: [&str; 13] = [
+    "body",
+    "curve",
+    "x_m",
+    "y_m",
+    "z_m",
+    "sigma_xx_pa",
+    "sigma_yy_pa",
+    "sigma_zz_pa",
+    "sigma_xy_pa",
+    "sigma_xz_pa",
+    "sigma_yz_pa",
+    "von_mises_pa",
+    "tau_max_pa",
+];
+
+/// Number that was computed from factors, without the last digits' rounding.
+fn tidy(value: f64) -> String {
+    format!("{value:.9e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
+}
+
+impl StudyFiles {
+    /// The tables of a run.
+    pub fn of(run: &StudyRun, context: &Context) -> Self {
+        let (effects, not_analysed) = effects::analyse(run);
+        Self {
+            summary: summary(run, context, &effects, not_analysed),
+            study: study_table(run),
+            curves: curves_table(run),
+            pressure: pressure_table(run),
+            fem_error: fem_error_table(run),
+            errors: errors_table(run),
+            effects: effects_table(run, &effects),
+        }
+    }
+
+    /// Names of the tables' files, in the order of [`StudyFiles::tables`].
+    pub const TABLES: [&'static str; 6] =
+        ["study.csv", "curves.csv", "pressure.csv", "fem_error.csv", "errors.csv", "effects.csv"];
+
+    /// The tables, in the order of [`StudyFiles::TABLES`].
+    pub fn tables(&self) -> [&Table; 6] {
+        [&self.study, &self.curves, &self.pressure, &self.fem_error, &self.errors, &self.effects]
+    }
+
+    /// Writes all files into a folder that is there; `summary.json`, which says that the run is
+    /// complete, last.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when a file cannot be written.
+    pub fn write(&self, folder: &Path) -> Result<()> {
+        for (name, table) in Self::TABLES.iter().zip(self.tables()) {
+            table::write(&folder.join(name), table.to_csv())?;
+        }
+        table::write(&folder.join("summary.json"), pretty(&self.summary))
+    }
+
+    /// Reads a finished run.
+    ///
+    /// # Errors
+    /// [`Error::Io`] or [`Error::File`] when a file is missing or is not what
+    /// [`StudyFiles::write`] writes.
+    pub fn read(folder: &Path) -> Result<Self> {
+        let path = folder.join("summary.json");
+        let text = table::read(&path)?;
+        let refuse = |line: Option<usize>, message: String| Error::File {
+            path: path.clone(),
+            line,
+            message,
+            remedy: "give the folder that `edgeline study --out` wrote".to_string(),
+        };
+        let summary: Value =
+            serde_json::from_str(&text).map_err(|e| refuse(Some(e.line()), e.to_string()))?;
+        if summary.get("study").is_none() {
+            return Err(refuse(None, "is not the summary of a study".to_string()));
+        }
+        let [study, curves, pressure, fem_error, errors, effects] =
+            Self::TABLES.map(|name| Table::read(&folder.join(name)));
+        Ok(Self {
+            summary,
+            study: study?,
+            curves: curves?,
+            pressure: pressure?,
+            fem_error: fem_error?,
+            errors: errors?,
+            effects: effects?,
+        })
+    }
+}
+
+/// JSON with indents and a newline at its end.
+pub fn pretty(value: &Value) -> String {
+    let mut text = serde_json::to_string_pretty(value).expect("a JSON value is always written");
+    text.push('\n');
+    text
+}
+
+fn role_name(role: &Role) -> &'static str {
+    match role {
+        Role::Corner(_) => "corner",
+        Role::Centre => "centre",
+        Role::Extra => "extra",
+    }
+}
+
+/// One row for each case and source. Errors are in p0, depths in C; `seconds` is the median of
+/// warm repeats on one thread for a method, the wall-clock time of all stages for FEM, and
+/// `timed_on` says on which machine that was.
+fn study_table(run: &StudyRun) -> Table {
+    let mut header: Vec<String> = [
+        "case",
+        "source",
+        "role",
+        "W",
+        "S_l",
+        "L_r",
+        "c_m",
+        "p0_pa",
+        "load_n",
+        "err",
+        "converged",
+        "iterations",
+        "load_error_rel",
+        "approach_m",
+        "p_centre_pa",
+        "p_max_pa",
+        "p_max_x_m",
+        "p_max_y_m",
+        "critical_body",
+        "critical_von_mises_pa",
+        "critical_x_m",
+        "critical_y_m",
+        "critical_z_m",
+    ]
+    .map(String::from)
+    .to_vec();
+    let responses = effects::responses();
+    header.extend(responses.iter().map(|r| r.name.clone()));
+    // The first range is that of pressure_max and pressure_rms.
+    for c in run.range.pressure_c.iter().skip(1) {
+        header.extend([format!("pressure_max_{c}C"), format!("pressure_rms_{c}C")]);
+    }
+    header.extend(
+        [
+            "fem_error_pressure",
+            "fem_error_stress",
+            "seconds",
+            "seconds_spread",
+            "seconds_cold",
+            "seconds_all_threads",
+            "threads",
+            "seconds_setup",
+            "seconds_contact",
+            "seconds_stress",
+            "timed_on",
+            "unknowns",
+        ]
+        .map(String::from),
+    );
+    let mut table = Table::new(header);
+    for case in &run.cases {
+        for m in &case.methods {
+            let row = method_row(&table, run, case, m, &responses);
+            table.push(row);
+        }
+        let row = fem_row(&table, case);
+        table.push(row);
+    }
+    table
+}
+
+/// Cells by name; a column that is not set is empty.
+struct Row<'a> {
+    table: &'a Table,
+    cells: Vec<String>,
+}
+
+impl<'a> Row<'a> {
+    fn new(table: &'a Table, case: &CaseRun, source: &str) -> Self {
+        let mut row = Self { table, cells: vec![String::new(); table.header.len()] };
+        let (factors, hertz) = (case.case.factors(), case.case.hertz());
+        row.set("case", &case.case.name);
+        row.set("source", source);
+        row.set("role", role_name(&case.role));
+        row.set("W", &tidy(factors.load));
+        row.set("S_l", &tidy(factors.slenderness));
+        row.set("L_r", &tidy(factors.length_ratio));
+        row.set("c_m", &number(hertz.c_m));
+        row.set("p0_pa", &number(hertz.p0_pa));
+        row.set("load_n", &number(case.case.force_n));
+        row
+    }
+
+    fn set(&mut self, name: &str, value: &str) {
+        let column = self.table.column(name).expect("a column of the header");
+        self.cells[column] = value.to_string();
+    }
+
+    fn set_critical(&mut self, critical: Option<CriticalPoint>, c_m: f64, p0_pa: f64) {
+        let Some(critical) = critical else { return };
+        self.set("critical_body", critical.body.name());
+        self.set("critical_von_mises_pa", &number(critical.value * p0_pa));
+        for (name, v) in ["critical_x_m", "critical_y_m", "critical_z_m"].iter().zip(critical.at) {
+            self.set(name, &number(v * c_m));
+        }
+    }
+}
+
+fn method_row(
+    table: &Table,
+    run: &StudyRun,
+    case: &CaseRun,
+    m: &MethodRun,
+    responses: &[effects::Response],
+) -> Vec<String> {
+    let mut row = Row::new(table, case, m.method.name());
+    let answer = match &m.answer {
+        Ok(answer) => answer,
+        Err(message) => {
+            row.set("err", message);
+            return row.cells;
+        }
+    };
+    let s = &answer.solution;
+    row.set("converged", if s.converged { "true" } else { "false" });
+    row.set("iterations", &s.iterations.to_string());
+    row.set("load_error_rel", &number(s.load_error_rel));
+    row.set("approach_m", &number(s.approach_m));
+    row.set("p_centre_pa", &number(s.p_centre_pa));
+    row.set("p_max_pa", &number(s.p_max_pa));
+    row.set("p_max_x_m", &number(s.p_max_at_m[0]));
+    row.set("p_max_y_m", &number(s.p_max_at_m[1]));
+    row.set_critical(answer.critical, s.hertz.c_m, s.hertz.p0_pa);
+    for response in responses {
+        let value = effects::response_value(&response.name, case, m);
+        row.set(&response.name, &optional(value));
+    }
+    if let Some(summary) = &answer.summary {
+        for (c, [max, rms]) in run.range.pressure_c.iter().zip(&summary.pressure).skip(1) {
+            row.set(&format!("pressure_max_{c}C"), &number(*max));
+            row.set(&format!("pressure_rms_{c}C"), &number(*rms));
+        }
+        row.set("fem_error_pressure", &optional(summary.ref_error_pressure));
+        row.set("fem_error_stress", &optional(summary.ref_error_stress));
+    }
+    row.set("seconds_setup", &number(s.seconds.setup));
+    row.set("seconds_contact", &number(s.seconds.contact));
+    row.set("seconds_stress", &number(s.seconds.stress));
+    if let Some(one) = m.timing.first() {
+        row.set("seconds", &number(one.median_s));
+        row.set("seconds_spread", &number(one.spread_s()));
+        row.set("seconds_cold", &number(one.cold_s));
+    }
+    if let Some(all) = m.timing.get(1) {
+        row.set("seconds_all_threads", &number(all.median_s));
+        row.set("threads", &all.threads.to_string());
+    }
+    row.set("timed_on", "this machine");
+    row.cells
+}
+
+fn fem_row(table: &Table, case: &CaseRun) -> Vec<String> {
+    let mut row = Row::new(table, case, "fem");
+    let reference = match &case.reference {
+        Ok(reference) => reference,
+        Err(message) => {
+            row.set("err", message);
+            return row.cells;
+        }
+    };
+    let hertz = case.case.hertz();
+    if let Some(line) = reference.sampled.line("along-y") {
+        row.set("p_centre_pa", &optional(line.p.first().map(|p| p * hertz.p0_pa)));
+    }
+    row.set_critical(case.reference_critical, hertz.c_m, hertz.p0_pa);
+    // What a record says of its own error is in the rows of the methods, over the same points.
+    let own = case.methods.iter().find_map(|m| m.answer.as_ref().ok()?.summary.as_ref());
+    if let Some(own) = own {
+        row.set("fem_error_pressure", &optional(own.ref_error_pressure));
+        row.set("fem_error_stress", &optional(own.ref_error_stress));
+    }
+    let p = &reference.provenance;
+    row.set("seconds", &optional(p.seconds));
+    row.set("seconds_spread", &optional(p.seconds_spread));
+    let machine = if p.live { "this machine" } else { p.machine.as_deref().unwrap_or("") };
+    row.set("timed_on", machine);
+    row.set("unknowns", &p.unknowns.map(|u| u.to_string()).unwrap_or_default());
+    row.cells
+}
+
+/// Every source of every case with its answer.
+fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, &Sampled)> {
+    run.cases.iter().flat_map(|case| {
+        let methods = case.methods.iter().filter_map(|m| m.answer.as_ref().ok());
+        let fem = case.reference.as_ref().ok().map(|r| &r.sampled);
+        methods.map(|a| &a.sampled).chain(fem).map(move |s| (case, s))
+    })
+}
+
+fn curves_table(run: &StudyRun) -> Table {
+    let mut table = Table::new(["case", "source"].into_iter().chain(STRESS_COLUMNS));
+    for (case, sampled) in sources(run) {
+        let hertz = case.case.hertz();
+        for curve in &sampled.curves {
+            for (at, stress) in curve.at.iter().zip(&curve.stress) {
+                let mut row = vec![
+                    case.case.name.clone(),
+                    sampled.source.clone(),
+                    curve.body.name().to_string(),
+                    curve.name.clone(),
+                ];
+                row.extend(at.map(|v| number(v * hertz.c_m)));
+                row.extend(Quantity::ALL.iter().map(|q| number(q.of(stress) * hertz.p0_pa)));
+                table.push(row);
+            }
+        }
+    }
+    table
+}
+
+fn pressure_table(run: &StudyRun) -> Table {
+    let mut table = Table::new(["case", "source", "line", "x_m", "y_m", "p_pa"]);
+    for (case, sampled) in sources(run) {
+        let hertz = case.case.hertz();
+        for line in &sampled.lines {
+            for (at, p) in line.at.iter().zip(&line.p) {
+                table.push(vec![
+                    case.case.name.clone(),
+                    sampled.source.clone(),
+                    line.name.clone(),
+                    number(at[0] * hertz.c_m),
+                    number(at[1] * hertz.c_m),
+                    number(p * hertz.p0_pa),
+                ]);
+            }
+        }
+    }
+    table
+}
+
+/// FEM's own error, one row for each point and quantity that has one; `body` is `contact` for the
+/// pressure.
+fn fem_error_table(run: &StudyRun) -> Table {
+    let mut header = vec!["case", "body", "curve", "x_m", "y_m", "z_m", "pressure_pa"];
+    header.extend(&STRESS_COLUMNS[5..]);
+    let mut table = Table::new(header);
+    for case in &run.cases {
+        let Ok(reference) = &case.reference else { continue };
+        let hertz = case.case.hertz();
+        let place = |body: &str, curve: &str, at: [f64; 3]| {
+            let mut row = vec![case.case.name.clone(), body.to_string(), curve.to_string()];
+            row.extend(at.map(|v| number(v * hertz.c_m)));
+            row
+        };
+        for line in &reference.sampled.lines {
+            for (at, e) in line.at.iter().zip(line.own_error.iter().flatten()) {
+                let mut row = place("contact", &line.name, [at[0], at[1], 0.0]);
+                row.push(number(e * hertz.p0_pa));
+                row.extend(vec![String::new(); Quantity::ALL.len()]);
+                table.push(row);
+            }
+        }
+        for curve in &reference.sampled.curves {
+            for (at, e) in curve.at.iter().zip(curve.own_error.iter().flatten()) {
+                let mut row = place(curve.body.name(), &curve.name, *at);
+                row.push(String::new());
+                row.extend(e.map(|v| number(v * hertz.p0_pa)));
+                table.push(row);
+            }
+        }
+    }
+    table
+}
+
+fn errors_table(run: &StudyRun) -> Table {
+    let mut table = Table::new([
+        "case",
+        "method",
+        "body",
+        "curve",
+        "quantity",
+        "excluded_c",
+        "points",
+        "max",
+        "max_x_c",
+        "max_y_c",
+        "max_z_c",
+        "rms",
+        "l1",
+        "peak",
+        "peak_x_c",
+        "peak_y_c",
+        "peak_z_c",
+        "peak_fem",
+        "peak_fem_x_c",
+        "peak_fem_y_c",
+        "peak_fem_z_c",
+        "fem_error_max",
+        "fem_error_rms",
+    ]);
+    let answers = run.cases.iter().flat_map(|c| &c.methods).filter_map(|m| m.answer.as_ref().ok());
+    for e in answers.flat_map(|a| &a.errors) {
+        let mut row: Vec<String> =
+            [&e.case, &e.method, &e.body, &e.curve, &e.quantity].map(String::clone).to_vec();
+        row.extend([tidy(e.excluded_c), e.points.to_string(), number(e.max)]);
+        row.extend(e.max_at.map(number));
+        row.extend([number(e.rms), number(e.l1), number(e.peak)]);
+        row.extend(e.peak_at.map(number));
+        row.push(number(e.peak_ref));
+        row.extend(e.peak_ref_at.map(number));
+        row.extend([optional(e.ref_error_max), optional(e.ref_error_rms)]);
+        table.push(row);
+    }
+    table
+}
+
+fn effects_table(run: &StudyRun, all: &[Effects]) -> Table {
+    let mut table = Table::new([
+        "method",
+        "response",
+        "unit",
+        "term",
+        "effect",
+        "half_normal_quantile",
+        "pse",
+        "me",
+        "sme",
+        "verdict",
+        "mean",
+        "centre",
+        "curvature",
+    ]);
+    for e in all {
+        let a = &e.analysis;
+        let mut order: Vec<usize> = (0..a.effects.len()).collect();
+        order.sort_by(|&i, &j| a.effects[i].value.abs().total_cmp(&a.effects[j].value.abs()));
+        for (i, effect) in a.effects.iter().enumerate() {
+            let rank = order.iter().position(|&j| j == i).expect("every effect is ranked");
+            table.push(vec![
+                e.method.name().to_string(),
+                e.response.name.clone(),
+                e.response.unit.to_string(),
+                effects::term(&run.factors, &effect.factors),
+                number(effect.value),
+                number(half_normal_quantile(rank, a.effects.len())),
+                optional(a.lenth.map(|l| l.pse)),
+                optional(a.lenth.map(|l| l.me)),
+                optional(a.lenth.map(|l| l.sme)),
+                a.lenth.map_or("", |l| l.verdict(effect.value).name()).to_string(),
+                number(a.mean),
+                optional(e.centre),
+                optional(a.curvature),
+            ]);
+        }
+    }
+    table
+}
+
+fn summary(
+    run: &StudyRun,
+    context: &Context,
+    all_effects: &[Effects],
+    mut not_done: Vec<String>,
+) -> Value {
+    let cases: Vec<Value> = run
+        .cases
+        .iter()
+        .map(|c| {
+            let (factors, hertz) = (c.case.factors(), c.case.hertz());
+            let fem = match &c.reference {
+                Ok(r) => json!(r.provenance),
+                Err(reason) => json!({ "missing": reason }),
+            };
+            let methods: serde_json::Map<String, Value> = c
+                .methods
+                .iter()
+                .map(|m| {
+                    let value = match &m.answer {
+                        Ok(a) => json!({ "timing": m.timing, "details": a.solution.details }),
+                        Err(e) => json!({ "err": e }),
+                    };
+                    (m.method.name().to_string(), value)
+                })
+                .collect();
+            json!({
+                "name": c.case.name,
+                "role": role_name(&c.role),
+                "W": factors.load,
+                "S_l": factors.slenderness,
+                "L_r": factors.length_ratio,
+                "hertz": { "c_m": hertz.c_m, "p0_pa": hertz.p0_pa },
+                "load_n": c.case.force_n,
+                "tolerance": c.case.tolerance,
+                "roller": c.case.roller,
+                "block": c.case.block,
+                "fem": fem,
+                "methods": methods,
+            })
+        })
+        .collect();
+    for c in &run.cases {
+        if let Err(reason) = &c.reference {
+            not_done.push(format!("{} is not compared with FEM: {reason}", c.case.name));
+        }
+        for m in &c.methods {
+            if let Err(message) = &m.answer {
+                not_done.push(format!("{} by {} failed: {message}", c.case.name, m.method));
+            }
+        }
+    }
+    let told: Vec<Value> = all_effects
+        .iter()
+        .filter(|e| effects::TOLD.contains(&e.response.name.as_str()))
+        .map(|e| {
+            json!({
+                "method": e.method,
+                "response": e.response.name,
+                "text": effects::words(run, e),
+            })
+        })
+        .collect();
+    json!({
+        "program": { "name": env!("CARGO_PKG_NAME"), "version": env!("CARGO_PKG_VERSION") },
+        "study": run.study,
+        "date": context.date,
+        "command": context.command,
+        "fem": context.fem,
+        "machine": { "processor": context.machine.0, "threads": context.machine.1 },
+        "seconds": context.seconds,
+        "methods": run.methods,
+        "range": run.range,
+        "factors": run.factors,
+        "contact_problems_solved": run.solves,
+        "method_summary": method_summary(run, context),
+        "gates_hold": !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
+        "gates": context.gates,
+        "effects_in_words": told,
+        "not_done": not_done,
+        "cases": cases,
+    })
+}
+
+/// The worst of each method over all cases, for the head of a report.
+fn method_summary(run: &StudyRun, context: &Context) -> Vec<Value> {
+    let worst = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
+    run.methods
+        .iter()
+        .map(|&method| {
+            let runs = || {
+                run.cases.iter().flat_map(move |c| {
+                    c.methods.iter().filter(move |m| m.method == method).map(move |m| (c, m))
+                })
+            };
+            let response = |name: &str| {
+                worst(&mut runs().filter_map(|(c, m)| effects::response_value(name, c, m)))
+            };
+            let gates: Vec<&Outcome> =
+                context.gates.iter().filter(|g| g.method == method.name()).collect();
+            json!({
+                "method": method,
+                "cases": runs().count(),
+                "failed": runs().filter(|(_, m)| m.answer.is_err()).count(),
+                "compared": runs().filter(|(_, m)| {
+                    m.answer.as_ref().is_ok_and(|a| a.summary.is_some())
+                }).count(),
+                "pressure_rms": response("pressure_rms"),
+                "pressure_max": response("pressure_max"),
+                "stress_rms": response("stress_rms"),
+                "stress_max": response("stress_max"),
+                "von_mises_rms": response("von_mises_rms"),
+                "von_mises_max": response("von_mises_max"),
+                "seconds": worst(&mut runs().filter_map(|(_, m)| Some(m.timing.first()?.median_s))),
+                "gates": gates.len(),
+                "gates_passed": gates.iter().filter(|g| g.passed).count(),
+            })
+        })
+        .collect()
+}

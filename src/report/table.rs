@@ -1,0 +1,165 @@
+//! Tables of text as they stand in CSV files, and writing files whole or not at all.
+
+use crate::base::{Error, Result};
+use std::path::Path;
+
+/// A CSV table: a header and rows of the same width.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// The rows, each as wide as the header.
+    pub rows: Vec<Vec<String>>,
+}
+
+impl Table {
+    /// An empty table with these columns.
+    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
+        Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new() }
+    }
+
+    /// Adds a row, which must be as wide as the header.
+    pub fn push(&mut self, row: Vec<String>) {
+        assert_eq!(row.len(), self.header.len(), "a row of another width than the header");
+        self.rows.push(row);
+    }
+
+    /// Where the column called `name` stands.
+    pub fn column(&self, name: &str) -> Option<usize> {
+        self.header.iter().position(|h| h == name)
+    }
+
+    /// The cell of a row in the column called `name`; empty where there is no such column.
+    pub fn text<'a>(&self, row: &'a [String], name: &str) -> &'a str {
+        self.column(name).map_or("", |c| row[c].as_str())
+    }
+
+    /// The cell as a number; `None` where it is empty or is none.
+    pub fn number(&self, row: &[String], name: &str) -> Option<f64> {
+        self.text(row, name).parse().ok()
+    }
+
+    /// The table as CSV.
+    pub fn to_csv(&self) -> String {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        // Writing to memory fails only for rows of unequal width, which `push` refuses.
+        for row in std::iter::once(&self.header).chain(&self.rows) {
+            writer.write_record(row).expect("rows of equal width");
+        }
+        let bytes = writer.into_inner().expect("a vector takes all bytes");
+        String::from_utf8(bytes).expect("text in, text out")
+    }
+
+    /// Reads a CSV file.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when it cannot be read, [`Error::File`] with the line when it is no table.
+    pub fn read(path: &Path) -> Result<Self> {
+        let text = read(path)?;
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        let refuse = |e: csv::Error| Error::File {
+            path: path.to_path_buf(),
+            line: e.position().map(|p| p.line() as usize),
+            message: e.to_string(),
+            remedy: "run the study again".to_string(),
+        };
+        let header = reader.headers().map_err(refuse)?.iter().map(String::from).collect();
+        let rows = reader
+            .records()
+            .map(|r| r.map(|r| r.iter().map(String::from).collect()))
+            .collect::<std::result::Result<_, _>>()
+            .map_err(refuse)?;
+        Ok(Self { header, rows })
+    }
+}
+
+/// A number for a CSV cell, seven significant digits; empty for what is not a finite number.
+pub fn number(value: f64) -> String {
+    if value == 0.0 {
+        "0".to_string()
+    } else if value.is_finite() {
+        format!("{value:.6e}")
+    } else {
+        String::new()
+    }
+}
+
+/// As [`number`], empty for `None`.
+pub fn optional(value: Option<f64>) -> String {
+    value.map(number).unwrap_or_default()
+}
+
+/// Reads a text file.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read.
+pub fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|source| Error::Io {
+        action: "read",
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// Makes the folder and checks that files can be written there, so that a bad path fails before
+/// the long run and not after it.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot.
+pub fn prepare_folder(folder: &Path) -> Result<()> {
+    let io = |action: &'static str| {
+        move |source| Error::Io { action, path: folder.to_path_buf(), source }
+    };
+    std::fs::create_dir_all(folder).map_err(io("create"))?;
+    let probe = folder.join(".edgeline-probe");
+    std::fs::write(&probe, []).map_err(io("write into"))?;
+    std::fs::remove_file(&probe).map_err(io("write into"))
+}
+
+/// Writes a file under another name and moves it into place, so that a reader never sees half of
+/// it.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot.
+pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
+    let io = |source| Error::Io { action: "write", path: path.to_path_buf(), source };
+    let mut name = path.file_name().unwrap_or_default().to_os_string();
+    name.push(format!(".{}.part", std::process::id()));
+    let part = path.with_file_name(name);
+    std::fs::write(&part, content).and_then(|()| std::fs::rename(&part, path)).map_err(|e| {
+        // The first error is the one to report; what is left of the attempt is in the way.
+        let _ = std::fs::remove_file(&part);
+        io(e)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn tables_survive_the_file() {
+        let mut table = Table::new(["a", "b"]);
+        table.push(vec!["with, comma and \"quote\"".to_string(), number(-0.001_234_567_89)]);
+        table.push(vec![String::new(), optional(Some(f64::NAN))]);
+        let folder = tempfile::tempdir().unwrap();
+        prepare_folder(&folder.path().join("deep/er")).unwrap();
+        let path = folder.path().join("deep/er/t.csv");
+        write(&path, table.to_csv()).unwrap();
+        let back = Table::read(&path).unwrap();
+        assert_eq!(back, table);
+        assert_eq!(back.number(&back.rows[0], "b"), Some(-0.001_234_568));
+        assert_eq!((back.number(&back.rows[1], "b"), back.text(&back.rows[0], "c")), (None, ""));
+        let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
+        assert_eq!(left.len(), 1);
+    }
+
+    #[test]
+    fn a_folder_that_is_a_file_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("taken");
+        write(&path, "x").unwrap();
+        assert!(prepare_folder(&path).is_err());
+        assert!(prepare_folder(&path.join("below")).is_err());
+    }
+}

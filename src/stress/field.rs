@@ -1,0 +1,328 @@
+//! Stresses of one body from the pressures that act on it.
+//!
+//! Conventions: lengths in units of C, stresses in units of p0. A stress is
+//! (1/pi) int_0^inf A(k) cos(k x) dk, or sin(k x) for the shears xy and xz, with the amplitude A
+//! the sum over the loads of the kernels of [`crate::kernels::wave`]. What an endless contact of
+//! the local pressure would do is subtracted from A and added in closed form
+//! ([`crate::kernels::strip`]): what is left fades with k, so the pressure's steep edge across the
+//! contact costs no wavenumbers.
+
+use crate::base::{Panels, StressTensor};
+use crate::body::stencil::Stencil;
+use crate::body::{Body, EdgeModel, Layer};
+use crate::contact::ContactSolution;
+use crate::kernels::strip;
+use crate::kernels::wave::{REACH, line_load, surface_spread, surface_spread_shear};
+use nalgebra::DVector;
+use std::f64::consts::PI;
+
+/// The contact pressure as a function of place.
+#[derive(Debug, Clone)]
+pub struct Pressure {
+    axis: Panels,
+    half_widths: Vec<f64>,
+    coefficients: Vec<Vec<f64>>,
+}
+
+impl Pressure {
+    /// The pressure of a contact solution on its axis.
+    pub fn new(axis: &Panels, solution: &ContactSolution) -> Self {
+        let most = solution.coefficients.iter().map(Vec::len).max().unwrap_or(0);
+        let pad = |c: &Vec<f64>| {
+            let mut c = c.clone();
+            c.resize(most, 0.0);
+            c
+        };
+        Self {
+            axis: axis.clone(),
+            half_widths: solution.half_widths.clone(),
+            coefficients: solution.coefficients.iter().map(pad).collect(),
+        }
+    }
+
+    /// Axis along the contact.
+    pub fn axis(&self) -> &Panels {
+        &self.axis
+    }
+
+    /// Half-width and modes at node `j`.
+    pub fn at_node(&self, j: usize) -> (f64, &[f64]) {
+        (self.half_widths[j], &self.coefficients[j])
+    }
+
+    /// Half-width and modes at `y`; none outside the contact.
+    pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
+        let y = y.abs();
+        if y > self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12) {
+            return None;
+        }
+        let (first, weights) = self.axis.interpolation(y);
+        let mut coefficients = vec![0.0; self.coefficients[0].len()];
+        let mut half_width = 0.0;
+        for (j, w) in (first..).zip(&weights) {
+            half_width += w * self.half_widths[j];
+            for (sum, c) in coefficients.iter_mut().zip(&self.coefficients[j]) {
+                *sum += w * c;
+            }
+        }
+        Some((half_width, coefficients))
+    }
+
+    /// Pressure at (`x`, `y`) (p0).
+    pub fn at(&self, x: f64, y: f64) -> f64 {
+        self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
+    }
+
+    /// Fourier transform over x at every node.
+    pub fn transform(&self, k: f64) -> DVector<f64> {
+        let mut modes = vec![0.0; self.coefficients[0].len()];
+        DVector::from_fn(self.axis.len(), |j, _| {
+            strip::transforms(self.half_widths[j], k, &mut modes);
+            modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum()
+        })
+    }
+}
+
+/// The loads of one wavenumber on the superposed bodies.
+#[derive(Debug, Clone)]
+struct Loads {
+    k: f64,
+    /// Quadrature weight of the wavenumber, over pi.
+    weight: f64,
+    /// P at the surface's nodes.
+    surface: Vec<f64>,
+    /// Mean of P over the body's length.
+    mean: f64,
+    /// q at the face's first nodes.
+    face: Vec<f64>,
+    /// Transform of q for the plate.
+    plate: Vec<f64>,
+}
+
+/// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
+const ON_SURFACE: f64 = 1e-9;
+
+/// The stress field of one body.
+#[derive(Debug, Clone)]
+pub struct Field<'a> {
+    body: &'a Body,
+    pressure: &'a Pressure,
+    loads: Vec<Loads>,
+    /// Stress transition factor of [`EdgeModel::Guilbault`].
+    gamma: f64,
+}
+
+/// Amplitudes of xx, yy, zz, xy, xz, yz.
+type Amplitudes = [f64; 6];
+
+impl<'a> Field<'a> {
+    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`.
+    pub fn new(
+        body: &'a Body,
+        wavenumbers: &Panels,
+        layers: &[Layer],
+        pressure: &'a Pressure,
+        gamma: f64,
+    ) -> Self {
+        let loads = wavenumbers
+            .nodes()
+            .iter()
+            .zip(wavenumbers.weights())
+            .zip(layers)
+            .map(|((&k, w), layer)| {
+                let p = pressure.transform(k);
+                let times = |m: &nalgebra::DMatrix<f64>| -> Vec<f64> { (m * &p).data.into() };
+                let surface =
+                    layer.surface.as_ref().map_or_else(|| p.as_slice().to_vec(), times);
+                let face = layer.face.as_ref().map(times).unwrap_or_default();
+                let total: f64 =
+                    surface.iter().zip(body.surface.weights()).map(|(p, w)| p * w).sum();
+                Loads {
+                    k,
+                    weight: w / PI,
+                    mean: total / body.half,
+                    plate: body.plate_transform(k, &face),
+                    surface,
+                    face,
+                }
+            })
+            .collect();
+        Self { body, pressure, loads, gamma }
+    }
+
+    /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
+    ///
+    /// On a loaded surface or a free end face the known tractions are used.
+    pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        let (side, y) = (y.signum(), y.abs());
+        let z = if z < ON_SURFACE { 0.0 } else { z };
+        let body = self.body;
+        let surface = Stencil::new(&body.surface, &body.stress_images, y, z);
+        let complete = body.model == EdgeModel::QuarterSpace;
+        let faces = complete.then(|| body.face_stencils(y, z));
+        let on_face = body.half - y < ON_SURFACE * body.half;
+        let correction = (body.model == EdgeModel::Guilbault).then(|| {
+            let end = Stencil::new(&body.surface, &body.stress_images, body.half, z);
+            (end, [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma)))
+        });
+        let local = self.pressure.modes(y);
+        let mut local_modes = vec![0.0; local.as_ref().map_or(0, |l| l.1.len())];
+        let mut sums = vec![[0.0; 6]; xs.len()];
+        for loads in &self.loads {
+            let k = loads.k;
+            let mut amplitudes = self.from_surface(&surface, loads, y, z);
+            if let Some((end, shares)) = &correction {
+                let on_end = self.from_surface(end, loads, body.half, z)[1];
+                amplitudes[1] -= on_end * (shares[0] + shares[1]);
+            }
+            if let Some(stencils) = &faces {
+                let depths = [if on_face { 0.0 } else { body.half - y }, body.half + y];
+                for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
+                    self.add_face(stencil, loads, z, depth, into, &mut amplitudes);
+                }
+                let plate = body.plate_stress(k, &loads.plate, y, z);
+                amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
+            }
+            if let Some((a, c)) = &local {
+                strip::transforms(*a, k, &mut local_modes);
+                let p: f64 = local_modes.iter().zip(c).map(|(t, c)| t * c).sum();
+                let e = (-k * z).exp() * p;
+                amplitudes[0] += (1.0 - k * z) * e;
+                amplitudes[1] += 2.0 * body.nu * e;
+                amplitudes[2] += (1.0 + k * z) * e;
+                amplitudes[4] += k * z * e;
+            }
+            for (sum, x) in sums.iter_mut().zip(xs) {
+                let (sin, cos) = (k * x).sin_cos();
+                for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
+                    *s += loads.weight * a * if i == 3 || i == 4 { sin } else { cos };
+                }
+            }
+        }
+        sums.iter()
+            .zip(xs)
+            .map(|(sum, &x)| {
+                let mut s = StressTensor::from_components(*sum);
+                if let Some((a, c)) = &local {
+                    let [xx, zz, xz] = strip::stress(*a, c, x, z);
+                    s.xx += xx;
+                    s.zz += zz;
+                    s.xz += xz;
+                    s.yy += body.nu * (xx + zz);
+                }
+                if z == 0.0 {
+                    s.zz = -self.pressure.at(x, y);
+                    (s.xz, s.yz) = (0.0, 0.0);
+                }
+                if on_face && complete {
+                    (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
+                }
+                if side < 0.0 {
+                    (s.xy, s.yz) = (-s.xy, -s.yz);
+                }
+                s
+            })
+            .collect()
+    }
+
+    /// Amplitudes from P on z = 0 and its images, at (`y`, `z`).
+    fn from_surface(&self, stencil: &Stencil, loads: &Loads, y: f64, z: f64) -> Amplitudes {
+        let (body, k) = (self.body, loads.k);
+        let mut sum = [0.0; 6];
+        let reach = REACH / k;
+        if z == 0.0 {
+            let free = 1.0 - 2.0 * body.nu;
+            let (mut spread, mut shear) = (0.0, 0.0);
+            stencil.for_each(reach, &loads.surface, |u, p| {
+                spread += p * surface_spread(k, u);
+                shear += p * surface_spread_shear(k, u);
+            });
+            spread += loads.mean * body.strip_sum(k, y, z, |u| surface_spread(k, u));
+            shear += loads.mean * body.strip_sum(k, y, z, |u| surface_spread_shear(k, u));
+            let p = value_at(&body.surface, &loads.surface, y);
+            return surface_limit(body.nu, free, p, spread, shear);
+        }
+        let mut add = |u: f64, p: f64| {
+            let s = line_load(k, body.nu, u, z);
+            let all = [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
+            sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += p * s);
+        };
+        stencil.for_each(reach, &loads.surface, &mut add);
+        for &(s, w) in &body.strips {
+            for u in [y - s, y + s] {
+                if k * u.abs() < REACH {
+                    add(u, w * loads.mean);
+                }
+            }
+        }
+        sum
+    }
+
+    /// Adds the amplitudes from q on one end face, `depth` from it; `into` is the sign of the
+    /// direction into the body along y.
+    fn add_face(
+        &self,
+        stencil: &Stencil,
+        loads: &Loads,
+        z: f64,
+        depth: f64,
+        into: f64,
+        sum: &mut Amplitudes,
+    ) {
+        let (body, k) = (self.body, loads.k);
+        if k * depth > REACH {
+            return;
+        }
+        let reach = REACH / k;
+        if depth == 0.0 {
+            let (mut spread, mut shear) = (0.0, 0.0);
+            stencil.for_each(reach, &loads.face, |u, q| {
+                spread += q * surface_spread(k, u);
+                shear += q * surface_spread_shear(k, u);
+            });
+            let q = value_at(&body.face, &loads.face, z);
+            let [xx, ww, dd, xw, ..] =
+                surface_limit(body.nu, 1.0 - 2.0 * body.nu, q, spread, shear);
+            sum[0] += xx;
+            sum[1] += dd;
+            sum[2] += ww;
+            sum[4] += xw;
+            return;
+        }
+        stencil.for_each(reach, &loads.face, |u, q| {
+            let s = line_load(k, body.nu, u, depth);
+            let all = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
+            sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += q * s);
+        });
+    }
+}
+
+/// Value at `at` of a function given at the first nodes of `axis`; zero beyond them.
+fn value_at(axis: &Panels, values: &[f64], at: f64) -> f64 {
+    let end = axis.breaks()[axis.panel_count()];
+    let (first, weights) = axis.interpolation(at);
+    if at > end * (1.0 + 1e-12) || first >= values.len() {
+        return 0.0;
+    }
+    weights.iter().zip(&values[first..]).map(|(w, v)| w * v).sum()
+}
+
+/// Amplitudes on a loaded surface itself, see [`surface_spread`]: xx, along the surface, along the
+/// depth, xw, and no shear on the surface.
+fn surface_limit(nu: f64, free: f64, p: f64, spread: f64, shear: f64) -> Amplitudes {
+    [-2.0 * nu * p - free * spread, -p + free * spread, -p, free * shear, 0.0, 0.0]
+}
+
+/// Share of an end face's normal stress that the reconstructed correction of
+/// [`EdgeModel::Guilbault`] takes away at the distance `s` from the face and the depth `z`.
+///
+/// A pressure on the face with the wavelength of the depth fades into the body like
+/// (1 + kappa s) e^(-kappa s); with kappa = 1 / (gamma z) the share is one on the face and none far
+/// from it, and the far field is reached over a distance that grows with the depth.
+pub fn transition(s: f64, z: f64, gamma: f64) -> f64 {
+    if s <= 0.0 {
+        return 1.0;
+    }
+    let t = s / (gamma * z);
+    if t > 700.0 || z == 0.0 { 0.0 } else { (1.0 + t) * (-t).exp() }
+}

@@ -1,0 +1,457 @@
+//! Error measures of a source against a reference on the same points.
+//!
+//! Lengths are in units of C, stresses and pressures in units of p0. The roller's edge is the line
+//! y = S_l, z = 0 (any x): stress and pressure are singular or very steep there, so points nearer
+//! to it than a stated distance are left out. The distance is measured in space; on `depth-end` it
+//! is the depth.
+//!
+//! With e the difference at the retained points and w trapezoid weights of the curve's arc length
+//! (segments with a point left out do not count), the measures are
+//! max |e|, RMS = sqrt(sum w e^2 / sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1
+//! properties of the curve, not of how densely it was sampled.
+
+use super::sampled::{Quantity, Sampled};
+use crate::base::{Error, Result};
+use crate::stress::BodyKind;
+use serde::{Deserialize, Serialize};
+
+/// Over which range errors are taken.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Range {
+    /// Distance from the roller's edge within which stresses are left out (C), >= 0.
+    pub stress_c: f64,
+    /// The same for pressure (C); one set of rows for each, the first is the one of the summaries.
+    pub pressure_c: Vec<f64>,
+}
+
+impl Default for Range {
+    fn default() -> Self {
+        Self { stress_c: 0.1, pressure_c: vec![0.1, 0.2] }
+    }
+}
+
+/// Errors of one quantity on one curve.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ErrorRow {
+    /// The case.
+    pub case: String,
+    /// The source whose error this is.
+    pub method: String,
+    /// `block`, `roller`, or `contact` for pressure.
+    pub body: String,
+    /// The curve or pressure line.
+    pub curve: String,
+    /// A [`Quantity`]'s name or `pressure`.
+    pub quantity: String,
+    /// Distance from the roller's edge left out (C).
+    pub excluded_c: f64,
+    /// Points that were compared.
+    pub points: usize,
+    /// Largest difference (p0).
+    pub max: f64,
+    /// Where it is (C).
+    pub max_at: [f64; 3],
+    /// Root mean square (p0).
+    pub rms: f64,
+    /// Mean of the absolute difference (p0).
+    pub l1: f64,
+    /// The source's value of largest magnitude, with its sign (p0).
+    pub peak: f64,
+    /// Where it is (C).
+    pub peak_at: [f64; 3],
+    /// The reference's value of largest magnitude, with its sign (p0).
+    pub peak_ref: f64,
+    /// Where it is (C).
+    pub peak_ref_at: [f64; 3],
+    /// Largest own error of the reference over the same points (p0), where it states one.
+    pub ref_error_max: Option<f64>,
+    /// RMS of the reference's own error over the same points (p0), where it states one.
+    pub ref_error_rms: Option<f64>,
+}
+
+/// Measures of a difference over a range.
+struct Measures {
+    points: usize,
+    max: f64,
+    max_index: usize,
+    rms: f64,
+    l1: f64,
+}
+
+/// Distance of a point from the roller's edge (C).
+fn edge_distance(at: [f64; 3], half_length: f64) -> f64 {
+    (at[1] - half_length).hypot(at[2])
+}
+
+/// Trapezoid weights of the arc length between kept points (C); a segment counts when both its
+/// ends are kept.
+fn weights(at: &[[f64; 3]], kept: &[bool]) -> Vec<f64> {
+    let mut w = vec![0.0; at.len()];
+    for i in 1..at.len() {
+        if kept[i - 1] && kept[i] {
+            let length = (0..3).map(|k| (at[i][k] - at[i - 1][k]).powi(2)).sum::<f64>().sqrt();
+            w[i - 1] += 0.5 * length;
+            w[i] += 0.5 * length;
+        }
+    }
+    w
+}
+
+/// Measures of `difference`; `None` when no segment of the curve is kept.
+fn measure(at: &[[f64; 3]], difference: &[f64], kept: &[bool]) -> Option<Measures> {
+    let w = weights(at, kept);
+    let total: f64 = w.iter().sum();
+    if total <= 0.0 {
+        return None;
+    }
+    let (mut max, mut max_index, mut square, mut absolute) = (-1.0, 0, 0.0, 0.0);
+    for i in (0..at.len()).filter(|&i| kept[i]) {
+        let e = difference[i].abs();
+        // A NaN must show as one, not lose every comparison.
+        if e > max || e.is_nan() {
+            (max, max_index) = (e, i);
+        }
+        square += w[i] * e * e;
+        absolute += w[i] * e;
+    }
+    Some(Measures {
+        points: kept.iter().filter(|&&k| k).count(),
+        max,
+        max_index,
+        rms: (square / total).sqrt(),
+        l1: absolute / total,
+    })
+}
+
+/// Index of the kept value of largest magnitude.
+fn peak(values: &[f64], kept: &[bool]) -> usize {
+    (0..values.len())
+        .filter(|&i| kept[i])
+        .max_by(|&a, &b| values[a].abs().total_cmp(&values[b].abs()))
+        .unwrap_or(0)
+}
+
+/// For each point of the reference the index of the same point in `at`.
+///
+/// # Errors
+/// [`Error::Value`] naming the point when `at` does not hold it.
+fn matching(reference: &[[f64; 3]], at: &[[f64; 3]], what: &str) -> Result<Vec<usize>> {
+    let near = |a: &[f64; 3], b: &[f64; 3]| {
+        (0..3).all(|k| (a[k] - b[k]).abs() <= 1e-6 * a[k].abs().max(1.0))
+    };
+    reference
+        .iter()
+        .enumerate()
+        .map(|(i, point)| {
+            // Both sides usually hold the same list, so the same index is tried first.
+            if at.get(i).is_some_and(|p| near(point, p)) {
+                return Ok(i);
+            }
+            at.iter().position(|p| near(point, p)).ok_or_else(|| Error::Value {
+                key: what.to_string(),
+                value: format!("point {i} at ({}, {}, {}) C", point[0], point[1], point[2]),
+                reason: "the reference holds this point and the solution does not".to_string(),
+                remedy: "record the reference again for this version's standard curves".to_string(),
+            })
+        })
+        .collect()
+}
+
+/// One comparison: what it is called, and the numbers of both sides on the reference's points.
+struct Pair<'a> {
+    body: &'a str,
+    curve: &'a str,
+    quantity: &'a str,
+    excluded_c: f64,
+    at: &'a [[f64; 3]],
+    value: &'a [f64],
+    reference: &'a [f64],
+    own_error: Option<Vec<f64>>,
+}
+
+impl Pair<'_> {
+    fn row(&self, case: &str, method: &str, half_length: f64) -> Option<ErrorRow> {
+        let kept: Vec<bool> = self
+            .at
+            .iter()
+            .map(|&at| edge_distance(at, half_length) >= self.excluded_c * (1.0 - 1e-9))
+            .collect();
+        let difference: Vec<f64> =
+            self.value.iter().zip(self.reference).map(|(a, b)| a - b).collect();
+        let m = measure(self.at, &difference, &kept)?;
+        let own = self.own_error.as_ref().and_then(|e| measure(self.at, e, &kept));
+        let (peak_here, peak_there) = (peak(self.value, &kept), peak(self.reference, &kept));
+        Some(ErrorRow {
+            case: case.to_string(),
+            method: method.to_string(),
+            body: self.body.to_string(),
+            curve: self.curve.to_string(),
+            quantity: self.quantity.to_string(),
+            excluded_c: self.excluded_c,
+            points: m.points,
+            max: m.max,
+            max_at: self.at[m.max_index],
+            rms: m.rms,
+            l1: m.l1,
+            peak: self.value[peak_here],
+            peak_at: self.at[peak_here],
+            peak_ref: self.reference[peak_there],
+            peak_ref_at: self.at[peak_there],
+            ref_error_max: own.as_ref().map(|o| o.max),
+            ref_error_rms: own.as_ref().map(|o| o.rms),
+        })
+    }
+}
+
+/// Errors of `candidate` against `reference`, one row for each quantity of each curve of the
+/// reference and for each pressure line and range.
+///
+/// `half_length` is the roller's half-length S_l (C). Curves of the reference that the candidate
+/// was not asked for are left out; a curve that it has, but on other points, is an error.
+///
+/// # Errors
+/// [`Error::Value`] when a point of the reference is missing from the candidate's curve.
+pub fn compare(
+    case: &str,
+    half_length: f64,
+    reference: &Sampled,
+    candidate: &Sampled,
+    range: &Range,
+) -> Result<Vec<ErrorRow>> {
+    let mut rows = Vec::new();
+    for line in &reference.lines {
+        let Some(other) = candidate.line(&line.name) else { continue };
+        let lift = |at: &[[f64; 2]]| at.iter().map(|a| [a[0], a[1], 0.0]).collect::<Vec<_>>();
+        let (at, theirs) = (lift(&line.at), lift(&other.at));
+        let index = matching(&at, &theirs, &format!("{case}: pressure {}", line.name))?;
+        let value: Vec<f64> = index.iter().map(|&i| other.p[i]).collect();
+        for &excluded_c in &range.pressure_c {
+            let pair = Pair {
+                body: "contact",
+                curve: &line.name,
+                quantity: "pressure",
+                excluded_c,
+                at: &at,
+                value: &value,
+                reference: &line.p,
+                own_error: line.own_error.clone(),
+            };
+            rows.extend(pair.row(case, &candidate.source, half_length));
+        }
+    }
+    for curve in &reference.curves {
+        let Some(other) = candidate.curve(curve.body, &curve.name) else { continue };
+        let what = format!("{case}: {} of the {}", curve.name, curve.body.name());
+        let index = matching(&curve.at, &other.at, &what)?;
+        for (k, quantity) in Quantity::ALL.into_iter().enumerate() {
+            let value: Vec<f64> = index.iter().map(|&i| quantity.of(&other.stress[i])).collect();
+            let truth: Vec<f64> = curve.stress.iter().map(|s| quantity.of(s)).collect();
+            let pair = Pair {
+                body: curve.body.name(),
+                curve: &curve.name,
+                quantity: quantity.name(),
+                excluded_c: range.stress_c,
+                at: &curve.at,
+                value: &value,
+                reference: &truth,
+                own_error: curve.own_error.as_ref().map(|e| e.iter().map(|v| v[k]).collect()),
+            };
+            rows.extend(pair.row(case, &candidate.source, half_length));
+        }
+    }
+    Ok(rows)
+}
+
+/// The most stressed place of the standard curves outside the range left out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CriticalPoint {
+    /// The body.
+    pub body: BodyKind,
+    /// Von Mises stress (p0).
+    pub value: f64,
+    /// Place (C).
+    pub at: [f64; 3],
+}
+
+/// The largest von Mises stress of all curves. On a depth curve the parabola through the largest
+/// point and its neighbours gives value and depth, so that the place is not tied to the sampling.
+/// `None` when no point is left.
+pub fn critical_point(
+    sampled: &Sampled,
+    half_length: f64,
+    excluded_c: f64,
+) -> Option<CriticalPoint> {
+    let mut best: Option<CriticalPoint> = None;
+    for curve in &sampled.curves {
+        let v: Vec<f64> = curve.stress.iter().map(|s| s.von_mises()).collect();
+        let kept = |i: usize| edge_distance(curve.at[i], half_length) >= excluded_c * (1.0 - 1e-9);
+        for i in (0..v.len()).filter(|&i| kept(i)) {
+            if best.is_some_and(|b| v[i] <= b.value) {
+                continue;
+            }
+            let mut point = CriticalPoint { body: curve.body, value: v[i], at: curve.at[i] };
+            let inside = i > 0 && i + 1 < v.len() && kept(i - 1) && kept(i + 1);
+            if curve.name.starts_with("depth") && inside && v[i] >= v[i - 1] && v[i] >= v[i + 1] {
+                let z = [curve.at[i - 1][2], curve.at[i][2], curve.at[i + 1][2]];
+                if let Some((at, value)) = parabola_peak(z, [v[i - 1], v[i], v[i + 1]]) {
+                    (point.at[2], point.value) = (at, value);
+                }
+            }
+            best = Some(point);
+        }
+    }
+    best
+}
+
+/// Vertex (place, value) of the parabola through three points whose middle one is the highest.
+fn parabola_peak(x: [f64; 3], y: [f64; 3]) -> Option<(f64, f64)> {
+    let left = (y[1] - y[0]) / (x[1] - x[0]);
+    let right = (y[2] - y[1]) / (x[2] - x[1]);
+    let bend = (right - left) / (x[2] - x[0]);
+    if bend >= 0.0 || !bend.is_finite() {
+        return None;
+    }
+    // Newton's form y0 + left (x - x0) + bend (x - x0)(x - x1), derivative zero.
+    let at = 0.5 * (x[0] + x[1]) - 0.5 * left / bend;
+    Some((at, y[0] + left * (at - x[0]) + bend * (at - x[0]) * (at - x[1])))
+}
+
+/// Errors of one source in one case, over all curves of both bodies: the columns of `study.csv`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorSummary {
+    /// Largest and RMS error of the pressure over both lines, for each range of
+    /// [`Range::pressure_c`] (p0).
+    pub pressure: Vec<[f64; 2]>,
+    /// Largest and RMS error of each of [`Quantity::ALL`] (p0).
+    pub quantities: Vec<[f64; 2]>,
+    /// Largest and RMS error of the six stress components together (p0).
+    pub stress: [f64; 2],
+    /// The largest own error that the reference states for a pressure (p0).
+    pub ref_error_pressure: Option<f64>,
+    /// The largest own error that the reference states for a stress component (p0).
+    pub ref_error_stress: Option<f64>,
+}
+
+/// Sums up the rows of one source in one case. The RMS over several curves is the root of the mean
+/// of their squares, each curve counting the same. `None` when there is nothing to sum up.
+pub fn summarise(rows: &[ErrorRow], range: &Range) -> Option<ErrorSummary> {
+    let both = |select: &dyn Fn(&ErrorRow) -> bool| -> Option<[f64; 2]> {
+        let chosen: Vec<&ErrorRow> = rows.iter().filter(|r| select(r)).collect();
+        if chosen.is_empty() {
+            return None;
+        }
+        let max = chosen
+            .iter()
+            .map(|r| r.max)
+            .fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a });
+        let mean = chosen.iter().map(|r| r.rms * r.rms).sum::<f64>() / chosen.len() as f64;
+        Some([max, mean.sqrt()])
+    };
+    let is_component = |r: &ErrorRow| r.quantity.starts_with("sigma_");
+    let is_pressure = |r: &ErrorRow| r.quantity == "pressure";
+    let own = |select: &dyn Fn(&ErrorRow) -> bool| {
+        rows.iter().filter(|r| select(r)).filter_map(|r| r.ref_error_max).reduce(f64::max)
+    };
+    Some(ErrorSummary {
+        pressure: range
+            .pressure_c
+            .iter()
+            .map(|&c| both(&|r| is_pressure(r) && r.excluded_c == c))
+            .collect::<Option<_>>()?,
+        quantities: Quantity::ALL
+            .iter()
+            .map(|q| both(&|r| r.quantity == q.name()))
+            .collect::<Option<_>>()?,
+        stress: both(&is_component)?,
+        ref_error_pressure: own(&is_pressure),
+        ref_error_stress: own(&is_component),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::StressTensor;
+    use crate::study::sampled::{SampledCurve, SampledLine};
+    use approx::assert_relative_eq;
+
+    /// A depth curve under the roller's end with sigma_xx = f(z) and a pressure line p = g(y).
+    fn sampled(f: impl Fn(f64) -> f64, g: impl Fn(f64) -> f64) -> Sampled {
+        let z = [0.0, 0.05, 0.1, 0.3, 0.7, 1.5];
+        let y = [0.0, 3.0, 4.5, 4.8, 4.9, 4.95, 5.0];
+        Sampled {
+            source: "test".to_string(),
+            lines: vec![SampledLine {
+                name: "along-y".to_string(),
+                at: y.iter().map(|&y| [0.0, y]).collect(),
+                p: y.iter().map(|&y| g(y)).collect(),
+                own_error: Some(vec![0.003; y.len()]),
+            }],
+            curves: vec![SampledCurve {
+                body: BodyKind::Block,
+                name: "depth-end".to_string(),
+                at: z.iter().map(|&z| [0.0, 5.0, z]).collect(),
+                stress: z
+                    .iter()
+                    .map(|&z| StressTensor { xx: f(z), ..Default::default() })
+                    .collect(),
+                own_error: None,
+            }],
+        }
+    }
+
+    #[test]
+    fn measures_of_known_differences() {
+        let reference = sampled(|_| 0.0, |_| 1.0);
+        // The differences at the end itself are huge and must not count.
+        let other = sampled(
+            |z| if z < 0.09 { 99.0 } else { z },
+            |y| if y > 4.91 { 50.0 } else { 1.0 - 0.01 * y },
+        );
+        let rows = compare("c", 5.0, &reference, &other, &Range::default()).unwrap();
+        let xx = rows.iter().find(|r| r.quantity == "sigma_xx").unwrap();
+        assert_eq!((xx.points, xx.excluded_c), (4, 0.1));
+        assert_eq!((xx.max, xx.max_at), (1.5, [0.0, 5.0, 1.5]));
+        // Trapezoid of z and z^2 over 0.1, 0.3, 0.7, 1.5.
+        assert_relative_eq!(xx.l1, (1.5f64.powi(2) - 0.01) / 2.0 / 1.4, epsilon = 1e-14);
+        let square = 0.2 * 0.05 + 0.4 * 0.29 + 0.8 * 1.37;
+        assert_relative_eq!(xx.rms, (square / 1.4f64).sqrt(), epsilon = 1e-14);
+        assert_eq!(xx.ref_error_max, None);
+        let p: Vec<_> = rows.iter().filter(|r| r.quantity == "pressure").collect();
+        assert_eq!((p.len(), p[0].points, p[1].points), (2, 5, 4));
+        assert_relative_eq!(p[0].max, 0.049, epsilon = 1e-14);
+        assert_eq!(p[1].max_at, [0.0, 4.8, 0.0]);
+        assert_eq!((p[0].peak, p[0].peak_at), (1.0, [0.0; 3]));
+        assert_relative_eq!(p[0].ref_error_rms.unwrap(), 0.003, epsilon = 1e-15);
+    }
+
+    #[test]
+    fn a_gap_in_the_range_is_not_bridged() {
+        let at: Vec<[f64; 3]> = [0.0, 1.0, 1.5, 2.0, 4.0].map(|y| [0.0, y, 0.0]).to_vec();
+        let w = weights(&at, &[true, true, false, true, true]);
+        assert_eq!(w, [0.5, 0.5, 0.0, 1.0, 1.0]);
+    }
+
+    #[test]
+    fn other_points_are_refused_and_nan_is_not_swallowed() {
+        let reference = sampled(|_| 0.0, |_| 1.0);
+        let mut moved = reference.clone();
+        moved.curves[0].at[3][2] = 0.31;
+        let message = compare("c", 5.0, &reference, &moved, &Range::default()).unwrap_err();
+        assert!(message.to_string().contains("depth-end of the block"), "{message}");
+        let broken = sampled(|z| if z == 0.3 { f64::NAN } else { 0.0 }, |_| 1.0);
+        let rows = compare("c", 5.0, &reference, &broken, &Range::default()).unwrap();
+        let summary = summarise(&rows, &Range::default()).unwrap();
+        assert!(summary.stress[0].is_nan() && summary.stress[1].is_nan());
+    }
+
+    #[test]
+    fn critical_depth_lies_between_samples() {
+        // sigma_xx alone is its own von Mises stress: a parabola that peaks at 0.6.
+        let s = sampled(|z| 1.0 - (z - 0.6) * (z - 0.6), |_| 1.0);
+        let critical = critical_point(&s, 5.0, 0.1).unwrap();
+        assert_relative_eq!(critical.at[2], 0.6, epsilon = 1e-12);
+        assert_relative_eq!(critical.value, 1.0, epsilon = 1e-12);
+    }
+}

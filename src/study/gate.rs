@@ -1,0 +1,518 @@
+//! Accuracy gates: limits that the numbers of a study must keep, and drift against the numbers
+//! that were accepted last.
+//!
+//! A gate takes the worst of all numbers that it selects. One that selects nothing fails: a filter
+//! with a slip in it must not look like a pass.
+
+use super::run::{Role, StudyRun};
+use crate::base::{Error, Result};
+use crate::body::EdgeModel;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The thresholds that are built into the program.
+pub const DEFAULT_GATES: &str = include_str!("gates.toml");
+
+/// The thresholds file.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gates {
+    /// Absolute limits.
+    #[serde(default)]
+    pub gate: Vec<Gate>,
+    /// How far any number may move from the accepted one.
+    pub drift: Option<Drift>,
+}
+
+/// One absolute limit. Filters that are not given select everything.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Gate {
+    /// What it is called in tables.
+    pub name: String,
+    /// The edge model.
+    pub method: EdgeModel,
+    /// `pressure`, a stress (`sigma_xx` ...), `stress` (any of the six), `von_mises`, `tau_max`,
+    /// `critical_value`, `critical_depth`, `load` (relative error of the load) or `speedup`.
+    pub quantity: String,
+    /// `max`, `rms` or `l1`; left out for the last four quantities.
+    #[serde(default)]
+    pub measure: Option<String>,
+    /// Names of cases; `*` at the end stands for anything.
+    #[serde(default)]
+    pub cases: Vec<String>,
+    /// Names of curves or pressure lines; `*` at the end stands for anything.
+    #[serde(default)]
+    pub curves: Vec<String>,
+    /// `block` or `roller`.
+    #[serde(default)]
+    pub body: Option<String>,
+    /// Only numbers with this distance left out around the roller's edge (C).
+    #[serde(default)]
+    pub excluded_c: Option<f64>,
+    /// What must not be exceeded (p0; C for a depth; a speed-up must not fall short of it).
+    pub limit: f64,
+}
+
+/// Limit of the drift.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Drift {
+    /// Largest change of a maximum or RMS error with recorded FEM curves (p0).
+    pub recorded: f64,
+    /// The same with FEM computed in the run, whose mesh follows the installed gmsh (p0).
+    pub live: f64,
+}
+
+/// A number that gates look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Number {
+    /// The case.
+    pub case: String,
+    /// The method.
+    pub method: EdgeModel,
+    /// `block`, `roller`, `contact`, or empty for a number of the whole case.
+    pub body: String,
+    /// The curve, or empty.
+    pub curve: String,
+    /// As in [`Gate::quantity`].
+    pub quantity: String,
+    /// Distance left out (C), where that applies.
+    pub excluded_c: Option<f64>,
+    /// `max`, `rms`, `l1`, or empty.
+    pub measure: &'static str,
+    /// The value.
+    pub value: f64,
+}
+
+impl Number {
+    /// Where it belongs, in words.
+    fn place(&self) -> String {
+        let mut text = self.case.clone();
+        for part in [&self.body, &self.curve, &self.quantity] {
+            if !part.is_empty() {
+                text.push_str(", ");
+                text.push_str(part);
+            }
+        }
+        text
+    }
+
+    /// The key under which it is accepted.
+    fn key(&self) -> String {
+        let excluded = self.excluded_c.map(|c| format!(" {c}")).unwrap_or_default();
+        let (case, method) = (&self.case, self.method);
+        let (body, curve) = (&self.body, &self.curve);
+        format!("{case} {method} {body} {curve}{excluded}")
+            .split_whitespace()
+            .collect::<Vec<_>>()
+            .join(" ")
+    }
+}
+
+/// The outcome of one gate.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Outcome {
+    /// What it is called.
+    pub name: String,
+    /// The method, or `all`.
+    pub method: String,
+    /// `limit`, `drift` or `coverage`.
+    pub kind: &'static str,
+    /// Whether it holds.
+    pub passed: bool,
+    /// Its worst value, where there is one.
+    pub value: Option<f64>,
+    /// Its limit.
+    pub limit: f64,
+    /// How far the value is from the limit, positive on the good side.
+    pub margin: Option<f64>,
+    /// How many numbers were looked at.
+    pub compared: usize,
+    /// Where the worst value is, or why the gate failed, in words.
+    pub note: String,
+}
+
+/// Accepted numbers: for each place (case, method, body, curve, range) the value of each
+/// `quantity_measure`.
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+pub struct Baseline {
+    /// The version that accepted them.
+    pub version: String,
+    /// The numbers (p0).
+    pub numbers: BTreeMap<String, BTreeMap<String, f64>>,
+}
+
+/// A number whose accepted value is another one, or that is only on one side.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// Where, and which measure.
+    pub place: String,
+    /// The accepted value.
+    pub accepted: Option<f64>,
+    /// The value now.
+    pub now: Option<f64>,
+}
+
+/// Parses a thresholds file that stands at `path`.
+///
+/// # Errors
+/// [`Error::File`] with the line when it is not TOML, has an unknown key, an unknown name or a
+/// limit that is not a positive number.
+pub fn parse(text: &str, path: &Path) -> Result<Gates> {
+    let refuse = |line: Option<usize>, message: String, remedy: &str| Error::File {
+        path: path.to_path_buf(),
+        line,
+        message,
+        remedy: remedy.to_string(),
+    };
+    let gates: Gates = toml::from_str(text).map_err(|e| {
+        let line = e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1);
+        refuse(line, e.message().to_string(), "compare with the thresholds in docs/methodology.md")
+    })?;
+    for gate in &gates.gate {
+        let whole = ["critical_value", "critical_depth", "load", "speedup"];
+        let measured = ["pressure", "stress", "von_mises", "tau_max"];
+        let q = gate.quantity.as_str();
+        let is_component = crate::base::StressTensor::NAMES.contains(&q);
+        let problem = if !gate.limit.is_finite() || gate.limit <= 0.0 {
+            Some(format!("limit = {} is not a positive number", gate.limit))
+        } else if whole.contains(&q) {
+            gate.measure.as_ref().map(|m| format!("measure = {m:?} means nothing for {q}"))
+        } else if is_component || measured.contains(&q) {
+            match gate.measure.as_deref() {
+                Some("max" | "rms" | "l1") => None,
+                other => Some(format!("measure = {other:?} is none of max, rms, l1")),
+            }
+        } else {
+            Some(format!("quantity = {q:?} is not known"))
+        };
+        if let Some(problem) = problem {
+            return Err(refuse(
+                None,
+                format!("gate {:?}: {problem}", gate.name),
+                "correct the gate",
+            ));
+        }
+    }
+    let drifts = gates.drift.iter().flat_map(|d| [d.recorded, d.live]);
+    if let Some(bad) = drifts.into_iter().find(|d| !d.is_finite() || *d <= 0.0) {
+        return Err(refuse(None, format!("drift of {bad} is not a positive number"), "correct it"));
+    }
+    Ok(gates)
+}
+
+/// All numbers of a run that a gate can look at.
+pub fn numbers(run: &StudyRun) -> Vec<Number> {
+    let mut all = Vec::new();
+    for case in &run.cases {
+        for m in &case.methods {
+            let Ok(answer) = &m.answer else { continue };
+            for row in &answer.errors {
+                for (measure, value) in [("max", row.max), ("rms", row.rms), ("l1", row.l1)] {
+                    all.push(Number {
+                        case: case.case.name.clone(),
+                        method: m.method,
+                        body: row.body.clone(),
+                        curve: row.curve.clone(),
+                        quantity: row.quantity.clone(),
+                        excluded_c: Some(row.excluded_c),
+                        measure,
+                        value,
+                    });
+                }
+            }
+            let mut whole = |quantity: &str, value: Option<f64>| {
+                all.extend(value.map(|value| Number {
+                    case: case.case.name.clone(),
+                    method: m.method,
+                    body: String::new(),
+                    curve: String::new(),
+                    quantity: quantity.to_string(),
+                    excluded_c: None,
+                    measure: "",
+                    value,
+                }));
+            };
+            let response = |name| super::effects::response_value(name, case, m);
+            whole("critical_value", response("critical_value").map(f64::abs));
+            whole("critical_depth", response("critical_depth").map(f64::abs));
+            whole("load", Some(answer.solution.load_error_rel));
+            whole("speedup", response("log10_speedup").map(|d| 10f64.powf(d)));
+        }
+    }
+    all
+}
+
+/// Whether `name` is selected by a list of names, where `*` at the end stands for anything.
+fn selects(list: &[String], name: &str) -> bool {
+    list.is_empty()
+        || list.iter().any(|l| match l.strip_suffix('*') {
+            Some(start) => name.starts_with(start),
+            None => l == name,
+        })
+}
+
+impl Gate {
+    fn takes(&self, n: &Number) -> bool {
+        let quantity = match self.quantity.as_str() {
+            "stress" => n.quantity.starts_with("sigma_"),
+            q => n.quantity == q,
+        };
+        quantity
+            && n.method == self.method
+            && n.measure == self.measure.as_deref().unwrap_or("")
+            && selects(&self.cases, &n.case)
+            && selects(&self.curves, &n.curve)
+            && self.body.as_ref().is_none_or(|b| *b == n.body)
+            && self.excluded_c.is_none_or(|c| n.excluded_c == Some(c))
+    }
+
+    fn evaluate(&self, numbers: &[Number], failed_cases: &[String]) -> Outcome {
+        let at_least = self.quantity == "speedup";
+        let chosen: Vec<&Number> = numbers.iter().filter(|n| self.takes(n)).collect();
+        // total_cmp puts a NaN above everything, so it is the worst of errors.
+        let worst = if at_least {
+            chosen.iter().min_by(|a, b| a.value.total_cmp(&b.value))
+        } else {
+            chosen.iter().max_by(|a, b| a.value.total_cmp(&b.value))
+        };
+        let value = worst.map(|w| w.value);
+        let margin = value.map(|v| if at_least { v - self.limit } else { self.limit - v });
+        let holds = margin.is_some_and(|m| m >= 0.0) && failed_cases.is_empty();
+        let note = match worst {
+            _ if !failed_cases.is_empty() => {
+                format!("{} could not solve {}", self.method, failed_cases.join(", "))
+            }
+            None => "nothing was compared".to_string(),
+            Some(w) => format!("worst at {}", w.place()),
+        };
+        Outcome {
+            name: self.name.clone(),
+            method: self.method.name().to_string(),
+            kind: "limit",
+            passed: holds,
+            value,
+            limit: self.limit,
+            margin,
+            compared: chosen.len(),
+            note,
+        }
+    }
+}
+
+impl Baseline {
+    /// The numbers of a run, to be accepted.
+    pub fn of(run: &StudyRun) -> Self {
+        let mut baseline =
+            Self { version: env!("CARGO_PKG_VERSION").to_string(), numbers: BTreeMap::new() };
+        for n in numbers(run).iter().filter(|n| matches!(n.measure, "max" | "rms")) {
+            // Five digits after the point of an error in p0 are far below any drift limit.
+            let value = (n.value * 1e6).round() / 1e6;
+            let name = format!("{}_{}", n.quantity, n.measure);
+            baseline.numbers.entry(n.key()).or_default().insert(name, value);
+        }
+        baseline
+    }
+
+    /// Parses accepted numbers that stand at `path`.
+    ///
+    /// # Errors
+    /// [`Error::File`] when they are not what [`Baseline::to_json`] writes.
+    pub fn parse(text: &str, path: &Path) -> Result<Self> {
+        serde_json::from_str(text).map_err(|e| Error::File {
+            path: path.to_path_buf(),
+            line: Some(e.line()),
+            message: e.to_string(),
+            remedy: "write it with `edgeline gate --accept --baseline FILE`".to_string(),
+        })
+    }
+
+    /// One place a line, so that a change of one number is one line of a diff.
+    pub fn to_json(&self) -> String {
+        let lines: Vec<String> = self
+            .numbers
+            .iter()
+            .map(|(place, values)| {
+                let values: Vec<String> =
+                    values.iter().map(|(name, v)| format!("\"{name}\": {v}")).collect();
+                format!("    \"{place}\": {{ {} }}", values.join(", "))
+            })
+            .collect();
+        let version = &self.version;
+        format!(
+            "{{\n  \"version\": \"{version}\",\n  \"numbers\": {{\n{}\n  }}\n}}\n",
+            lines.join(",\n")
+        )
+    }
+
+    /// What differs between accepted numbers and those of now, by more than `limit`, largest
+    /// change first; what is only on one side comes before that.
+    pub fn changes(&self, now: &Baseline, limit: f64) -> Vec<Change> {
+        let flat = |b: &Baseline| -> BTreeMap<String, f64> {
+            b.numbers
+                .iter()
+                .flat_map(|(place, v)| v.iter().map(move |(n, v)| (format!("{place}: {n}"), *v)))
+                .collect()
+        };
+        let (old, new) = (flat(self), flat(now));
+        let places: std::collections::BTreeSet<&String> = old.keys().chain(new.keys()).collect();
+        let mut all: Vec<Change> = places
+            .into_iter()
+            .map(|p| Change {
+                place: p.clone(),
+                accepted: old.get(p).copied(),
+                now: new.get(p).copied(),
+            })
+            .filter(|c| c.size().is_none_or(|s| s.is_nan() || s > limit))
+            .collect();
+        all.sort_by(|a, b| {
+            let size = |c: &Change| c.size().unwrap_or(f64::INFINITY);
+            size(b).total_cmp(&size(a))
+        });
+        all
+    }
+}
+
+impl Change {
+    /// |now - accepted|; `None` when one of them is not there.
+    pub fn size(&self) -> Option<f64> {
+        Some((self.now? - self.accepted?).abs())
+    }
+
+    /// In words.
+    pub fn describe(&self) -> String {
+        let number = |v: Option<f64>| v.map_or("absent".to_string(), |v| format!("{v:.5}"));
+        format!("{}: {} -> {}", self.place, number(self.accepted), number(self.now))
+    }
+}
+
+/// Evaluates all gates on a run. `baseline` are the accepted numbers for the drift gates, one for
+/// each method; without them (and with a `[drift]` in the file) the drift gates fail.
+pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> Vec<Outcome> {
+    let all = numbers(run);
+    let failed = |method: EdgeModel| -> Vec<String> {
+        run.cases
+            .iter()
+            .filter(|c| c.methods.iter().any(|m| m.method == method && m.answer.is_err()))
+            .map(|c| c.case.name.clone())
+            .collect()
+    };
+    let mut outcomes = vec![coverage(run)];
+    outcomes.extend(
+        gates
+            .gate
+            .iter()
+            .filter(|g| run.methods.contains(&g.method))
+            .map(|g| g.evaluate(&all, &failed(g.method))),
+    );
+    // A fast wrong answer is no answer: a speed-up counts only where every accuracy gate of its
+    // method holds.
+    let inaccurate: Vec<String> =
+        outcomes.iter().filter(|o| !o.passed).map(|o| o.method.clone()).collect();
+    for (outcome, gate) in outcomes
+        .iter_mut()
+        .skip(1)
+        .zip(gates.gate.iter().filter(|g| run.methods.contains(&g.method)))
+    {
+        if gate.quantity == "speedup" && inaccurate.contains(&outcome.method) {
+            outcome.passed = false;
+            outcome.note = "not counted: an accuracy gate of this method failed".to_string();
+        }
+    }
+    if let Some(drift) = gates.drift {
+        let live = run.cases.iter().any(|c| c.reference.as_ref().is_ok_and(|r| r.provenance.live));
+        let limit = if live { drift.live } else { drift.recorded };
+        let now = Baseline::of(run);
+        outcomes.extend(run.methods.iter().map(|&m| drift_gate(m, limit, &now, baseline)));
+    }
+    if outcomes.len() == 1 {
+        outcomes.push(Outcome {
+            name: "any gate".to_string(),
+            method: "all".to_string(),
+            kind: "coverage",
+            passed: false,
+            value: None,
+            limit: 1.0,
+            margin: None,
+            compared: 0,
+            note: "no gate of the thresholds file applies to this run".to_string(),
+        });
+    }
+    outcomes
+}
+
+/// Every corner and the centre of the study must have a FEM answer to be compared with.
+fn coverage(run: &StudyRun) -> Outcome {
+    let design: Vec<_> = run.cases.iter().filter(|c| c.role != Role::Extra).collect();
+    let missing: Vec<&str> =
+        design.iter().filter(|c| c.reference.is_err()).map(|c| c.case.name.as_str()).collect();
+    let compared = run.cases.iter().filter(|c| c.reference.is_ok()).count();
+    Outcome {
+        name: "every case of the design has a FEM answer".to_string(),
+        method: "all".to_string(),
+        kind: "coverage",
+        passed: missing.is_empty() && compared > 0,
+        value: Some((design.len() - missing.len()) as f64),
+        limit: design.len() as f64,
+        margin: Some(-(missing.len() as f64)),
+        compared,
+        note: if missing.is_empty() {
+            format!("{compared} cases compared")
+        } else {
+            format!("no FEM answer for {}", missing.join(", "))
+        },
+    }
+}
+
+fn drift_gate(
+    method: EdgeModel,
+    limit: f64,
+    now: &Baseline,
+    baseline: Option<&Baseline>,
+) -> Outcome {
+    let of_method = |b: &Baseline| Baseline {
+        version: b.version.clone(),
+        numbers: b
+            .numbers
+            .iter()
+            .filter(|(place, _)| place.split(' ').nth(1) == Some(method.name()))
+            .map(|(p, v)| (p.clone(), v.clone()))
+            .collect(),
+    };
+    let now = of_method(now);
+    let accepted = baseline.map(of_method).unwrap_or_default();
+    let compared: usize = now.numbers.values().map(BTreeMap::len).sum();
+    // The two that are asked for: what moved beyond the limit, and the largest move of all.
+    let beyond = accepted.changes(&now, limit);
+    let largest = accepted.changes(&now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
+    let note = if baseline.is_none() {
+        "there are no accepted numbers: accept them with `edgeline gate --accept`".to_string()
+    } else if compared == 0 {
+        "nothing was compared".to_string()
+    } else {
+        match beyond.first() {
+            None => "nothing moved".to_string(),
+            Some(first) => {
+                let more = beyond.len() - 1;
+                let rest = if more > 0 { format!(" (and {more} more)") } else { String::new() };
+                format!("{}{rest}", first.describe())
+            }
+        }
+    };
+    Outcome {
+        name: "drift from the accepted numbers".to_string(),
+        method: method.name().to_string(),
+        kind: "drift",
+        passed: compared > 0 && beyond.is_empty(),
+        value: Some(largest),
+        limit,
+        margin: Some(limit - largest),
+        compared,
+        note,
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,147 @@
+use super::*;
+use crate::study::synthetic::{self, Twist};
+use std::path::Path;
+
+const GATES: &str = r#"
+[[gate]]
+name = "stresses"
+method = "quarter-space"
+quantity = "stress"
+measure = "rms"
+limit = 0.006
+
+[[gate]]
+name = "pressure"
+method = "quarter-space"
+quantity = "pressure"
+measure = "max"
+excluded_c = 0.2
+limit = 0.006
+
+[drift]
+recorded = 2e-4
+live = 5e-3
+"#;
+
+fn gates() -> Gates {
+    parse(GATES, Path::new("gates.toml")).unwrap()
+}
+
+fn failed(outcomes: &[Outcome]) -> Vec<String> {
+    let failed = outcomes.iter().filter(|o| !o.passed);
+    failed.map(|o| format!("{} {} {}: {}", o.kind, o.method, o.name, o.note)).collect()
+}
+
+#[test]
+fn an_unchanged_run_holds_every_gate() {
+    let run = synthetic::run(Twist::None);
+    let outcomes = evaluate(&run, &gates(), Some(&Baseline::of(&run)));
+    assert_eq!(failed(&outcomes), Vec::<String>::new());
+    // Coverage, the two limits, and a drift gate for each method, each with something in it.
+    assert_eq!(outcomes.len(), 3 + 4);
+    assert!(outcomes.iter().all(|o| o.compared > 0));
+    let pressure = outcomes.iter().find(|o| o.name == "pressure").unwrap();
+    assert!((pressure.value.unwrap() - synthetic::SHIFT).abs() < 1e-12);
+    assert!((pressure.margin.unwrap() - (0.006 - synthetic::SHIFT)).abs() < 1e-12);
+}
+
+#[test]
+fn a_fem_curve_off_by_two_percent_is_named() {
+    let accepted = Baseline::of(&synthetic::run(Twist::None));
+    let case = &synthetic::run(Twist::None).cases[2].case.name.clone();
+    let run =
+        synthetic::run(Twist::FemCurve { case: case.clone(), curve: "depth-0.9", factor: 1.02 });
+    let failed = failed(&evaluate(&run, &gates(), Some(&accepted)));
+    assert!(!failed.is_empty());
+    assert!(
+        failed.iter().all(|f| f.contains(case.as_str()) && f.contains("depth-0.9")),
+        "{failed:?}"
+    );
+}
+
+#[test]
+fn a_flipped_shear_is_named() {
+    let accepted = Baseline::of(&synthetic::run(Twist::None));
+    let run = synthetic::run(Twist::ShearSign);
+    let outcomes = evaluate(&run, &gates(), Some(&accepted));
+    let stress = outcomes.iter().find(|o| o.name == "stresses").unwrap();
+    assert!(!stress.passed && stress.note.contains("sigma_yz"), "{}", stress.note);
+}
+
+#[test]
+fn another_mirror_factor_drifts() {
+    let accepted = Baseline::of(&synthetic::run(Twist::None));
+    let run = synthetic::run(Twist::EndShare(EdgeModel::Guilbault, 1.1));
+    let failed = failed(&evaluate(&run, &gates(), Some(&accepted)));
+    assert_eq!(failed.len(), 1, "{failed:?}");
+    assert!(failed[0].starts_with("drift guilbault"), "{failed:?}");
+}
+
+#[test]
+fn nothing_compared_fails() {
+    let run = synthetic::run(Twist::None);
+    let text = GATES.replace("measure = \"rms\"", "measure = \"rms\"\ncurves = [\"depth-ends\"]");
+    let typo = parse(&text, Path::new("gates.toml")).unwrap();
+    let outcomes = evaluate(&run, &typo, Some(&Baseline::of(&run)));
+    assert_eq!(failed(&outcomes), ["limit quarter-space stresses: nothing was compared"]);
+    // No reference at all: coverage, limits and drift all say so.
+    let bare = synthetic::run(Twist::NoReference);
+    let outcomes = evaluate(&bare, &gates(), Some(&Baseline::of(&run)));
+    assert!(outcomes.iter().all(|o| !o.passed), "{outcomes:?}");
+    // No gates at all.
+    let none = Gates { gate: Vec::new(), drift: None };
+    assert!(evaluate(&run, &none, None).iter().any(|o| !o.passed));
+}
+
+#[test]
+fn a_case_that_cannot_be_solved_fails_the_gates_of_its_method() {
+    let run = synthetic::run(Twist::Unsolved(EdgeModel::QuarterSpace));
+    let failed = failed(&evaluate(&run, &gates(), Some(&Baseline::of(&run))));
+    assert!(failed.iter().any(|f| f.contains("could not solve")), "{failed:?}");
+}
+
+#[test]
+fn a_speed_up_does_not_count_for_a_wrong_answer() {
+    let speed = "[[gate]]\nname = \"speed\"\nmethod = \"quarter-space\"\nquantity = \"speedup\"\nlimit = 100.0\n";
+    let gates = parse(&format!("{speed}{GATES}"), Path::new("gates.toml")).unwrap();
+    let right = synthetic::run(Twist::None);
+    let accepted = Baseline::of(&right);
+    assert_eq!(failed(&evaluate(&right, &gates, Some(&accepted))), Vec::<String>::new());
+    let wrong = evaluate(&synthetic::run(Twist::ShearSign), &gates, Some(&accepted));
+    let speed = wrong.iter().find(|o| o.name == "speed").unwrap();
+    assert!(!speed.passed && speed.note.starts_with("not counted"), "{}", speed.note);
+}
+
+#[test]
+fn accepted_numbers_survive_the_file_and_changes_are_listed() {
+    let baseline = Baseline::of(&synthetic::run(Twist::None));
+    assert_eq!(Baseline::parse(&baseline.to_json(), Path::new("b")).unwrap(), baseline);
+    let mut other = baseline.clone();
+    let (place, values) = other.numbers.iter_mut().next().unwrap();
+    let place = place.clone();
+    *values.get_mut("sigma_xx_rms").unwrap() += 0.25;
+    values.remove("tau_max_max");
+    let changes = baseline.changes(&other, 2e-4);
+    assert_eq!(changes.len(), 2);
+    assert_eq!(changes[0].place, format!("{place}: tau_max_max"));
+    assert!(changes[0].describe().ends_with("-> absent"));
+    assert!((changes[1].size().unwrap() - 0.25).abs() < 1e-12);
+}
+
+#[test]
+fn bad_thresholds_are_refused_with_their_line() {
+    let read = |text: &str| parse(text, Path::new("g.toml")).unwrap_err().to_string();
+    let unknown = read(&GATES.replace("limit = 0.006", "limt = 0.006"));
+    assert!(unknown.contains("g.toml:") && unknown.contains("limt"), "{unknown}");
+    let quantity = read(&GATES.replace("\"stress\"", "\"sigma\""));
+    assert!(quantity.contains("\"sigma\" is not known"), "{quantity}");
+    assert!(read(&GATES.replace("limit = 0.006", "limit = -1.0")).contains("not a positive"));
+    assert!(read(&GATES.replace("\"max\"", "\"mean\"")).contains("max, rms, l1"));
+}
+
+#[test]
+fn the_built_in_thresholds_parse() {
+    let gates = parse(DEFAULT_GATES, Path::new("gates.toml")).unwrap();
+    assert!(gates.drift.is_some());
+    assert!(gates.gate.iter().any(|g| g.method == EdgeModel::QuarterSpace));
+}

@@ -1,0 +1,199 @@
+//! Made-up solutions for tests: smooth closed forms of the right shape, different for each model.
+
+use crate::base::{Error, StressTensor};
+use crate::body::EdgeModel;
+use crate::case::{Case, Study};
+use crate::solve::{Critical, Curve, PressureCell, PressureLine, Seconds, Solution};
+use crate::stress::{BodyKind, curves};
+use crate::study::run::{Provenance, Reference, Setup, StudyRun, run as run_study};
+use crate::study::{Range, Sampled};
+
+/// What the made-up FEM answer differs by from the quarter-space one (p0).
+pub const SHIFT: f64 = 0.003;
+
+/// How much a model makes of the ends: a share of the end effect in pressure and stress.
+fn end_share(method: EdgeModel) -> f64 {
+    match method {
+        EdgeModel::HalfSpace => 1.0,
+        EdgeModel::Mirror => 0.1,
+        EdgeModel::Guilbault => -0.25,
+        EdgeModel::QuarterSpace => -0.3,
+    }
+}
+
+/// A solution of `case` whose end effect is `share`; `shift` (p0) is added to all normal stresses
+/// and the pressure, to tell a "reference" from a method.
+fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution {
+    let hertz = case.hertz();
+    let (c, p0) = (hertz.c_m, hertz.p0_pa);
+    let half = case.factors().slenderness;
+    let end = |y: f64| share * (-(half - y).abs() / 0.8).exp();
+    let pressure = |x: f64, y: f64| {
+        if y.abs() > half { 0.0 } else { (1.0 - x * x).max(0.0).sqrt() * (1.0 + end(y)) + shift }
+    };
+    let stress = |x: f64, y: f64, z: f64| {
+        let root = (1.0 + z * z).sqrt();
+        let here = if y > half { (-(y - half)).exp() } else { 1.0 } * (-x * x).exp();
+        let zz = -here * (1.0 + end(y)) / root;
+        let xx = zz * (root - z).powi(2);
+        StressTensor {
+            xx: xx + shift,
+            yy: 0.3 * (xx + zz) * (1.0 - (-(half - y).abs()).exp()) + shift,
+            zz: zz + shift,
+            xy: 0.0,
+            xz: 0.1 * x * z * here,
+            yz: 0.2 * end(y) * z * (-z).exp(),
+        }
+    };
+    let curves: Vec<Curve> = BodyKind::ALL
+        .into_iter()
+        .flat_map(|body| {
+            let body_half = match body {
+                BodyKind::Block => half / case.factors().length_ratio,
+                BodyKind::Roller => half,
+            };
+            curves::standard_curves(body, half, body_half)
+        })
+        .map(|spec| Curve {
+            body: spec.body,
+            name: spec.name,
+            stress_pa: spec.points.iter().map(|p| stress(p[0], p[1], p[2]) * p0).collect(),
+            at_m: spec.points.iter().map(|p| p.map(|v| v * c)).collect(),
+        })
+        .collect();
+    let line = |name, at: Vec<[f64; 2]>| PressureLine {
+        name,
+        p_pa: at.iter().map(|a| pressure(a[0], a[1]) * p0).collect(),
+        at_m: at.iter().map(|a| a.map(|v| v * c)).collect(),
+    };
+    let lines = vec![
+        line("along-y", curves::contact_line(half).into_iter().map(|y| [0.0, y]).collect()),
+        line("along-x", curves::across_contact().into_iter().map(|x| [x, 0.0]).collect()),
+    ];
+    let cells = vec![PressureCell {
+        x_m: 0.0,
+        y_m: 0.0,
+        dx_m: 2.0 * c,
+        dy_m: case.roller.length_m,
+        p_pa: case.force_n / (2.0 * c * case.roller.length_m),
+    }];
+    let (p_centre_pa, p_end_pa) = (pressure(0.0, 0.0) * p0, pressure(0.0, half) * p0);
+    let end_is_peak = p_end_pa > p_centre_pa;
+    Solution {
+        case: case.name.clone(),
+        method,
+        hertz,
+        load_n: case.force_n,
+        approach_m: 0.7 * c * c / case.roller.radius_m,
+        p_centre_pa,
+        p_max_pa: p_centre_pa.max(p_end_pa),
+        p_max_at_m: [0.0, if end_is_peak { half * c } else { 0.0 }],
+        converged: true,
+        iterations: 12,
+        load_error_rel: 1e-12,
+        seconds: Seconds { setup: 0.004, contact: 0.002, stress: 0.003, total: 0.009 },
+        critical: Some(Critical {
+            body: BodyKind::Block,
+            measure: "von_mises",
+            value_pa: 0.6 * p0,
+            at_m: [0.0, 0.0, 0.7 * c],
+        }),
+        cells,
+        lines,
+        curves,
+        points: Vec::new(),
+        details: serde_json::json!({ "evaluations": { "done": 100, "skipped": 40 } }),
+    }
+}
+
+/// What is wrong with a run.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Twist {
+    /// Nothing.
+    None,
+    /// One curve of both bodies of FEM is off by a factor in one case.
+    FemCurve { case: String, curve: &'static str, factor: f64 },
+    /// The shear stresses across z have the wrong sign in every method.
+    ShearSign,
+    /// One method's end effect is off by a factor.
+    EndShare(EdgeModel, f64),
+    /// There are no FEM answers.
+    NoReference,
+    /// One method solves nothing.
+    Unsolved(EdgeModel),
+}
+
+/// The built-in study on made-up solutions; FEM is the quarter-space one, shifted.
+pub fn run(twist: Twist) -> StudyRun {
+    let solver = |cases: &[Case], method: EdgeModel| {
+        cases
+            .iter()
+            .map(|case| {
+                let mut share = end_share(method);
+                match twist {
+                    Twist::Unsolved(m) if m == method => {
+                        return Err(Error::NotConverged {
+                            iterations: 7,
+                            residual: 0.1,
+                            remedy: "nothing helps".to_string(),
+                        });
+                    }
+                    Twist::EndShare(m, factor) if m == method => share *= factor,
+                    _ => {}
+                }
+                let mut answer = solution(case, method, share, 0.0);
+                if twist == Twist::ShearSign {
+                    for s in answer.curves.iter_mut().flat_map(|c| &mut c.stress_pa) {
+                        (s.xz, s.yz) = (-s.xz, -s.yz);
+                    }
+                }
+                Ok(answer)
+            })
+            .collect()
+    };
+    let reference = |case: &Case| {
+        if twist == Twist::NoReference {
+            return Err("there is no record".to_string());
+        }
+        let method = EdgeModel::QuarterSpace;
+        let answer = solution(case, method, end_share(method), SHIFT);
+        let mut sampled = Sampled::from_solution(&answer);
+        sampled.source = "fem".to_string();
+        for curve in &mut sampled.curves {
+            curve.own_error = Some(vec![[0.004; 8]; curve.at.len()]);
+            match &twist {
+                Twist::FemCurve { case: name, curve: which, factor }
+                    if *name == case.name && curve.name == *which =>
+                {
+                    curve.stress.iter_mut().for_each(|s| *s = *s * *factor);
+                }
+                _ => {}
+            }
+        }
+        for line in &mut sampled.lines {
+            line.own_error = Some(vec![0.002; line.at.len()]);
+        }
+        let sam = EdgeModel::ALL.map(|m| (m.name().to_string(), [0.01, 0.0004]));
+        let provenance = Provenance {
+            date: Some("2026-01-01".to_string()),
+            machine: Some("a made-up processor".to_string()),
+            unknowns: Some(150_000),
+            seconds: Some(15.0 * case.factors().slenderness / 5.0),
+            seconds_spread: Some(0.3),
+            sam_seconds: sam.into(),
+            ..Default::default()
+        };
+        Ok(Reference { sampled, provenance })
+    };
+    run_study(
+        &Study::built_in(),
+        &Setup {
+            methods: EdgeModel::ALL.to_vec(),
+            range: Range::default(),
+            repeats: 3,
+            solver: &solver,
+            reference: &reference,
+            progress: &|_, _, _| {},
+        },
+    )
+}

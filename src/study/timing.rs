@@ -1,0 +1,129 @@
+//! Repeated timing of the semi-analytical solve.
+//!
+//! A time is only worth something with its conditions: the first solve in a process (`cold`, which
+//! builds every table) is kept apart from the repeats (`warm`), and one thread from all of them.
+//! The median is stated, with the quartiles as spread: a busy machine makes single runs slower,
+//! never faster, so the mean would be biased.
+
+use super::factorial::median;
+use serde::Serialize;
+use std::time::Instant;
+
+/// Times of repeated runs of one piece of work.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Timing {
+    /// Threads that the work could use.
+    pub threads: usize,
+    /// Seconds of the first run.
+    pub cold_s: f64,
+    /// Median of the repeats (s).
+    pub median_s: f64,
+    /// First and third quartile of the repeats (s).
+    pub quartiles_s: [f64; 2],
+    /// Number of repeats, without the first run.
+    pub repeats: usize,
+}
+
+impl Timing {
+    /// From the times of the first run and of at least one repeat (s).
+    pub fn new(threads: usize, cold_s: f64, warm_s: &[f64]) -> Self {
+        let mut sorted = warm_s.to_vec();
+        sorted.sort_by(f64::total_cmp);
+        Self {
+            threads,
+            cold_s,
+            median_s: median(sorted.clone()),
+            quartiles_s: [quantile(&sorted, 0.25), quantile(&sorted, 0.75)],
+            repeats: sorted.len(),
+        }
+    }
+
+    /// Half the distance of the quartiles (s): the median's +-.
+    pub fn spread_s(&self) -> f64 {
+        0.5 * (self.quartiles_s[1] - self.quartiles_s[0])
+    }
+}
+
+/// Linear interpolation between the order statistics of a sorted list that is not empty.
+fn quantile(sorted: &[f64], share: f64) -> f64 {
+    let place = share * (sorted.len() - 1) as f64;
+    let low = place.floor() as usize;
+    let high = (low + 1).min(sorted.len() - 1);
+    sorted[low] + (place - low as f64) * (sorted[high] - sorted[low])
+}
+
+/// Runs `work` once cold and `repeats` times warm on `threads` threads (0: all of the machine).
+///
+/// # Errors
+/// The first error of `work`: no time counts for an answer that was not computed.
+pub fn measure<T: Send, E: Send>(
+    threads: usize,
+    repeats: usize,
+    work: impl Fn() -> Result<T, E> + Sync + Send,
+) -> Result<Timing, E> {
+    let timed = || {
+        let start = Instant::now();
+        work().map(|answer| {
+            let seconds = start.elapsed().as_secs_f64();
+            // Freeing the answer is not part of computing it.
+            drop(answer);
+            seconds
+        })
+    };
+    let all = || -> Result<Timing, E> {
+        let cold = timed()?;
+        let warm = (0..repeats.max(1)).map(|_| timed()).collect::<Result<Vec<f64>, E>>()?;
+        Ok(Timing::new(rayon::current_num_threads(), cold, &warm))
+    };
+    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
+        Ok(pool) => pool.install(all),
+        // No threads to be had: the work still runs on this one.
+        Err(_) => all(),
+    }
+}
+
+/// Ratio of two medians with the uncertainty that their spreads give it (first order).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Ratio {
+    /// slow / fast.
+    pub value: f64,
+    /// Its +-.
+    pub plus_minus: f64,
+}
+
+impl Ratio {
+    /// `slow` and `fast` are pairs of median and spread (s), measured on one machine in one run.
+    pub fn new(slow: (f64, f64), fast: (f64, f64)) -> Self {
+        let value = slow.0 / fast.0;
+        Self { value, plus_minus: value * (slow.1 / slow.0).hypot(fast.1 / fast.0) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn median_and_quartiles() {
+        let timing = Timing::new(1, 9.0, &[5.0, 1.0, 3.0, 2.0, 4.0]);
+        assert_eq!((timing.median_s, timing.quartiles_s), (3.0, [2.0, 4.0]));
+        assert_eq!((timing.cold_s, timing.spread_s(), timing.repeats), (9.0, 1.0, 5));
+    }
+
+    #[test]
+    fn ratio_carries_both_uncertainties() {
+        let ratio = Ratio::new((100.0, 3.0), (0.01, 0.0004));
+        assert!((ratio.value - 1e4).abs() < 1e-9);
+        assert!((ratio.plus_minus - 500.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn the_first_run_is_kept_apart_and_errors_stop_the_timing() {
+        let calls = std::sync::atomic::AtomicUsize::new(0);
+        let count = || calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        let timing = measure(1, 3, || Ok::<_, ()>(count())).unwrap();
+        assert_eq!((timing.threads, timing.repeats), (1, 3));
+        assert_eq!(count(), 4);
+        assert_eq!(measure(1, 3, || Err::<(), _>("no")), Err("no"));
+    }
+}
