@@ -35,7 +35,7 @@ pub(super) struct Arguments {
 #[derive(Args)]
 pub(super) struct FemOptions {
     /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
-    #[arg(long, default_value_t = 1.0)]
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
     size: f64,
     /// Linear solver of the finite elements
     #[arg(long, default_value = "direct", value_parser = linear())]
@@ -50,10 +50,10 @@ pub(super) struct FemOptions {
     #[arg(long, value_name = "FILE", default_value = "gmsh", value_hint = ValueHint::ExecutablePath)]
     gmsh: PathBuf,
     /// Seconds that meshing one case may take
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_negative_numbers = true)]
     mesh_timeout: f64,
     /// Seconds that the calculation of one case may take
-    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds)]
+    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds, allow_negative_numbers = true)]
     solve_timeout: f64,
     /// GiB that the files of one run may take
     #[arg(long, value_name = "GIB", default_value_t = 10)]

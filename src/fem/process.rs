@@ -18,9 +18,9 @@ use std::time::{Duration, Instant};
 /// The environment variable that marks all processes of a run; its value is the run's folder.
 const MARK: &str = "EDGELINE_RUN";
 
-/// The environment variable that tells the driver's process id, for processes whose parent is not
-/// the driver.
-const DRIVER: &str = "EDGELINE_DRIVER_PID";
+/// The environment variable that tells processes further down who the driver is, as
+/// `<boot id>:<process id>`; `lifetime.py` reads it.
+const DRIVER: &str = "EDGELINE_DRIVER";
 
 /// A log larger than this comes from a child that has lost its way.
 const MAX_LOG_BYTES: u64 = 64 << 20;
@@ -174,7 +174,8 @@ pub(super) fn capture(command: &mut Command, timeout: Duration) -> Option<(Strin
 /// Starts a child in a process group of its own that dies with this process.
 fn spawn(command: &mut Command, mark: &Path) -> std::io::Result<Child> {
     let driver = std::process::id();
-    command.process_group(0).env(MARK, mark).env(DRIVER, driver.to_string());
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+    command.process_group(0).env(MARK, mark).env(DRIVER, format!("{}:{driver}", boot.trim()));
     #[cfg(target_os = "linux")]
     // SAFETY: the closure runs in the forked child, where it only makes system calls that are
     // async-signal-safe, and allocates nothing.
