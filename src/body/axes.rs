@@ -81,6 +81,11 @@ impl Resolution {
         }
     }
 
+    /// Distance from the line's end within which the largest wavenumber does not see a half-width.
+    pub fn end_zone(&self) -> f64 {
+        2.0 / self.k_max
+    }
+
     /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).
     fn graded(&self, first: f64, length: f64) -> Vec<f64> {
         let mut s = vec![0.0];

@@ -71,8 +71,7 @@ impl Body {
         let complete = model == EdgeModel::QuarterSpace;
         let contact_axis = resolution.contact_axis(half_length);
         let contact = contact_axis.len();
-        let surface =
-            if complete { resolution.body_axis(half_length, half) } else { contact_axis };
+        let surface = if complete { resolution.body_axis(half_length, half) } else { contact_axis };
         let ledge = half - half_length;
         let face = resolution.face_axis(ledge);
         let image = |sign: f64, lengths: i32, weight: f64| Image {
@@ -131,20 +130,15 @@ impl Body {
             step *= 2.0;
         }
         let strip = Panels::new(breaks, self.resolution.order);
-        self.strips =
-            strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
+        self.strips = strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
         self.to_face = self
             .face
             .nodes()
             .iter()
             .map(|&z| Stencil::new(&self.surface, &self.images, half, z))
             .collect();
-        self.from_faces = self
-            .surface
-            .nodes()
-            .iter()
-            .map(|&y| self.face_stencils(y, 0.0))
-            .collect();
+        self.from_faces =
+            self.surface.nodes().iter().map(|&y| self.face_stencils(y, 0.0)).collect();
         let (face, axis) = (&self.face, &self.face_wavenumbers);
         let order = face.order();
         self.cosines = DMatrix::zeros(axis.len(), face.len());
@@ -176,9 +170,8 @@ impl Body {
     /// Face nodes that a wavenumber reaches.
     pub fn face_len(&self, k: f64) -> usize {
         let deepest = self.resolution.face_reach / k;
-        let panels = (0..self.face.panel_count())
-            .take_while(|&i| self.face.panel(i)[0] < deepest)
-            .count();
+        let panels =
+            (0..self.face.panel_count()).take_while(|&i| self.face.panel(i)[0] < deepest).count();
         panels * self.face.order()
     }
 
@@ -265,11 +258,7 @@ impl Body {
             row.fill(0.0);
             for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
                 if k * depth < REACH {
-                    stencil.add_row(
-                        REACH / k,
-                        |u| -line_load(k, self.nu, u, depth).ww,
-                        &mut row,
-                    );
+                    stencil.add_row(REACH / k, |u| -line_load(k, self.nu, u, depth).ww, &mut row);
                 }
             }
             matrix.row_mut(i).copy_from_slice(&row);

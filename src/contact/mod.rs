@@ -12,4 +12,4 @@
 
 mod solver;
 
-pub use solver::{Compliance, ContactSettings, ContactSolution, solve};
+pub use solver::{Compliance, ContactSettings, ContactSolution, reference, solve};

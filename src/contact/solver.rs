@@ -10,7 +10,7 @@ pub struct Compliance<'a> {
     pub wavenumbers: &'a Panels,
     /// C(k): displacement at the axis's nodes per pressure at the nodes; it tends to 2 pi / k
     /// times the identity for large k.
-    pub matrices: Vec<DMatrix<f64>>,
+    pub matrices: &'a [DMatrix<f64>],
 }
 
 /// Settings of the contact solve.
@@ -20,8 +20,6 @@ pub struct ContactSettings {
     pub modes: usize,
     /// Distance from the line's end within which the half-width is not an unknown of its own.
     pub end_zone: f64,
-    /// Depth to which the approach refers (units of C).
-    pub reference_depth: f64,
     /// Largest amplitude of the pressure's edge singularity that counts as none (p0).
     pub tolerance: f64,
     /// Iterations after which it gives up.
@@ -35,7 +33,8 @@ pub struct ContactSolution {
     pub half_widths: Vec<f64>,
     /// Coefficients of the modes at each node.
     pub coefficients: Vec<Vec<f64>>,
-    /// Approach in units of C^2 / (2 R), relative to points at the reference depth.
+    /// Approach in units of C^2 / (2 R), relative to points at a distance that the smallest
+    /// wavenumber sets: subtract [`reference`] for a depth of one's own.
     pub approach: f64,
     /// Iterations done.
     pub iterations: usize,
@@ -77,7 +76,8 @@ pub fn solve(
     let mut zone = vec![1.0; n - layout.free];
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
-        let unknowns = linear_solve(compliance, &remainders, axis, &layout, &half_widths, &zone, load)?;
+        let unknowns =
+            linear_solve(compliance, &remainders, axis, &layout, &half_widths, &zone, load)?;
         let mut worst: f64 = 0.0;
         let mut next = half_widths.clone();
         let slopes: Vec<f64> = (0..n)
@@ -99,31 +99,34 @@ pub fn solve(
         for (ratio, slope) in zone.iter_mut().zip(&slopes[layout.free..]) {
             *ratio = (slope / slopes[layout.free - 1]).clamp(0.1, 10.0);
         }
-        if std::env::var("TRACE").is_ok() { eprintln!("it {iteration} worst {worst:.2e} a {:?}", &half_widths[n.saturating_sub(14)..]); }
         last = worst;
         if worst <= settings.tolerance {
-            let coefficients: Vec<Vec<f64>> = (0..n)
+            let mut coefficients: Vec<Vec<f64>> = (0..n)
                 .map(|j| {
                     let mut own = unknowns.as_slice()[layout.unknowns(j)].to_vec();
                     own.truncate(layout.modes(j));
                     own
                 })
                 .collect();
-            let carried: f64 = (0..n)
-                .map(|j| {
+            // What the singular modes carry, below the tolerance, goes to the others.
+            let carried = |coefficients: &[Vec<f64>]| -> f64 {
+                let line = |j: usize| {
                     let a = half_widths[j];
                     axis.weights()[j] * strip::cumulative(a, &coefficients[j], a)
-                })
-                .sum();
-            let approach = unknowns[layout.size() - 1]
-                - reference(compliance, &half_widths, &coefficients, settings.reference_depth);
+                };
+                (0..n).map(line).sum()
+            };
+            let scale = load / carried(&coefficients);
+            coefficients.iter_mut().flatten().for_each(|c| *c *= scale);
+            let load_error = (carried(&coefficients) / load - 1.0).abs();
+            let approach = unknowns[layout.size() - 1];
             return Ok(ContactSolution {
                 half_widths,
                 coefficients,
                 approach,
                 iterations: iteration,
                 residual: worst,
-                load_error: (carried / load - 1.0).abs(),
+                load_error,
             });
         }
         half_widths = next;
@@ -180,7 +183,7 @@ impl Layout {
 fn remainders(compliance: &Compliance, n: usize) -> Vec<DMatrix<f64>> {
     let ks = compliance.wavenumbers.nodes();
     ks.iter()
-        .zip(&compliance.matrices)
+        .zip(compliance.matrices)
         .map(|(&k, c)| c - DMatrix::identity(n, n) * (-2.0 * PI / k * (-k * SCREEN).exp_m1()))
         .collect()
 }
@@ -279,26 +282,27 @@ fn linear_solve(
     })
 }
 
-/// Mean displacement along the line that the load causes at the reference depth: with the kernel
-/// e^(-k depth) the displacement's logarithmic growth with the extent of the bodies drops out.
-fn reference(
-    compliance: &Compliance,
-    half_widths: &[f64],
-    coefficients: &[Vec<f64>],
-    depth: f64,
-) -> f64 {
-    let n = half_widths.len();
+/// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
+/// the kernel e^(-k depth) the displacement's logarithmic growth with the extent of the bodies
+/// drops out of the difference.
+pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
+    let mut modes = Vec::new();
     let mut sum = 0.0;
     let wavenumbers = compliance.wavenumbers;
     for ((&k, w), c) in
-        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(&compliance.matrices)
+        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(compliance.matrices)
     {
-        let p = DVector::from_fn(n, |j, _| {
-            let mut modes = vec![0.0; coefficients[j].len()];
-            strip::transforms(half_widths[j], k, &mut modes);
-            modes.iter().zip(&coefficients[j]).map(|(t, c)| t * c).sum()
+        let fade = (-k * depth).exp();
+        if fade < 1e-12 {
+            break;
+        }
+        let p = DVector::from_fn(solution.half_widths.len(), |j, _| {
+            let coefficients = &solution.coefficients[j];
+            modes.resize(coefficients.len(), 0.0);
+            strip::transforms(solution.half_widths[j], k, &mut modes);
+            modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
         });
-        sum += w / (PI * PI) * (-k * depth).exp() * (c * p).mean();
+        sum += w / (PI * PI) * fade * (c * p).mean();
     }
     sum
 }

@@ -1,10 +1,18 @@
 //! One case and one edge model to one solution, in SI units.
 
-use crate::base::{HertzScales, Result, StressTensor};
+mod scene;
+
+use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::kernels::strip;
 use crate::stress::{BodyKind, curves};
+use rayon::prelude::*;
 use serde::Serialize;
+use serde_json::json;
+use std::time::Instant;
+
+pub use scene::{Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
 
 /// What to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,6 +25,8 @@ pub struct Options {
     pub curves: Vec<String>,
     /// Extra points, in their order.
     pub points: Vec<Point>,
+    /// Factor of the images of `guilbault` in place of [`guilbault_psi`].
+    pub psi: Option<f64>,
 }
 
 impl Options {
@@ -27,6 +37,7 @@ impl Options {
             bodies: BodyKind::ALL.to_vec(),
             curves: curves::CURVE_NAMES.iter().map(|s| s.to_string()).collect(),
             points: Vec::new(),
+            psi: None,
         }
     }
 }
@@ -77,19 +88,6 @@ pub struct Curve {
     pub at_m: Vec<[f64; 3]>,
     /// Stresses at the points (Pa).
     pub stress_pa: Vec<StressTensor>,
-}
-
-/// Seconds of each stage.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
-pub struct Seconds {
-    /// Axes and compliance.
-    pub setup: f64,
-    /// Contact.
-    pub contact: f64,
-    /// Stresses.
-    pub stress: f64,
-    /// All of it.
-    pub total: f64,
 }
 
 /// The most stressed place of the standard curves.
@@ -149,9 +147,297 @@ pub struct Solution {
 /// Solves `case` with one method.
 ///
 /// # Errors
-/// [`crate::base::Error::NotConverged`] when the contact iteration does not settle, and
-/// [`crate::base::Error::Value`] when a point of `options` lies outside its body.
+/// [`Error::NotConverged`] when the contact iteration does not settle, and [`Error::Value`] when a
+/// point of `options` lies outside its body.
 pub fn solve(case: &Case, options: &Options) -> Result<Solution> {
-    let _ = (case, options);
-    todo!("lands with the solver")
+    solve_group(std::slice::from_ref(case), options).pop().expect("one case, one solution")
+}
+
+/// Solves cases that differ in scale only together: the first one's scene is solved once, and every
+/// case gets its own scales, approach and roller. A case of another scene is solved by itself.
+pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
+    let mut shared: Option<(Scene, SceneAnswer)> = None;
+    cases
+        .iter()
+        .map(|case| {
+            check_points(case, options)?;
+            let scene = Scene::new(case, options.method, options.psi);
+            // Extra points are given in metres, so they are another case's own.
+            let own = !options.points.is_empty();
+            let fits = !own && shared.as_ref().is_some_and(|(s, _)| *s == scene);
+            if !fits {
+                let answer = SceneAnswer::new(&scene, case, options)?;
+                shared = Some((scene, answer));
+            }
+            let (_, answer) = shared.as_ref().expect("solved above");
+            Ok(answer.scaled(case, options))
+        })
+        .collect()
+}
+
+/// Refuses points outside their body.
+fn check_points(case: &Case, options: &Options) -> Result<()> {
+    for (i, point) in options.points.iter().enumerate() {
+        let half = 0.5
+            * match point.body {
+                BodyKind::Block => case.block.length_m,
+                BodyKind::Roller => case.roller.length_m,
+            };
+        let [x, y, z] = point.at_m;
+        let bad = if !(x.is_finite() && y.is_finite() && z.is_finite()) {
+            "every coordinate must be a finite number"
+        } else if z < 0.0 {
+            "z is the depth into the body and must not be negative"
+        } else if y.abs() > half * (1.0 + 1e-9) {
+            "y lies beyond the body's end face"
+        } else {
+            continue;
+        };
+        return Err(Error::Value {
+            key: format!("point {} ({})", i + 1, point.body.name()),
+            value: format!("[{x}, {y}, {z}] m"),
+            reason: bad.into(),
+            remedy: format!("keep |y| <= {half} m and z >= 0"),
+        });
+    }
+    Ok(())
+}
+
+/// Cells of the written pressure across the contact (C).
+const CELL: f64 = 0.05;
+
+/// A scene's pressures and stresses in units of C and p0.
+struct SceneAnswer {
+    solved: SolvedScene,
+    seconds: Seconds,
+    cells: Vec<PressureCell>,
+    lines: Vec<PressureLine>,
+    curves: Vec<Curve>,
+    points: Vec<StressTensor>,
+}
+
+impl SceneAnswer {
+    fn new(scene: &Scene, case: &Case, options: &Options) -> Result<Self> {
+        let start = Instant::now();
+        let solved = SolvedScene::new(scene)?;
+        let before = start.elapsed().as_secs_f64();
+        let (curves, points) = stresses(&solved, case, options);
+        let mut seconds = solved.seconds;
+        seconds.total = start.elapsed().as_secs_f64();
+        seconds.stress = seconds.total - before;
+        let cells = pressure_cells(&solved);
+        let lines = pressure_lines(&solved);
+        Ok(Self { solved, seconds, cells, lines, curves, points })
+    }
+
+    /// In a case's own units, with what its own radius adds.
+    fn scaled(&self, case: &Case, options: &Options) -> Solution {
+        let hertz = case.hertz();
+        let (c, p0) = (hertz.c_m, hertz.p0_pa);
+        let tension = diametral_tension(&hertz, case.roller.radius_m);
+        let stress = |body: BodyKind, s: &StressTensor| match body {
+            BodyKind::Block => *s * p0,
+            BodyKind::Roller => (*s + tension) * p0,
+        };
+        let curves: Vec<Curve> = self
+            .curves
+            .iter()
+            .map(|curve| Curve {
+                body: curve.body,
+                name: curve.name,
+                at_m: curve.at_m.iter().map(|at| at.map(|v| v * c)).collect(),
+                stress_pa: curve.stress_pa.iter().map(|s| stress(curve.body, s)).collect(),
+            })
+            .collect();
+        let lines = self
+            .lines
+            .iter()
+            .map(|line| PressureLine {
+                name: line.name,
+                at_m: line.at_m.iter().map(|at| at.map(|v| v * c)).collect(),
+                p_pa: line.p_pa.iter().map(|p| p * p0).collect(),
+            })
+            .collect();
+        let cells: Vec<PressureCell> = self
+            .cells
+            .iter()
+            .map(|cell| PressureCell {
+                x_m: cell.x_m * c,
+                y_m: cell.y_m * c,
+                dx_m: cell.dx_m * c,
+                dy_m: cell.dy_m * c,
+                p_pa: cell.p_pa * p0,
+            })
+            .collect();
+        let carried: f64 = cells.iter().map(|cell| cell.p_pa * cell.dx_m * cell.dy_m).sum();
+        let top = cells.iter().max_by(|a, b| a.p_pa.total_cmp(&b.p_pa)).expect("cells");
+        let unit = c * c / (2.0 * case.roller.radius_m);
+        let reference = case.roller.radius_m;
+        let solved = &self.solved;
+        Solution {
+            case: case.name.clone(),
+            method: options.method,
+            hertz,
+            load_n: case.force_n,
+            approach_m: solved.approach(reference / c) * unit,
+            p_centre_pa: solved.pressure.at(0.0, 0.0) * p0,
+            p_max_pa: top.p_pa,
+            p_max_at_m: [top.x_m.abs(), top.y_m.abs()],
+            converged: true,
+            iterations: solved.contact.iterations,
+            load_error_rel: (carried / case.force_n - 1.0).abs(),
+            seconds: self.seconds,
+            critical: critical(&curves, 0.5 * case.roller.length_m, c),
+            points: self
+                .points
+                .iter()
+                .zip(&options.points)
+                .map(|(s, point)| stress(point.body, s))
+                .collect(),
+            details: json!({
+                "tolerance": case.tolerance,
+                "resolution": solved.resolution,
+                "wavenumbers": solved.wavenumbers.len(),
+                "contact_nodes": solved.pressure.axis().len(),
+                "edge_residual": solved.contact.residual,
+                "bodies_shared": solved.bodies_shared(),
+                "approach_reference_m": reference,
+                "roller_diametral_tension_pa": tension.xx * p0,
+            }),
+            cells,
+            lines,
+            curves,
+        }
+    }
+}
+
+/// The most stressed point of the curves outside 0.1 C of the roller's corner, where the stress of
+/// a sharp corner is a property of the sampling.
+fn critical(curves: &[Curve], half_length_m: f64, c_m: f64) -> Option<Critical> {
+    let mut best: Option<Critical> = None;
+    for curve in curves {
+        for (at, stress) in curve.at_m.iter().zip(&curve.stress_pa) {
+            let from_corner = (at[1].abs() - half_length_m).hypot(at[2]);
+            let value_pa = stress.von_mises();
+            if from_corner >= 0.0999 * c_m && best.is_none_or(|b| value_pa > b.value_pa) {
+                best =
+                    Some(Critical { body: curve.body, measure: "von_mises", value_pa, at_m: *at });
+            }
+        }
+    }
+    best
+}
+
+/// Mean pressures of cells that are `CELL` wide and as long as a node's quadrature weight, so that
+/// their sum is the solution's load.
+fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
+    let pressure = &solved.pressure;
+    let axis = pressure.axis();
+    let mut cells = Vec::new();
+    let nodes = axis.nodes().iter().zip(axis.weights()).enumerate();
+    let sides = nodes.clone().rev().map(|n| (-1.0, n)).chain(nodes.map(|n| (1.0, n)));
+    for (side, (j, (&y, &dy))) in sides {
+        let (a, coefficients) = pressure.at_node(j);
+        let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;
+        for i in -reach..=reach {
+            let x = f64::from(i) * CELL;
+            let [low, high] =
+                [x - 0.5 * CELL, x + 0.5 * CELL].map(|x| strip::cumulative(a, coefficients, x));
+            let p = ((high - low) / CELL).max(0.0);
+            cells.push(PressureCell { x_m: x, y_m: side * y, dx_m: CELL, dy_m: dy, p_pa: p });
+        }
+    }
+    cells
+}
+
+/// The pressure on the two standard lines.
+fn pressure_lines(solved: &SolvedScene) -> Vec<PressureLine> {
+    let line = |name, at: Vec<[f64; 2]>| PressureLine {
+        name,
+        p_pa: at.iter().map(|&[x, y]| solved.pressure.at(x, y)).collect(),
+        at_m: at,
+    };
+    let along = curves::contact_line(solved.scene.half_length);
+    let across = curves::across_contact();
+    vec![
+        line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
+        line("along-x", across.into_iter().map(|x| [x, 0.0]).collect()),
+    ]
+}
+
+/// Points of one body that share y and z, and so all kernels: their x, and where they belong.
+type Column = (BodyKind, [f64; 2], Vec<(f64, Slot)>);
+
+/// Where a stress belongs: a standard curve's point, or an extra point.
+#[derive(Clone, Copy)]
+enum Slot {
+    Curve(usize, usize),
+    Extra(usize),
+}
+
+/// Stresses of the standard curves and of the extra points that `options` asks for.
+fn stresses(
+    solved: &SolvedScene,
+    case: &Case,
+    options: &Options,
+) -> (Vec<Curve>, Vec<StressTensor>) {
+    let scene = &solved.scene;
+    let c_m = case.hertz().c_m;
+    let mut curves = Vec::new();
+    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies) {
+        if options.bodies.contains(&kind) {
+            let all = curves::standard_curves(kind, scene.half_length, body.half);
+            curves.extend(all.into_iter().filter(|c| options.curves.iter().any(|n| n == c.name)));
+        }
+    }
+    let mut columns: Vec<Column> = Vec::new();
+    let mut index = std::collections::HashMap::new();
+    let mut add = |kind: BodyKind, [x, y, z]: [f64; 3], slot: Slot| {
+        // What both bodies share in the computation they share in the result.
+        let owner = if solved.bodies_shared() { BodyKind::Block } else { kind };
+        let column = *index.entry((owner, y.to_bits(), z.to_bits())).or_insert_with(|| {
+            columns.push((owner, [y, z], Vec::new()));
+            columns.len() - 1
+        });
+        columns[column].2.push((x, slot));
+    };
+    for (i, curve) in curves.iter().enumerate() {
+        for (j, &at) in curve.points.iter().enumerate() {
+            add(curve.body, at, Slot::Curve(i, j));
+        }
+    }
+    for (i, point) in options.points.iter().enumerate() {
+        add(point.body, point.at_m.map(|v| v / c_m), Slot::Extra(i));
+    }
+    let fields: Vec<_> = BodyKind::ALL
+        .into_iter()
+        .filter(|&k| columns.iter().any(|c| c.0 == k))
+        .map(|k| (k, solved.field(k)))
+        .collect();
+    let values: Vec<Vec<StressTensor>> = columns
+        .par_iter()
+        .map(|(kind, [y, z], xs)| {
+            let (_, field) = fields.iter().find(|f| f.0 == *kind).expect("every kind has a field");
+            field.at(*y, *z, &xs.iter().map(|x| x.0).collect::<Vec<_>>())
+        })
+        .collect();
+    let mut out: Vec<Curve> = curves
+        .into_iter()
+        .map(|c| Curve {
+            body: c.body,
+            name: c.name,
+            stress_pa: vec![StressTensor::default(); c.points.len()],
+            at_m: c.points,
+        })
+        .collect();
+    let mut points = vec![StressTensor::default(); options.points.len()];
+    for ((_, _, xs), values) in columns.iter().zip(values) {
+        for ((_, slot), value) in xs.iter().zip(values) {
+            match *slot {
+                Slot::Curve(i, j) => out[i].stress_pa[j] = value,
+                Slot::Extra(i) => points[i] = value,
+            }
+        }
+    }
+    (out, points)
 }

@@ -82,11 +82,7 @@ fn end_distances(half_length: f64) -> Vec<f64> {
 
 /// y of the points on the contact line, from the centre to the roller's end (units of C).
 pub fn contact_line(half_length: f64) -> Vec<f64> {
-    end_distances(half_length)
-        .iter()
-        .rev()
-        .map(|s| half_length - s)
-        .collect()
+    end_distances(half_length).iter().rev().map(|s| half_length - s).collect()
 }
 
 /// x of the points across the contact, from the centre outwards (units of C).
@@ -128,11 +124,7 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
         along_y(0.5),
         along_y(0.78),
     ];
-    CURVE_NAMES
-        .iter()
-        .zip(points)
-        .map(|(&name, points)| CurveSpec { body, name, points })
-        .collect()
+    CURVE_NAMES.iter().zip(points).map(|(&name, points)| CurveSpec { body, name, points }).collect()
 }
 
 #[cfg(test)]
@@ -144,10 +136,7 @@ mod tests {
         assert_eq!(contact_line(5.0).first(), Some(&0.0));
         assert_eq!(contact_line(5.0).last(), Some(&5.0));
         assert_eq!(contact_line(5.0).len(), 20);
-        assert_eq!(
-            end_distances(20.0)[20..],
-            [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]
-        );
+        assert_eq!(end_distances(20.0)[20..], [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]);
         assert_eq!(end_distances(120.0)[30..], [64.0, 80.0, 100.0, 120.0]);
         let curves = standard_curves(BodyKind::Block, 5.0, 10.0);
         assert_eq!(curves[0].points.last(), Some(&[0.0, 8.0, 0.0]));

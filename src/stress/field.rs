@@ -132,8 +132,7 @@ impl<'a> Field<'a> {
             .map(|((&k, w), layer)| {
                 let p = pressure.transform(k);
                 let times = |m: &nalgebra::DMatrix<f64>| -> Vec<f64> { (m * &p).data.into() };
-                let surface =
-                    layer.surface.as_ref().map_or_else(|| p.as_slice().to_vec(), times);
+                let surface = layer.surface.as_ref().map_or_else(|| p.as_slice().to_vec(), times);
                 let face = layer.face.as_ref().map(times).unwrap_or_default();
                 let total: f64 =
                     surface.iter().zip(body.surface.weights()).map(|(p, w)| p * w).sum();

@@ -1,0 +1,197 @@
+//! A contact in units of C and p0: what is left of a case when its scales are taken out.
+
+use crate::base::{HertzScales, Panels, Result, StressTensor};
+use crate::body::{Body, EdgeModel, Layer, Resolution};
+use crate::case::Case;
+use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
+use crate::stress::{BodyKind, Field, Pressure};
+use rayon::prelude::*;
+use std::time::Instant;
+
+/// Stress transition factor of the `guilbault` model.
+pub const GAMMA: f64 = 1.0;
+
+/// Guilbault's factor for images in the flexibility matrix (Guilbault, ASME Journal of Tribology
+/// 133, 2011), as a function of Poisson's ratio.
+pub fn guilbault_psi(nu: f64) -> f64 {
+    1.29 - (0.08 - 0.5 * nu) / (1.0 - nu)
+}
+
+/// One of the two bodies of a [`Scene`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SceneBody {
+    /// Half-length (C).
+    pub half: f64,
+    /// Poisson's ratio.
+    pub nu: f64,
+    /// Share of the contact compliance, E* (1 - nu^2) / E.
+    pub share: f64,
+}
+
+/// A dimensionless contact. The load factor W is not in it: only the approach's reference depth
+/// and the roller's diametral tension know the radius.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scene {
+    /// S_l, the contact's half-length (C).
+    pub half_length: f64,
+    /// Block and roller.
+    pub bodies: [SceneBody; 2],
+    /// The edge model.
+    pub model: EdgeModel,
+    /// Factor of the images of `guilbault`; by default [`guilbault_psi`] of each body.
+    pub psi: Option<f64>,
+    /// Requested accuracy (p0).
+    pub tolerance: f64,
+}
+
+impl Scene {
+    /// The scene of a case.
+    pub fn new(case: &Case, model: EdgeModel, psi: Option<f64>) -> Self {
+        let hertz = case.hertz();
+        // Twelve digits: cases that differ by rounding alone share a scene.
+        let round = |v: f64| format!("{v:.12e}").parse::<f64>().expect("a formatted number");
+        let half = |length_m: f64| round(0.5 * length_m / hertz.c_m);
+        let body = |half: f64, material: crate::base::Material| SceneBody {
+            half,
+            nu: material.poisson,
+            share: round(hertz.e_star_pa * material.plane_strain_compliance()),
+        };
+        let half_length = half(case.roller.length_m);
+        let block = half(case.block.length_m);
+        // Flush ends must not leave a ledge of rounding.
+        let block = if block < half_length * (1.0 + 1e-9) { half_length } else { block };
+        Self {
+            half_length,
+            bodies: [body(block, case.block.material), body(half_length, case.roller.material)],
+            model,
+            psi,
+            tolerance: case.tolerance,
+        }
+    }
+}
+
+/// Seconds of each stage.
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+pub struct Seconds {
+    /// Axes and compliance.
+    pub setup: f64,
+    /// Contact.
+    pub contact: f64,
+    /// Stresses.
+    pub stress: f64,
+    /// All of it.
+    pub total: f64,
+}
+
+/// A solved scene, ready to give pressures and stresses anywhere.
+#[derive(Debug)]
+pub struct SolvedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// How it was resolved.
+    pub resolution: Resolution,
+    /// Wavenumbers across the contact.
+    pub wavenumbers: Panels,
+    /// The contact pressure.
+    pub pressure: Pressure,
+    /// What the contact solve said; its approach lacks the reference (see [`SolvedScene::approach`]).
+    pub contact: ContactSolution,
+    /// Seconds of set-up and contact.
+    pub seconds: Seconds,
+    bodies: Vec<(Body, Vec<Layer>)>,
+    compliances: Vec<nalgebra::DMatrix<f64>>,
+}
+
+impl SolvedScene {
+    /// Solves a scene at the resolution that its tolerance asks for.
+    ///
+    /// # Errors
+    /// [`crate::base::Error::NotConverged`] when the contact does not settle.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        Self::with_resolution(scene, &Resolution::for_tolerance(scene.tolerance))
+    }
+
+    /// Solves a scene at a given resolution.
+    ///
+    /// # Errors
+    /// [`crate::base::Error::NotConverged`] when the contact does not settle.
+    pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
+        let start = Instant::now();
+        let wavenumbers = resolution.wavenumbers();
+        let axis = resolution.contact_axis(scene.half_length);
+        let [block, roller] = scene.bodies;
+        // Bodies that end alike, of the same Poisson's ratio, are one.
+        let alike = block.half == roller.half && block.nu == roller.nu;
+        let distinct = if alike { &scene.bodies[..1] } else { &scene.bodies[..] };
+        let bodies: Vec<(Body, Vec<Layer>)> = distinct
+            .iter()
+            .map(|b| {
+                let psi = scene.psi.unwrap_or_else(|| guilbault_psi(b.nu));
+                let body = Body::new(scene.half_length, b.half, b.nu, scene.model, psi, resolution);
+                let layers = wavenumbers.nodes().par_iter().map(|&k| body.layer(k)).collect();
+                (body, layers)
+            })
+            .collect();
+        let compliances: Vec<_> = (0..wavenumbers.len())
+            .map(|i| {
+                let of = |body: usize| &bodies[body.min(bodies.len() - 1)].1[i].compliance;
+                of(0) * block.share + of(1) * roller.share
+            })
+            .collect();
+        let setup = start.elapsed().as_secs_f64();
+        let settings = ContactSettings {
+            modes: resolution.modes,
+            end_zone: resolution.end_zone(),
+            tolerance: 1e-7,
+            max_iterations: 40,
+        };
+        let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
+        let contact = contact::solve(&compliance, &axis, &settings)?;
+        let pressure = Pressure::new(&axis, &contact);
+        let total = start.elapsed().as_secs_f64();
+        Ok(Self {
+            scene: scene.clone(),
+            resolution: resolution.clone(),
+            wavenumbers,
+            pressure,
+            contact,
+            seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
+            bodies,
+            compliances,
+        })
+    }
+
+    /// The body and its layers; bodies that are alike share them.
+    fn body(&self, kind: BodyKind) -> &(Body, Vec<Layer>) {
+        let index = match kind {
+            BodyKind::Block => 0,
+            BodyKind::Roller => self.bodies.len() - 1,
+        };
+        &self.bodies[index]
+    }
+
+    /// Whether both bodies share one computation.
+    pub fn bodies_shared(&self) -> bool {
+        self.bodies.len() == 1
+    }
+
+    /// The stress field of a body, without what only the roller's own shape adds.
+    pub fn field(&self, kind: BodyKind) -> Field<'_> {
+        let (body, layers) = self.body(kind);
+        Field::new(body, &self.wavenumbers, layers, &self.pressure, GAMMA)
+    }
+
+    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
+    pub fn approach(&self, depth: f64) -> f64 {
+        let compliance = Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances };
+        self.contact.approach - contact::reference(&compliance, &self.contact, depth)
+    }
+}
+
+/// The roller's diametral tension (p0): a disc squeezed by line loads across its diameter carries,
+/// besides the two half-plane fields, an even sigma_xx of 2 w' / (pi 2 R) with w' the load per
+/// length (Timoshenko and Goodier, Theory of Elasticity, 1970, article 41), which is p0 C / (2 R).
+/// It is uniform, so free ends leave it as it is.
+pub fn diametral_tension(hertz: &HertzScales, radius_m: f64) -> StressTensor {
+    StressTensor { xx: hertz.c_m / (2.0 * radius_m), ..StressTensor::default() }
+}
