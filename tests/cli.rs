@@ -71,6 +71,8 @@ fn wrong_usage_exits_with_two() {
     assert!(said.contains("quarter-space"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "2"]);
     assert!(said.contains("--tolerance") && said.contains("1e-1"), "{said}");
+    let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "-1"]);
+    assert!(said.contains("--tolerance = -1 is not valid"), "{said}");
     assert_eq!(files(folder.path()), [""; 0]);
 }
 

@@ -10,6 +10,7 @@ from pathlib import Path
 # One thread a process: ranks and jobs are what runs in parallel here, and BLAS reads this when loaded.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+from .lifetime import follow_driver  # noqa: E402
 from .request import FemError, read_request  # noqa: E402
 
 
@@ -69,6 +70,7 @@ def _record(arguments):
 
 def main():
     """Run one subcommand; exit code 2 with one message if it cannot be done."""
+    follow_driver()
     parser = argparse.ArgumentParser(prog="edgeline_fem", description=sys.modules[__package__].__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     commands = parser.add_subparsers(required=True, metavar="COMMAND")

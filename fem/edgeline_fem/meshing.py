@@ -19,6 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .lifetime import die_with_parent
 from .request import FemError
 
 # The roller's quarter disc is three patches that meet at one inner point, as an O-grid. Radii are
@@ -369,7 +370,7 @@ def run_gmsh(program, geo, msh, vtk):
         try:
             done = subprocess.run(
                 command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                text=True, check=False,
+                text=True, check=False, preexec_fn=die_with_parent,
             )
         except OSError as error:
             raise FemError(f"gmsh program '{program}' cannot be run: {error.strerror}") from error

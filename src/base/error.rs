@@ -61,6 +61,20 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
+    /// The process was asked to stop while a child ran; the child was ended.
+    #[error("stopped by signal {signal}; run again to go on where it was")]
+    Interrupted {
+        /// The signal, e.g. 2 for Ctrl-C.
+        signal: i32,
+    },
+    /// A folder that another run is using.
+    #[error("{} is in use by another run{}; wait for it, or give another folder", path.display(), pid.map(|p| format!(" (process {p})")).unwrap_or_default())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+        /// The other run's process, where it is known.
+        pid: Option<u32>,
+    },
     /// A tool that is not installed.
     #[error("{tool} was not found ({searched}); {remedy}")]
     Missing {

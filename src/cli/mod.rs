@@ -1,10 +1,14 @@
 //! The command line: one file per subcommand.
 
+mod doctor;
+mod fem;
 mod points;
+mod progress;
 mod solve;
 
 use crate::base::{Error, Result};
 use clap::{Parser, Subcommand};
+use progress::Progress;
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
@@ -25,6 +29,8 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Solve(solve::Arguments),
+    Fem(fem::Arguments),
+    Doctor(doctor::Arguments),
 }
 
 /// What a subcommand that ran to its end has to say.
@@ -45,6 +51,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let outcome = match arguments.command {
         Command::Solve(arguments) => solve::run(arguments),
+        Command::Fem(arguments) => fem::run(arguments),
+        Command::Doctor(arguments) => doctor::run(arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,

@@ -38,7 +38,7 @@ pub(super) struct Arguments {
     #[arg(long, value_parser = PossibleValuesParser::new(CURVE_NAMES))]
     curve: Vec<String>,
     /// Requested accuracy as a fraction of p0; the case's own by default
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]

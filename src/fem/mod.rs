@@ -1,9 +1,15 @@
 //! Finite elements: the reader of recorded curves, and the driver that runs gmsh and FEniCSx.
 
+mod driver;
+mod jit_cache;
+mod lock;
+mod process;
 mod reference;
 mod result;
 #[cfg(test)]
 mod tests;
+pub mod tools;
 
+pub use driver::{Driver, Linear, Settings};
 pub use reference::{ErrorEstimate, Reference};
 pub use result::{FemSummary, LINE_NAMES, MeshResult, check_points, wanted_curves, wanted_lines};

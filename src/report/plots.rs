@@ -2,8 +2,8 @@
 
 use super::chart::{Bar, Figure, Note, Panel, Rule, Series, look};
 use super::study_files::StudyFiles;
-use super::table::{self, Table};
-use crate::base::Result;
+use super::table::Table;
+use crate::base::{Result, prepare_folder, write_whole};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -401,8 +401,8 @@ fn time_and_error(files: &StudyFiles) -> Figure {
 /// A response's half-normal plot, Pareto chart and interactions are shown for these.
 pub const SHOWN_RESPONSES: [&str; 3] = ["pressure_rms", "stress_rms", "von_mises_max"];
 
-/// All plots of a run: names without the folder, and SVG.
-pub fn all(files: &StudyFiles) -> Vec<(String, String)> {
+/// All figures of a run by name.
+fn figures(files: &StudyFiles) -> Vec<(String, Figure)> {
     let mut plots: Vec<(String, Figure)> = Vec::new();
     for case in Case::all(files) {
         let name = case.name;
@@ -415,13 +415,30 @@ pub fn all(files: &StudyFiles) -> Vec<(String, String)> {
             plots.push((format!("{name}-invariants-{body}"), invariants));
         }
     }
-    plots.extend(effects_plots(files));
+    plots.extend(summary_figures(files));
+    plots
+}
+
+/// The figures that sum up the whole study, by name.
+fn summary_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
+    let mut plots = effects_figures(files);
     plots.push(("time-error".to_string(), time_and_error(files)));
-    plots.into_iter().map(|(name, figure)| (format!("{name}.svg"), figure.to_svg())).collect()
+    plots
+}
+
+/// All plots of a run: names of the files, and SVG.
+pub fn all(files: &StudyFiles) -> Vec<(String, String)> {
+    figures(files).into_iter().map(|(name, f)| (format!("{name}.svg"), f.to_svg())).collect()
+}
+
+/// One of the plots that sum up the whole study (`time-error`, `half-normal-<method>`,
+/// `pareto-<method>`, `interactions-<method>`) as SVG.
+pub fn named(files: &StudyFiles, name: &str) -> Option<String> {
+    summary_figures(files).into_iter().find(|(n, _)| n == name).map(|(_, f)| f.to_svg())
 }
 
 /// Half-normal, Pareto and interaction plots of each method.
-fn effects_plots(files: &StudyFiles) -> Vec<(String, Figure)> {
+fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
     let mut plots = Vec::new();
     let methods = files.summary["methods"].as_array().cloned().unwrap_or_default();
     for method in methods.iter().filter_map(|m| m.as_str()) {
@@ -471,9 +488,9 @@ fn effects_plots(files: &StudyFiles) -> Vec<(String, Figure)> {
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
 pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
-    table::prepare_folder(folder)?;
+    prepare_folder(folder)?;
     for (name, svg) in all(files) {
-        table::write(&folder.join(name), svg)?;
+        write_whole(&folder.join(name), svg)?;
     }
     Ok(())
 }

@@ -2,7 +2,8 @@
 //! from these files alone, so whatever they show can be looked up here.
 
 use super::table::{self, Table, number, optional};
-use crate::base::{Error, Result};
+use super::verdict;
+use crate::base::{Error, Result, write_whole};
 use crate::study::effects::{self, Effects};
 use crate::study::errors::CriticalPoint;
 use crate::study::factorial::half_normal_quantile;
@@ -72,8 +73,10 @@ impl StudyFiles {
     /// The tables of a run.
     pub fn of(run: &StudyRun, context: &Context) -> Self {
         let (effects, not_analysed) = effects::analyse(run);
+        let mut summary = summary(run, context, &effects, not_analysed);
+        summary["verdict"] = json!(verdict::sentences(&summary));
         Self {
-            summary: summary(run, context, &effects, not_analysed),
+            summary,
             study: study_table(run),
             curves: curves_table(run),
             pressure: pressure_table(run),
@@ -99,9 +102,9 @@ impl StudyFiles {
     /// [`Error::Io`] when a file cannot be written.
     pub fn write(&self, folder: &Path) -> Result<()> {
         for (name, table) in Self::TABLES.iter().zip(self.tables()) {
-            table::write(&folder.join(name), table.to_csv())?;
+            write_whole(&folder.join(name), table.to_csv())?;
         }
-        table::write(&folder.join("summary.json"), pretty(&self.summary))
+        write_whole(&folder.join("summary.json"), pretty(&self.summary))
     }
 
     /// Reads a finished run.
@@ -581,12 +584,35 @@ fn summary(
         "factors": run.factors,
         "contact_problems_solved": run.solves,
         "method_summary": method_summary(run, context),
+        "fem_error": fem_error(run),
         "gates_hold": !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
         "gates": context.gates,
         "effects_in_words": told,
         "not_done": not_done,
         "cases": cases,
     })
+}
+
+/// The largest error that FEM states of itself over the range of the comparison (p0).
+fn fem_error(run: &StudyRun) -> Value {
+    let summaries = || {
+        let methods = run.cases.iter().flat_map(|c| &c.methods);
+        methods.filter_map(|m| m.answer.as_ref().ok()?.summary.as_ref())
+    };
+    json!({
+        "pressure": summaries().filter_map(|s| s.ref_error_pressure).reduce(f64::max),
+        "stress": summaries().filter_map(|s| s.ref_error_stress).reduce(f64::max),
+    })
+}
+
+/// Lowest and highest ratio of FEM's time to the method's, from their decimal logarithms; null
+/// where there is none.
+fn speedup(decades: &mut dyn Iterator<Item = f64>) -> Value {
+    let range = decades.map(|d| (d, d)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    range.map_or(
+        Value::Null,
+        |(low, high)| json!({ "low": 10f64.powf(low), "high": 10f64.powf(high) }),
+    )
 }
 
 /// The worst of each method over all cases, for the head of a report.
@@ -619,6 +645,9 @@ fn method_summary(run: &StudyRun, context: &Context) -> Vec<Value> {
                 "von_mises_rms": response("von_mises_rms"),
                 "von_mises_max": response("von_mises_max"),
                 "seconds": worst(&mut runs().filter_map(|(_, m)| Some(m.timing.first()?.median_s))),
+                "speedup": speedup(&mut runs().filter_map(|(c, m)| {
+                    effects::response_value("log10_speedup", c, m)
+                })),
                 "gates": gates.len(),
                 "gates_passed": gates.iter().filter(|g| g.passed).count(),
             })

@@ -1,4 +1,4 @@
-//! Tables of text as they stand in CSV files, and writing files whole or not at all.
+//! Tables of text as they stand in CSV files.
 
 use crate::base::{Error, Result};
 use std::path::Path;
@@ -101,38 +101,6 @@ pub fn read(path: &Path) -> Result<String> {
     })
 }
 
-/// Makes the folder and checks that files can be written there, so that a bad path fails before
-/// the long run and not after it.
-///
-/// # Errors
-/// [`Error::Io`] when it cannot.
-pub fn prepare_folder(folder: &Path) -> Result<()> {
-    let io = |action: &'static str| {
-        move |source| Error::Io { action, path: folder.to_path_buf(), source }
-    };
-    std::fs::create_dir_all(folder).map_err(io("create"))?;
-    let probe = folder.join(".edgeline-probe");
-    std::fs::write(&probe, []).map_err(io("write into"))?;
-    std::fs::remove_file(&probe).map_err(io("write into"))
-}
-
-/// Writes a file under another name and moves it into place, so that a reader never sees half of
-/// it.
-///
-/// # Errors
-/// [`Error::Io`] when it cannot.
-pub fn write(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
-    let io = |source| Error::Io { action: "write", path: path.to_path_buf(), source };
-    let mut name = path.file_name().unwrap_or_default().to_os_string();
-    name.push(format!(".{}.part", std::process::id()));
-    let part = path.with_file_name(name);
-    std::fs::write(&part, content).and_then(|()| std::fs::rename(&part, path)).map_err(|e| {
-        // The first error is the one to report; what is left of the attempt is in the way.
-        let _ = std::fs::remove_file(&part);
-        io(e)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -143,23 +111,11 @@ mod tests {
         table.push(vec!["with, comma and \"quote\"".to_string(), number(-0.001_234_567_89)]);
         table.push(vec![String::new(), optional(Some(f64::NAN))]);
         let folder = tempfile::tempdir().unwrap();
-        prepare_folder(&folder.path().join("deep/er")).unwrap();
-        let path = folder.path().join("deep/er/t.csv");
-        write(&path, table.to_csv()).unwrap();
+        let path = folder.path().join("t.csv");
+        std::fs::write(&path, table.to_csv()).unwrap();
         let back = Table::read(&path).unwrap();
         assert_eq!(back, table);
         assert_eq!(back.number(&back.rows[0], "b"), Some(-0.001_234_568));
         assert_eq!((back.number(&back.rows[1], "b"), back.text(&back.rows[0], "c")), (None, ""));
-        let left: Vec<_> = std::fs::read_dir(path.parent().unwrap()).unwrap().collect();
-        assert_eq!(left.len(), 1);
-    }
-
-    #[test]
-    fn a_folder_that_is_a_file_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("taken");
-        write(&path, "x").unwrap();
-        assert!(prepare_folder(&path).is_err());
-        assert!(prepare_folder(&path.join("below")).is_err());
     }
 }

@@ -68,6 +68,9 @@ fn plots_are_well_formed_and_hold_every_source() {
         assert!(pressure.contains(word), "{word}");
     }
     if let Ok(folder) = std::env::var("EDGELINE_KEEP_PLOTS") {
-        plots::write(&files(Twist::None), folder.as_ref()).unwrap();
+        std::fs::create_dir_all(&folder).unwrap();
+        let f = files(Twist::None);
+        f.write(folder.as_ref()).unwrap();
+        page::write(&f, folder.as_ref()).unwrap();
     }
 }

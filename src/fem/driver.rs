@@ -1,0 +1,401 @@
+//! One case on one mesh by gmsh and FEniCSx, as child processes.
+//!
+//! A run has a folder of its own. In it, `work/` holds what the children need and write; the
+//! results are put beside it, `fem.json` last, when they have been checked. A run that is stopped
+//! goes on at the stage where it was: each stage writes its JSON file last, and `work/request.key`
+//! tells whether what is there belongs to the same request.
+
+use super::jit_cache;
+use super::lock::Lock;
+use super::process::{Stage, kill_marked};
+use super::result::{
+    FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines, wanted_curves,
+    wanted_lines,
+};
+use super::tools::{self, Interpreter};
+use crate::base::{Error, Result, prepare_folder, write_whole};
+use crate::case::Case;
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+/// The sources of the finite-element side: name and text.
+const SOURCES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/fem_sources.rs"));
+
+/// The linear solver of the finite-element side.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Linear {
+    /// Sparse Cholesky factors, once per body.
+    Direct,
+    /// Conjugate gradients with algebraic multigrid; needs less memory on large meshes.
+    Iterative,
+}
+
+impl Linear {
+    /// Both, the default first.
+    pub const ALL: [Linear; 2] = [Linear::Direct, Linear::Iterative];
+
+    /// The name in requests and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Linear::Direct => "direct",
+            Linear::Iterative => "iterative",
+        }
+    }
+}
+
+/// How finite-element runs are done.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// Relative element size, 1 is the production mesh; see [`Settings::SIZE_RANGE`].
+    pub size: f64,
+    /// The linear solver.
+    pub linear: Linear,
+    /// Number of MPI ranks, at least 1.
+    pub ranks: usize,
+    /// The interpreter, where it is not to be looked for.
+    pub python: Option<PathBuf>,
+    /// The gmsh program.
+    pub gmsh: PathBuf,
+    /// How long making the meshes may take.
+    pub mesh_timeout: Duration,
+    /// How long the calculation may take.
+    pub solve_timeout: Duration,
+    /// How large the folder of a run may become (bytes).
+    pub max_bytes: u64,
+    /// Whether meshes and requests are kept after success.
+    pub keep: bool,
+}
+
+impl Settings {
+    /// Legal range of the relative element size.
+    pub const SIZE_RANGE: (f64, f64) = (0.1, 10.0);
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            size: 1.0,
+            linear: Linear::Direct,
+            ranks: 1,
+            python: None,
+            gmsh: "gmsh".into(),
+            mesh_timeout: Duration::from_secs(300),
+            solve_timeout: Duration::from_secs(3600),
+            max_bytes: 10 << 30,
+            keep: false,
+        }
+    }
+}
+
+/// Finite-element runs with the tools that they need, which were found and tried.
+pub struct Driver {
+    settings: Settings,
+    interpreter: Interpreter,
+}
+
+impl Driver {
+    /// Finds the tools.
+    ///
+    /// # Errors
+    /// [`Error::Missing`] when gmsh, a fitting interpreter or, for several ranks, mpirun is not
+    /// there; [`Error::Value`] when a setting is not legal.
+    pub fn new(settings: Settings) -> Result<Self> {
+        let (low, high) = Settings::SIZE_RANGE;
+        let refuse = |key: &str, value: String, reason: String, remedy: &str| {
+            Err(Error::Value { key: key.into(), value, reason, remedy: remedy.into() })
+        };
+        if !(low..=high).contains(&settings.size) {
+            let reason = format!("the relative element size lies between {low} and {high}");
+            return refuse("size", settings.size.to_string(), reason, "1 is the production mesh");
+        }
+        if settings.ranks == 0 {
+            return refuse("ranks", "0".into(), "at least one process has to run".into(), "give 1");
+        }
+        tools::require(&settings.gmsh, "--gmsh")?;
+        if settings.ranks > 1 {
+            tools::require(Path::new("mpirun"), "the PATH")?;
+        }
+        let interpreter = tools::find_interpreter(settings.python.as_deref())?;
+        Ok(Self { settings, interpreter })
+    }
+
+    /// The interpreter that runs the model.
+    pub fn interpreter(&self) -> &Interpreter {
+        &self.interpreter
+    }
+
+    /// Solves `case` in `folder`, or takes the result from there if it has been solved with the
+    /// same request before. `progress` is told, in words, what goes on.
+    ///
+    /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `fem.json` and the log of each stage. On
+    /// failure nothing is taken away that helps to find out why.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
+    /// takes too long, [`Error::File`] when it writes nonsense, [`Error::Interrupted`] when this
+    /// process was asked to stop, [`Error::Io`] when a file cannot be written.
+    pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
+        prepare_folder(folder)?;
+        // The mark of the processes has to be the same, however the folder is named.
+        let folder = &folder.canonicalize().map_err(|source| Error::Io {
+            action: "find",
+            path: folder.to_path_buf(),
+            source,
+        })?;
+        let lock = Lock::take(folder)?;
+        // Whoever was here before is dead; so are its children, unless the kernel cannot tell.
+        kill_marked(folder);
+
+        let request = request(case, &self.settings);
+        let text = serde_json::to_string_pretty(&request).expect("plain data");
+        let key = self.key(&text);
+        let run = Run { driver: self, case, folder, work: folder.join("work") };
+        if read(&folder.join("request.key")).is_ok_and(|known| known == key)
+            && let Ok(result) = run.result(folder)
+        {
+            progress("done already");
+            return Ok(result);
+        }
+        // In this order, so that a run that is killed here does not pass for a finished one.
+        for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
+            remove(&folder.join(name))?;
+        }
+        run.prepare(&text, &key)?;
+        run.mesh(progress)?;
+        run.solve(progress)?;
+        let result = run.result(&run.work)?;
+        for name in ["curves.csv", "pressure.csv", "mesh.json", "fem.json"] {
+            let content = read(&run.work.join(name))?;
+            write_whole(&folder.join(name), content)?;
+        }
+        write_whole(&folder.join("request.key"), key)?;
+        jit_cache::keep(&run.cache());
+        if !self.settings.keep {
+            remove(&run.work)?;
+        }
+        drop(lock);
+        Ok(result)
+    }
+
+    /// What tells whether files belong to a request: all that the result depends on.
+    fn key(&self, request: &str) -> String {
+        let mut text = request.to_string();
+        text += &format!("{:?} {}", self.interpreter, self.settings.ranks);
+        for (name, source) in SOURCES {
+            text += name;
+            text += source;
+        }
+        // FNV-1a: these are accidents to be told apart, not attacks.
+        let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
+            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
+        });
+        format!("{hash:016x}\n")
+    }
+}
+
+/// One run under way.
+struct Run<'a> {
+    driver: &'a Driver,
+    case: &'a Case,
+    folder: &'a Path,
+    /// Where the children work.
+    work: PathBuf,
+}
+
+impl Run<'_> {
+    /// Lays out the folder of work, keeping what belongs to the same request.
+    fn prepare(&self, request: &str, key: &str) -> Result<()> {
+        if read(&self.work.join("request.key")).ok().as_deref() != Some(key) {
+            remove(&self.work)?;
+        }
+        let package = self.work.join("package/edgeline_fem");
+        prepare_folder(&package)?;
+        for (name, source) in SOURCES {
+            write_whole(&package.join(name), source)?;
+        }
+        // What an earlier run did not finish compiling must not be waited for.
+        remove(&self.work.join("cache"))?;
+        jit_cache::seed(&self.cache());
+        write_whole(&self.work.join("request.json"), request)?;
+        write_whole(&self.work.join("request.key"), key)
+    }
+
+    fn cache(&self) -> PathBuf {
+        self.work.join("cache/fenics")
+    }
+
+    fn mesh(&self, progress: &dyn Fn(&str)) -> Result<()> {
+        let done = self.work.join("mesh.json");
+        if read_json(&done).is_ok() {
+            progress("meshes are there already");
+            return Ok(());
+        }
+        progress("meshing");
+        let python = Command::new(&self.driver.interpreter.path);
+        let timeout = self.driver.settings.mesh_timeout;
+        self.stage("mesh", python, timeout, "--mesh-timeout")?;
+        read_json(&done).map(|_| ())
+    }
+
+    fn solve(&self, progress: &dyn Fn(&str)) -> Result<()> {
+        let done = self.work.join("fem.json");
+        if done.is_file() {
+            if self.result(&self.work).is_ok() {
+                progress("solved already");
+                return Ok(());
+            }
+            remove(&done)?;
+        }
+        progress("solving");
+        let settings = &self.driver.settings;
+        let python = &self.driver.interpreter.path;
+        let command = if settings.ranks == 1 {
+            Command::new(python)
+        } else {
+            let mut mpirun = Command::new("mpirun");
+            mpirun.arg("-n").arg(settings.ranks.to_string()).arg(python);
+            // Open MPI refuses both by default, and containers are run as root.
+            for variable in ["OMPI_ALLOW_RUN_AS_ROOT", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM"] {
+                mpirun.env(variable, "1");
+            }
+            mpirun.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
+            mpirun
+        };
+        self.stage("solve", command, settings.solve_timeout, "--solve-timeout")
+    }
+
+    /// Runs a stage of the finite-element side.
+    fn stage(
+        &self,
+        stage: &str,
+        mut command: Command,
+        timeout: Duration,
+        timeout_option: &str,
+    ) -> Result<()> {
+        let mut path = vec![self.work.join("package")];
+        if let Some(more) = std::env::var_os("PYTHONPATH") {
+            path.extend(std::env::split_paths(&more));
+        }
+        let path = std::env::join_paths(path).map_err(|e| Error::Value {
+            key: "PYTHONPATH".into(),
+            value: self.work.display().to_string(),
+            reason: e.to_string(),
+            remedy: "choose an output folder without that character".into(),
+        })?;
+        command
+            .args(["-m", "edgeline_fem", stage])
+            .arg(self.work.join("request.json"))
+            .arg(&self.work)
+            .current_dir(&self.work)
+            .env("PYTHONPATH", path)
+            .env("PYTHONUNBUFFERED", "1")
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("XDG_CACHE_HOME", self.work.join("cache"));
+        let stage = Stage {
+            name: &format!("{}, stage {stage}", self.case.name),
+            command,
+            log: self.folder.join(format!("{stage}.log")),
+            timeout,
+            timeout_option,
+            folder: self.folder,
+            max_bytes: self.driver.settings.max_bytes,
+        };
+        stage.run()
+    }
+
+    /// Reads and checks the result in `folder`.
+    fn result(&self, folder: &Path) -> Result<MeshResult> {
+        let path = folder.join("fem.json");
+        let value = read_json(&path)?;
+        let hertz = self.case.hertz();
+        for (pointer, wanted) in [("/hertz/c_m", hertz.c_m), ("/hertz/p0_pa", hertz.p0_pa)] {
+            let got = value.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN);
+            if (got / wanted - 1.0).abs() > 1e-9 || got.is_nan() {
+                let message = format!("{pointer} = {got:e}, but the case has {wanted:e}");
+                return Err(nonsense(&path, None, message));
+            }
+        }
+        let summary: FemSummary = serde_json::from_value(value)
+            .map_err(|e| nonsense(&path, None, format!("is not a FEM summary: {e}")))?;
+        summary.check(&path)?;
+        if summary.ranks != self.driver.settings.ranks {
+            let message = format!("was computed by {} processes", summary.ranks);
+            return Err(nonsense(&path, None, message));
+        }
+        let path = folder.join("curves.csv");
+        let curves: Vec<_> =
+            parse_curves(&read(&path)?, &path)?.into_iter().map(|(_, curve)| curve).collect();
+        let path = folder.join("pressure.csv");
+        let lines: Vec<_> =
+            parse_lines(&read(&path)?, &path)?.into_iter().map(|(_, line)| line).collect();
+        check_points(self.case, &curves, &lines, &path)?;
+        Ok(MeshResult { size: self.driver.settings.size, summary, curves, lines })
+    }
+}
+
+/// The request to the finite-element side.
+fn request(case: &Case, settings: &Settings) -> Value {
+    let curves: Vec<Value> = wanted_curves(case)
+        .into_iter()
+        .map(|(body, curve, points)| json!({"body": body, "curve": curve, "points_m": points}))
+        .collect();
+    let lines: serde_json::Map<String, Value> = wanted_lines(case)
+        .into_iter()
+        .map(|(name, points)| (name.to_string(), json!(points)))
+        .collect();
+    json!({
+        "schema": 1,
+        "case": {
+            "name": case.name,
+            "roller": {
+                "radius_m": case.roller.radius_m,
+                "length_m": case.roller.length_m,
+                "young_pa": case.roller.material.young_pa,
+                "poisson": case.roller.material.poisson,
+            },
+            "block": {
+                "length_m": case.block.length_m,
+                "young_pa": case.block.material.young_pa,
+                "poisson": case.block.material.poisson,
+            },
+            "force_n": case.force_n,
+        },
+        "mesh": {"size": settings.size},
+        "solver": {
+            "linear": settings.linear.name(),
+            "tolerance": 1e-8,
+            "max_iterations": 200,
+        },
+        "gmsh": settings.gmsh,
+        "curves": curves,
+        "pressure_points_m": lines,
+    })
+}
+
+/// Reads a text that a child wrote.
+fn read(path: &Path) -> Result<String> {
+    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
+    let bytes = std::fs::read(path).map_err(io)?;
+    String::from_utf8(bytes).map_err(|_| nonsense(path, None, "is not UTF-8 text"))
+}
+
+/// Reads a JSON file that a child wrote.
+fn read_json(path: &Path) -> Result<Value> {
+    let text = read(path)?;
+    serde_json::from_str(&text)
+        .map_err(|e| nonsense(path, Some(e.line()), format!("is not JSON: {e}")))
+}
+
+/// Removes a file or a folder, if it is there.
+fn remove(path: &Path) -> Result<()> {
+    let removed =
+        if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+    match removed {
+        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
+            Err(Error::Io { action: "remove", path: path.to_path_buf(), source })
+        }
+        _ => Ok(()),
+    }
+}

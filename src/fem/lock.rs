@@ -1,0 +1,76 @@
+//! A lock on the folder of a run. It is the kernel's, so it ends with the process that holds it,
+//! however that ends.
+
+use crate::base::{Error, Result};
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Write};
+use std::os::unix::fs::MetadataExt;
+use std::path::{Path, PathBuf};
+
+/// A folder that this process has for itself.
+#[derive(Debug)]
+pub(super) struct Lock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl Lock {
+    /// Takes the lock of `folder`.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] when another process has it, [`Error::Io`] when there can be no lock.
+    pub fn take(folder: &Path) -> Result<Lock> {
+        let path = folder.join(".lock");
+        let io = |source| Error::Io { action: "lock", path: path.clone(), source };
+        loop {
+            let mut options = OpenOptions::new();
+            options.read(true).write(true).create(true).truncate(false);
+            let mut file = options.open(&path).map_err(io)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    let mut text = String::new();
+                    let _ = file.read_to_string(&mut text);
+                    let pid = text.trim().parse().ok();
+                    return Err(Error::Busy { path: folder.to_path_buf(), pid });
+                }
+                Err(TryLockError::Error(e)) => return Err(io(e)),
+            }
+            // The holder before may have removed the file between our opening and locking it; a
+            // third process would then lock another file of the same name.
+            let there = std::fs::metadata(&path).map(|m| m.ino()).ok();
+            if there.is_none() || there != file.metadata().map(|m| m.ino()).ok() {
+                continue;
+            }
+            file.set_len(0).map_err(io)?;
+            writeln!(file, "{}", std::process::id()).map_err(io)?;
+            return Ok(Lock { path: path.clone(), _file: file });
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // Removed while it is still locked; if that fails the next run takes it over.
+        let _ = std::fs::remove_file(&self.path);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_folder_is_locked_until_the_lock_ends() {
+        let folder = tempfile::tempdir().unwrap();
+        let lock = Lock::take(folder.path()).unwrap();
+        // The lock belongs to the open file, so a second one in the same process is refused too.
+        let message = Lock::take(folder.path()).unwrap_err().to_string();
+        assert!(message.contains(&format!("process {}", std::process::id())), "{message}");
+        drop(lock);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        // What a dead process left is taken over.
+        std::fs::write(folder.path().join(".lock"), "999999\n").unwrap();
+        Lock::take(folder.path()).unwrap();
+    }
+}

@@ -1,0 +1,351 @@
+//! Child processes that end: in time, with their log kept, and with all that they started.
+//!
+//! A child gets a process group of its own, asks the kernel to be killed when this process dies
+//! (so a `kill -9` of the driver leaves nothing), and carries a mark in its environment, which its
+//! own children inherit. Whatever is found with that mark after the child's end is killed; that
+//! reaches MPI ranks, which leave the process group.
+
+use crate::base::{Error, Result};
+use std::fs::{self, File};
+use std::io::{Read, Seek, SeekFrom};
+use std::os::unix::process::{CommandExt, ExitStatusExt};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::sync::Once;
+use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
+use std::time::{Duration, Instant};
+
+/// The environment variable that marks all processes of a run; its value is the run's folder.
+const MARK: &str = "EDGELINE_RUN";
+
+/// The environment variable that tells processes further down who the driver is, as
+/// `<boot id>:<process id>`; `lifetime.py` reads it.
+const DRIVER: &str = "EDGELINE_DRIVER";
+
+/// A log larger than this comes from a child that has lost its way.
+const MAX_LOG_BYTES: u64 = 64 << 20;
+
+/// How long a child has to end by itself after it was asked to.
+const GRACE: Duration = Duration::from_secs(3);
+
+/// One child process and the bounds that it is kept within.
+pub(super) struct Stage<'a> {
+    /// What the messages call it.
+    pub name: &'a str,
+    /// The program and its arguments.
+    pub command: Command,
+    /// Where its output goes.
+    pub log: PathBuf,
+    /// How long it may take.
+    pub timeout: Duration,
+    /// The option that sets `timeout`, for the message.
+    pub timeout_option: &'a str,
+    /// The folder it works in, also the mark of its processes.
+    pub folder: &'a Path,
+    /// How large that folder may become (bytes).
+    pub max_bytes: u64,
+}
+
+impl Stage<'_> {
+    /// Runs the child to its end.
+    ///
+    /// # Errors
+    /// [`Error::Child`] with the end of the log when it cannot be started, fails, takes too long,
+    /// or fills the disk; [`Error::Interrupted`] when this process was asked to stop. No process
+    /// of the child is left in any case.
+    pub fn run(mut self) -> Result<()> {
+        let _active = Active::new();
+        check_interrupt()?;
+        let log = File::create(&self.log).and_then(|log| Ok((log.try_clone()?, log)));
+        let (out, err) =
+            log.map_err(|source| Error::Io { action: "create", path: self.log.clone(), source })?;
+        self.command.stdin(Stdio::null()).stdout(out).stderr(err);
+        let mut child = spawn(&mut self.command, self.folder).map_err(|e| {
+            let program = self.command.get_program().display().to_string();
+            self.failed(format!("{program} cannot be started: {e}"), "check the path")
+        })?;
+        let ended = self.watch(&mut child);
+        if ended.is_err() {
+            stop(&mut child);
+        }
+        kill_marked(self.folder);
+        let status = ended?;
+        if status.success() {
+            return Ok(());
+        }
+        let message = match (status.code(), status.signal()) {
+            (Some(code), _) => format!("failed with exit code {code}"),
+            (None, Some(libc::SIGKILL)) => {
+                "was killed (signal 9), perhaps because memory ran out".to_string()
+            }
+            (None, signal) => format!("was ended by signal {}", signal.unwrap_or(0)),
+        };
+        Err(self.failed(message, "correct what the log tells, then run again"))
+    }
+
+    /// Waits for the end, or for a reason not to.
+    fn watch(&self, child: &mut Child) -> Result<ExitStatus> {
+        let began = Instant::now();
+        let mut next_look = Duration::from_secs(1);
+        loop {
+            match child.try_wait() {
+                Ok(Some(status)) => return Ok(status),
+                Ok(None) => {}
+                Err(e) => {
+                    let message = format!("cannot be waited for: {e}");
+                    return Err(self.failed(message, "run again"));
+                }
+            }
+            check_interrupt()?;
+            let elapsed = began.elapsed();
+            if elapsed > self.timeout {
+                return Err(self.failed(
+                    format!("took longer than {} s and was stopped", self.timeout.as_secs_f64()),
+                    format!("allow more time with {}", self.timeout_option),
+                ));
+            }
+            if elapsed > next_look {
+                next_look = elapsed + Duration::from_secs(1);
+                if fs::metadata(&self.log).is_ok_and(|m| m.len() > MAX_LOG_BYTES) {
+                    let message = format!("wrote more than {} MiB of log", MAX_LOG_BYTES >> 20);
+                    return Err(self.failed(message, "correct what the log tells, then run again"));
+                }
+                if size_of(self.folder) > self.max_bytes {
+                    return Err(self.failed(
+                        format!("filled its folder with more than {} MiB", self.max_bytes >> 20),
+                        "allow more with --max-disk, or take a coarser mesh",
+                    ));
+                }
+            }
+            // Short stages are not held up, long ones are not disturbed.
+            std::thread::sleep(
+                (elapsed / 20).clamp(Duration::from_millis(2), Duration::from_millis(50)),
+            );
+        }
+    }
+
+    fn failed(&self, message: String, remedy: impl Into<String>) -> Error {
+        Error::Child {
+            program: self.name.to_string(),
+            message,
+            log_tail: tail(&self.log),
+            remedy: format!("{} (the whole log: {})", remedy.into(), self.log.display()),
+        }
+    }
+}
+
+/// Runs a short command and returns what it printed on both streams, or `None` when it cannot be
+/// started, fails, or takes longer than `timeout`.
+pub(super) fn capture(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
+    let _active = Active::new();
+    let reader = |stream: Option<Box<dyn Read + Send>>| {
+        std::thread::spawn(move || {
+            let mut bytes = Vec::new();
+            // What was read before an error counts; a megabyte is more than any version needs.
+            let _ = stream.map(|s| s.take(1 << 20).read_to_end(&mut bytes));
+            String::from_utf8_lossy(&bytes).into_owned()
+        })
+    };
+    static COUNT: AtomicUsize = AtomicUsize::new(0);
+    let count = COUNT.fetch_add(1, Ordering::SeqCst);
+    let mark = PathBuf::from(format!("probe-{}-{count}", std::process::id()));
+    command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
+    let mut child = spawn(command, &mark).ok()?;
+    let out = reader(child.stdout.take().map(|s| Box::new(s) as _));
+    let err = reader(child.stderr.take().map(|s| Box::new(s) as _));
+    let began = Instant::now();
+    let status = loop {
+        match child.try_wait() {
+            Ok(Some(status)) => break Some(status),
+            Ok(None) if began.elapsed() < timeout && check_interrupt().is_ok() => {
+                std::thread::sleep(Duration::from_millis(2));
+            }
+            _ => break None,
+        }
+    };
+    if status.is_none() {
+        stop(&mut child);
+    }
+    kill_marked(&mark);
+    let texts = (out.join().ok()?, err.join().ok()?);
+    status.is_some_and(|s| s.success()).then_some(texts)
+}
+
+/// Starts a child in a process group of its own that dies with this process.
+fn spawn(command: &mut Command, mark: &Path) -> std::io::Result<Child> {
+    let driver = std::process::id();
+    let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
+    command.process_group(0).env(MARK, mark).env(DRIVER, format!("{}:{driver}", boot.trim()));
+    #[cfg(target_os = "linux")]
+    // SAFETY: the closure runs in the forked child, where it only makes system calls that are
+    // async-signal-safe, and allocates nothing.
+    unsafe {
+        command.pre_exec(move || {
+            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
+            // The driver may have died before that call.
+            if libc::getppid() != driver as libc::pid_t {
+                libc::_exit(127);
+            }
+            Ok(())
+        });
+    }
+    command.spawn()
+}
+
+/// Ends a child and its process group: asks first, so that `mpirun` can end its ranks.
+fn stop(child: &mut Child) {
+    signal_group(child, libc::SIGTERM);
+    let began = Instant::now();
+    while began.elapsed() < GRACE {
+        if !matches!(child.try_wait(), Ok(None)) {
+            break;
+        }
+        std::thread::sleep(Duration::from_millis(10));
+    }
+    // The group may outlive its leader.
+    signal_group(child, libc::SIGKILL);
+    let _ = child.wait();
+}
+
+fn signal_group(child: &Child, signal: i32) {
+    // SAFETY: a plain system call. The group was made for this child, which has not been waited
+    // for unless its group is empty or still its own.
+    unsafe {
+        libc::kill(-(child.id() as libc::pid_t), signal);
+    }
+}
+
+/// Kills every process that carries the mark of the run in `folder`, until there is none.
+pub(super) fn kill_marked(folder: &Path) {
+    use std::os::unix::ffi::OsStrExt;
+    let mut wanted = format!("{MARK}=").into_bytes();
+    wanted.extend(folder.as_os_str().as_bytes());
+    for _ in 0..200 {
+        let found = marked(&wanted);
+        if found.is_empty() {
+            return;
+        }
+        for pid in found {
+            // SAFETY: a plain system call.
+            unsafe {
+                libc::kill(pid, libc::SIGKILL);
+            }
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+/// Processes other than this one that have `wanted` in their environment.
+fn marked(wanted: &[u8]) -> Vec<libc::pid_t> {
+    let own = std::process::id() as libc::pid_t;
+    let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
+    entries
+        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+        .filter(|&pid: &libc::pid_t| pid != own)
+        // Processes of other users cannot be read, and are none of ours.
+        .filter(|pid| {
+            fs::read(format!("/proc/{pid}/environ"))
+                .is_ok_and(|text| text.split(|&b| b == 0).any(|variable| variable == wanted))
+        })
+        .collect()
+}
+
+/// The end of a log, fit to be shown.
+fn tail(log: &Path) -> String {
+    const BYTES: u64 = 4096;
+    const LINES: usize = 12;
+    let read = || -> std::io::Result<Vec<u8>> {
+        let mut file = File::open(log)?;
+        let length = file.metadata()?.len();
+        file.seek(SeekFrom::Start(length.saturating_sub(BYTES)))?;
+        let mut bytes = Vec::new();
+        file.take(BYTES).read_to_end(&mut bytes)?;
+        Ok(bytes)
+    };
+    let text = String::from_utf8_lossy(&read().unwrap_or_default()).into_owned();
+    // Control characters of a child have no business on the user's terminal.
+    let plain = |line: &str| format!("  | {}", line.replace(|c: char| c.is_control(), " "));
+    let lines: Vec<String> = text.lines().map(plain).collect();
+    match lines.len() {
+        0 => "  (it printed nothing)".to_string(),
+        n => lines[n.saturating_sub(LINES)..].join("\n"),
+    }
+}
+
+/// Bytes of all files below a folder; what vanishes meanwhile does not count.
+fn size_of(folder: &Path) -> u64 {
+    let entries = fs::read_dir(folder).into_iter().flatten().flatten();
+    entries
+        .map(|entry| match entry.metadata() {
+            Ok(data) if data.is_dir() => size_of(&entry.path()),
+            Ok(data) => data.len(),
+            Err(_) => 0,
+        })
+        .sum()
+}
+
+/// The signal that asked this process to stop while a child ran; 0 if none did.
+static INTERRUPT: AtomicI32 = AtomicI32::new(0);
+/// Number of children being waited for.
+static ACTIVE: AtomicUsize = AtomicUsize::new(0);
+
+/// While one of these lives, a request to stop (Ctrl-C, SIGTERM, SIGHUP) ends the child first.
+struct Active;
+
+impl Active {
+    fn new() -> Self {
+        static INSTALL: Once = Once::new();
+        INSTALL.call_once(|| {
+            for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
+                install(signal);
+            }
+        });
+        ACTIVE.fetch_add(1, Ordering::SeqCst);
+        Self
+    }
+}
+
+impl Drop for Active {
+    fn drop(&mut self) {
+        ACTIVE.fetch_sub(1, Ordering::SeqCst);
+    }
+}
+
+fn install(signal: i32) {
+    // SAFETY: the handler is async-signal-safe, and the structure is filled before its use.
+    unsafe {
+        let mut old: libc::sigaction = std::mem::zeroed();
+        // What was ignored on purpose (nohup) stays ignored.
+        if libc::sigaction(signal, std::ptr::null(), &mut old) != 0
+            || old.sa_sigaction == libc::SIG_IGN
+        {
+            return;
+        }
+        let mut new: libc::sigaction = std::mem::zeroed();
+        new.sa_sigaction = on_signal as extern "C" fn(i32) as libc::sighandler_t;
+        new.sa_flags = libc::SA_RESTART;
+        libc::sigemptyset(&mut new.sa_mask);
+        libc::sigaction(signal, &new, std::ptr::null_mut());
+    }
+}
+
+/// Notes the signal while a child runs; otherwise it does what it does by default.
+extern "C" fn on_signal(signal: i32) {
+    if ACTIVE.load(Ordering::SeqCst) > 0 {
+        INTERRUPT.store(signal, Ordering::SeqCst);
+    } else {
+        // SAFETY: both calls are async-signal-safe.
+        unsafe {
+            libc::signal(signal, libc::SIG_DFL);
+            libc::raise(signal);
+        }
+    }
+}
+
+/// An error if this process was asked to stop while a child ran.
+pub(super) fn check_interrupt() -> Result<()> {
+    match INTERRUPT.load(Ordering::SeqCst) {
+        0 => Ok(()),
+        signal => Err(Error::Interrupted { signal }),
+    }
+}

@@ -1,0 +1,425 @@
+//! `report.html` and `report.md`, from the files of a run.
+
+use super::plots;
+use super::study_files::StudyFiles;
+use super::table::Table;
+use super::verdict::duration;
+use crate::base::{Error, Result, write_whole};
+use minijinja::{Environment, context};
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+const PAGE: &str = include_str!("page/page.html");
+const MARKDOWN: &str = include_str!("page/report.md");
+const STYLE: &str = include_str!("page/page.css");
+const SCRIPT: &str = include_str!("page/page.js");
+
+/// What holds for every study, however it comes out.
+const CAVEATS: [&str; 5] = [
+    "W, S_l and L_r are defined here as W = w / (E* R L1), S_l = L1 / (2 C) and L_r = L1 / L2; the \
+     paper names the factors, its formulas and levels are not in the text that we have.",
+    "The stress correction of guilbault is a reconstruction: the formula of its transition factor \
+     is not in the text that we have.",
+    "For L_r < 1 the pressure grows without bound towards the roller's edge. Peaks there are those \
+     of a mesh, so the surroundings of the edge are left out and the rest of the curves compared.",
+    "The models take both bodies for half-spaces with end faces and the gap for a parabola. A real \
+     roller also carries a nearly uniform tension across its diameter of the order of p0 C / (2 R).",
+    "FEM's own error is the difference of its two finest meshes: an estimate, not a bound.",
+];
+
+/// Writes `report.html` and `report.md` into `folder`.
+///
+/// # Errors
+/// [`Error::Io`] when a file cannot be written, [`Error::File`] when the run's files lack what the
+/// page shows.
+pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
+    write_whole(&folder.join("report.html"), html(files)?)?;
+    write_whole(&folder.join("report.md"), markdown(files)?)
+}
+
+/// The page.
+///
+/// # Errors
+/// [`Error::File`] when the run's files lack what the page shows.
+pub fn html(files: &StudyFiles) -> Result<String> {
+    // "<" inside the data would let a name end the script element.
+    let data = explorer_data(files).to_string().replace('<', "\\u003c");
+    let time_plot = themed(&plots::named(files, "time-error").unwrap_or_default());
+    render("page.html", PAGE, files, context! { data, time_plot, css => STYLE, js => SCRIPT })
+}
+
+/// The same tables as Markdown.
+///
+/// # Errors
+/// As [`html`].
+pub fn markdown(files: &StudyFiles) -> Result<String> {
+    render("report.md", MARKDOWN, files, context! {})
+}
+
+fn render(
+    name: &str,
+    template: &str,
+    files: &StudyFiles,
+    more: minijinja::Value,
+) -> Result<String> {
+    let mut environment = Environment::new();
+    let dash = || "–".to_string();
+    environment.add_filter("p0", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| format!("{v:.4}").replace('-', "−"))
+    });
+    environment.add_filter("seconds", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, duration)
+    });
+    environment.add_filter("decades", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| format!("{v:.2}").replace('-', "−"))
+    });
+    environment.add_filter("short", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| short(v).replace('-', "−"))
+    });
+    let fault = |e: minijinja::Error| Error::File {
+        path: name.into(),
+        line: None,
+        message: format!("{e:#}"),
+        remedy: "run the study again with this version".to_string(),
+    };
+    environment.add_template(name, template).map_err(fault)?;
+    let base = context! {
+        s => files.summary,
+        caveats => CAVEATS,
+        error_tables => error_tables(files),
+        times => times(files),
+        effects => effects(files),
+        details => details(files),
+    };
+    environment
+        .get_template(name)
+        .and_then(|t| t.render(context! { ..more, ..base }))
+        .map_err(fault)
+}
+
+fn as_number(value: &minijinja::Value) -> Option<f64> {
+    f64::try_from(value.clone()).ok().filter(|v| v.is_finite())
+}
+
+/// Up to five significant digits, without an exponent where that stays short.
+fn short(value: f64) -> String {
+    if value == 0.0 {
+        return "0".to_string();
+    }
+    let magnitude = value.abs().log10().floor() as i32;
+    if !(-4..6).contains(&magnitude) {
+        let text = format!("{value:.3e}");
+        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
+        return format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'));
+    }
+    let text = format!("{value:.*}", (4 - magnitude).max(0) as usize);
+    if text.contains('.') {
+        text.trim_end_matches('0').trim_end_matches('.').to_string()
+    } else {
+        text
+    }
+}
+
+/// A plot in the colours of the page, which follow the reader's scheme.
+fn themed(svg: &str) -> String {
+    let mut text = svg.to_string();
+    for (colour, name) in [
+        ("#1A1A1A", "ink"),
+        ("#FFFFFF", "paper"),
+        ("#DDDDDD", "faint"),
+        ("#D55E00", "c-half-space"),
+        ("#B06095", "c-mirror"),
+        ("#008C67", "c-guilbault"),
+        ("#0072B2", "c-quarter-space"),
+    ] {
+        text = text.replace(&format!("\"{colour}\""), &format!("\"var(--{name})\""));
+    }
+    // A view box lets the page scale it.
+    let attribute = |name: &str| {
+        let rest = text.split_once(&format!(" {name}=\""))?.1;
+        rest.split_once('"').map(|(v, _)| v.to_string())
+    };
+    match (attribute("width"), attribute("height")) {
+        (Some(w), Some(h)) if !text.contains("viewBox") => {
+            text.replacen("<svg ", &format!("<svg viewBox=\"0 0 {w} {h}\" role=\"img\" "), 1)
+        }
+        _ => text,
+    }
+}
+
+/// A cell as a JSON number, or null.
+fn cell(table: &Table, row: &[String], name: &str) -> Value {
+    table.number(row, name).map_or(Value::Null, |v| json!(v))
+}
+
+fn methods(files: &StudyFiles) -> Vec<&str> {
+    files.summary["methods"].as_array().into_iter().flatten().filter_map(Value::as_str).collect()
+}
+
+/// For each method a table of its errors, one row a case.
+fn error_tables(files: &StudyFiles) -> Vec<Value> {
+    let study = &files.study;
+    let far = study.header.iter().find(|h| h.starts_with("pressure_max_")).cloned();
+    methods(files)
+        .into_iter()
+        .map(|method| {
+            let rows: Vec<Value> = study
+                .rows
+                .iter()
+                .filter(|r| study.text(r, "source") == method)
+                .map(|r| {
+                    let mut row = Map::new();
+                    row.insert("case".to_string(), json!(study.text(r, "case")));
+                    row.insert("err".to_string(), json!(study.text(r, "err")));
+                    for name in [
+                        "pressure_rms",
+                        "pressure_max",
+                        "stress_rms",
+                        "stress_max",
+                        "von_mises_rms",
+                        "von_mises_max",
+                        "critical_value",
+                        "critical_depth",
+                        "fem_error_pressure",
+                        "fem_error_stress",
+                    ] {
+                        row.insert(name.to_string(), cell(study, r, name));
+                    }
+                    let far = far.as_ref().map_or(Value::Null, |name| cell(study, r, name));
+                    row.insert("pressure_far".to_string(), far);
+                    Value::Object(row)
+                })
+                .collect();
+            json!({ "method": method, "rows": rows })
+        })
+        .collect()
+}
+
+/// Times of every case and source.
+fn times(files: &StudyFiles) -> Vec<Value> {
+    let study = &files.study;
+    study
+        .rows
+        .iter()
+        .map(|r| {
+            json!({
+                "case": study.text(r, "case"),
+                "source": study.text(r, "source"),
+                "seconds": cell(study, r, "seconds"),
+                "spread": cell(study, r, "seconds_spread"),
+                "cold": cell(study, r, "seconds_cold"),
+                "all_threads": cell(study, r, "seconds_all_threads"),
+                "threads": study.text(r, "threads"),
+                "unknowns": study.text(r, "unknowns"),
+                "log10_speedup": cell(study, r, "log10_speedup"),
+                "timed_on": study.text(r, "timed_on"),
+            })
+        })
+        .collect()
+}
+
+/// For each method what its effects say in words, and their plots.
+fn effects(files: &StudyFiles) -> Vec<Value> {
+    methods(files)
+        .into_iter()
+        .filter_map(|method| {
+            let told = files.summary["effects_in_words"].as_array()?;
+            let words: Vec<&str> = told
+                .iter()
+                .filter(|t| t["method"] == method)
+                .filter_map(|t| t["text"].as_str())
+                .collect();
+            let plots: Vec<String> = ["half-normal", "pareto", "interactions"]
+                .into_iter()
+                .filter_map(|kind| plots::named(files, &format!("{kind}-{method}")))
+                .map(|svg| themed(&svg))
+                .collect();
+            (!words.is_empty()).then(|| json!({ "method": method, "words": words, "plots": plots }))
+        })
+        .collect()
+}
+
+/// The numbers of each solution's `details`, one row a case and method.
+fn details(files: &StudyFiles) -> Option<Value> {
+    fn flatten(prefix: &str, value: &Value, all: &mut Vec<(String, String)>) {
+        match value {
+            Value::Object(map) => {
+                for (key, v) in map {
+                    let name =
+                        if prefix.is_empty() { key.clone() } else { format!("{prefix} {key}") };
+                    flatten(&name.replace('_', " "), v, all);
+                }
+            }
+            Value::Number(n) => {
+                let text = n.as_u64().map_or_else(
+                    || n.as_f64().map_or_else(String::new, short),
+                    |whole| whole.to_string(),
+                );
+                all.push((prefix.to_string(), text));
+            }
+            Value::String(s) => all.push((prefix.to_string(), s.clone())),
+            Value::Bool(b) => all.push((prefix.to_string(), b.to_string())),
+            // Lists have no place in a table's cell; the file has them.
+            Value::Array(_) | Value::Null => {}
+        }
+    }
+    let mut names: Vec<String> = Vec::new();
+    let mut rows = Vec::new();
+    for case in files.summary["cases"].as_array()? {
+        for (method, run) in case["methods"].as_object()? {
+            let mut numbers = Vec::new();
+            flatten("", &run["details"], &mut numbers);
+            for (name, _) in &numbers {
+                if !names.contains(name) {
+                    names.push(name.clone());
+                }
+            }
+            rows.push((case["name"].clone(), method.clone(), numbers));
+        }
+    }
+    if names.is_empty() {
+        return None;
+    }
+    let rows: Vec<Value> = rows
+        .into_iter()
+        .filter(|(_, _, numbers)| !numbers.is_empty())
+        .map(|(case, method, numbers)| {
+            let values: Vec<&str> = names
+                .iter()
+                .map(|n| numbers.iter().find(|(k, _)| k == n).map_or("", |(_, v)| v.as_str()))
+                .collect();
+            json!({ "case": case, "method": method, "values": values })
+        })
+        .collect();
+    Some(json!({ "names": names, "rows": rows }))
+}
+
+/// The numbers behind the curves: coordinates in C, values in p0, five digits after the point.
+fn explorer_data(files: &StudyFiles) -> Value {
+    let mut symbols = Map::new();
+    for (name, symbol) in plots::SYMBOLS {
+        symbols.insert(name.to_string(), json!(symbol));
+    }
+    let quantities: Vec<&str> = plots::SYMBOLS.iter().map(|(name, _)| *name).collect();
+    let mut sources: Vec<&str> = methods(files);
+    sources.push("fem");
+    let cases: Vec<Value> = files.summary["cases"]
+        .as_array()
+        .into_iter()
+        .flatten()
+        .map(|case| case_data(files, case, &quantities))
+        .collect();
+    json!({
+        "cases": cases,
+        "sources": sources,
+        "quantities": quantities,
+        "symbols": symbols,
+        "range": files.summary["range"],
+    })
+}
+
+fn fixed(value: f64) -> Value {
+    json!((value * 1e5).round() / 1e5)
+}
+
+/// Curves and errors of one case, by `body/curve`.
+fn case_data(files: &StudyFiles, case: &Value, quantities: &[&str]) -> Value {
+    let name = case["name"].as_str().unwrap_or_default();
+    let number = |v: &Value| v.as_f64().unwrap_or(f64::NAN);
+    let (c_m, p0_pa) = (number(&case["hertz"]["c_m"]), number(&case["hertz"]["p0_pa"]));
+    let mut curves: Map<String, Value> = Map::new();
+
+    // Adds a value of a source at a point; the first source that comes to a curve brings the
+    // points along, and every source has the same.
+    let mut add = |key: String,
+                   source: &str,
+                   at: [f64; 3],
+                   values: Vec<(&str, f64)>,
+                   part: &str| {
+        let curve = curves.entry(key).or_insert_with(
+            || json!({ "points": [], "owner": source, "values": {}, "fem_error": {} }),
+        );
+        if curve["owner"] == source && part == "values" {
+            let point: Vec<Value> = at.iter().map(|v| fixed(v / c_m)).collect();
+            curve["points"].as_array_mut().expect("made above").push(json!(point));
+        }
+        let holder = if part == "values" {
+            let holder = curve[part].as_object_mut().expect("made above");
+            holder.entry(source).or_insert_with(|| json!({})).as_object_mut().expect("an object")
+        } else {
+            curve[part].as_object_mut().expect("made above")
+        };
+        for (quantity, value) in values {
+            let list = holder.entry(quantity).or_insert_with(|| json!([]));
+            list.as_array_mut().expect("a list").push(fixed(value / p0_pa));
+        }
+    };
+    let pressure = &files.pressure;
+    for row in pressure.rows.iter().filter(|r| pressure.text(r, "case") == name) {
+        let get = |column| pressure.number(row, column).unwrap_or(f64::NAN);
+        let key = format!("contact/{}", pressure.text(row, "line"));
+        let values = vec![("pressure", get("p_pa"))];
+        add(key, pressure.text(row, "source"), [get("x_m"), get("y_m"), 0.0], values, "values");
+    }
+    for (table, part) in [(&files.curves, "values"), (&files.fem_error, "fem_error")] {
+        let columns: Vec<(&str, usize)> = quantities
+            .iter()
+            .filter_map(|&q| Some((q, table.column(&format!("{q}_pa"))?)))
+            .collect();
+        for row in table.rows.iter().filter(|r| table.text(r, "case") == name) {
+            let get = |column| table.number(row, column).unwrap_or(f64::NAN);
+            let key = format!("{}/{}", table.text(row, "body"), table.text(row, "curve"));
+            let at = [get("x_m"), get("y_m"), get("z_m")];
+            let values =
+                columns.iter().filter_map(|&(q, c)| Some((q, row[c].parse().ok()?))).collect();
+            add(key, table.text(row, "source"), at, values, part);
+        }
+    }
+    for curve in curves.values_mut() {
+        let points: Vec<Vec<f64>> =
+            serde_json::from_value(curve["points"].clone()).unwrap_or_default();
+        // The running coordinate is the one that varies.
+        let spread = |k: usize| {
+            let all = points.iter().map(|p| p[k]);
+            all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+        };
+        let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
+        let map = curve.as_object_mut().expect("made above");
+        map.remove("owner");
+        map.insert("axis".to_string(), json!(["x", "y", "z"][axis]));
+        map.insert("at".to_string(), json!(points.iter().map(|p| p[axis]).collect::<Vec<_>>()));
+    }
+
+    let errors_table = &files.errors;
+    let mut errors: Map<String, Value> = Map::new();
+    for row in errors_table.rows.iter().filter(|r| errors_table.text(r, "case") == name) {
+        let text = |column| errors_table.text(row, column);
+        let key = format!("{}/{}", text("body"), text("curve"));
+        let of_curve = errors.entry(key).or_insert_with(|| json!({}));
+        let slot = &mut of_curve[text("quantity")];
+        // Pressure has a row for each range; the first is the one of the summaries.
+        if slot.get(text("method")).is_none() {
+            let get = |column| errors_table.number(row, column).map_or(Value::Null, fixed);
+            slot[text("method")] = json!({ "max": get("max"), "rms": get("rms"), "l1": get("l1") });
+            let own = get("fem_error_max");
+            if !own.is_null() {
+                slot["fem_error_max"] = own;
+            }
+        }
+    }
+    let label = format!(
+        "{name} (W {}, S_l {}, L_r {})",
+        short(number(&case["W"])),
+        short(number(&case["S_l"])),
+        short(number(&case["L_r"]))
+    );
+    json!({
+        "name": name,
+        "label": label,
+        "S_l": case["S_l"],
+        "c_m": c_m,
+        "p0_pa": p0_pa,
+        "curves": curves,
+        "errors": errors,
+    })
+}

@@ -1,0 +1,163 @@
+//! The verdict of a study in words, from its summary.
+
+use serde_json::Value;
+
+/// Sentences for the head of a report, the most important first.
+pub fn sentences(summary: &Value) -> Vec<String> {
+    let mut all = vec![gates(summary)];
+    let excluded = &summary["range"]["stress_c"];
+    let methods = summary["method_summary"].as_array().map(Vec::as_slice).unwrap_or_default();
+    // The last method is the most complete one: the others are measured by how much they miss.
+    if let Some((best, others)) = methods.split_last() {
+        let name = best["method"].as_str().unwrap_or_default();
+        let number = |key: &str| best[key].as_f64();
+        match (number("pressure_rms"), number("stress_rms"), number("stress_max")) {
+            (Some(p), Some(s), Some(max)) => all.push(format!(
+                "{name} is off FEM by {} p0 RMS in pressure, {} p0 RMS in the stresses and {} p0 at \
+                 most, in the worst of {} cases, more than {excluded} C from the roller's edge.",
+                fraction(p),
+                fraction(s),
+                fraction(max),
+                best["compared"],
+            )),
+            _ => all.push(format!("{name} could not be compared with FEM in any case.")),
+        }
+        let missed: Vec<String> = others
+            .iter()
+            .filter_map(|m| {
+                let (p, s) = (m["pressure_max"].as_f64()?, m["stress_max"].as_f64()?);
+                Some(format!(
+                    "{} by up to {} p0 in pressure and {} p0 in a stress",
+                    m["method"].as_str()?,
+                    fraction(p),
+                    fraction(s)
+                ))
+            })
+            .collect();
+        if !missed.is_empty() {
+            all.push(format!("The simpler models miss: {}.", missed.join("; ")));
+        }
+    }
+    all.extend(fem_error(summary));
+    all.extend(time(summary, methods));
+    all
+}
+
+/// Four digits after the point; smaller numbers as such.
+fn fraction(v: f64) -> String {
+    if v != 0.0 && v.abs() < 5e-5 { format!("{v:.0e}") } else { format!("{v:.4}") }
+}
+
+fn gates(summary: &Value) -> String {
+    let gates = summary["gates"].as_array().map(Vec::as_slice).unwrap_or_default();
+    let failed: Vec<String> = gates
+        .iter()
+        .filter(|g| g["passed"] != true)
+        .map(|g| {
+            let text = |key: &str| g[key].as_str().unwrap_or_default().to_string();
+            format!("{} ({}): {}", text("name"), text("method"), text("note"))
+        })
+        .collect();
+    match (gates.len(), failed.len()) {
+        (0, _) => "No accuracy gate was evaluated.".to_string(),
+        (n, 0) => format!("All {n} accuracy gates hold."),
+        (n, k) => format!("{k} of {n} accuracy gates fail: {}.", failed.join("; ")),
+    }
+}
+
+/// The largest error that FEM states of itself.
+fn fem_error(summary: &Value) -> Option<String> {
+    let own = &summary["fem_error"];
+    let (p, s) = (own["pressure"].as_f64()?, own["stress"].as_f64()?);
+    Some(format!(
+        "FEM itself changes by up to {} p0 in pressure and {} p0 in a stress from its second finest \
+         mesh to the finest, over the same range.",
+        fraction(p),
+        fraction(s)
+    ))
+}
+
+fn time(summary: &Value, methods: &[Value]) -> Option<String> {
+    let best = methods.last()?;
+    let seconds = best["seconds"].as_f64()?;
+    let name = best["method"].as_str()?;
+    let mut text =
+        format!("{name} takes {} a case on one thread of this machine", duration(seconds));
+    let cases = summary["cases"].as_array()?;
+    let times: Vec<f64> = cases.iter().filter_map(|c| c["fem"]["seconds"].as_f64()).collect();
+    let slowest = times.iter().copied().reduce(f64::max);
+    let fastest = times.iter().copied().reduce(f64::min);
+    if let (Some(slow), Some(fast)) = (slowest, fastest) {
+        let live = summary["fem"] == "live";
+        let whose = if live { "in this run" } else { "on the machine of the record" };
+        text.push_str(&format!(
+            "; FEM's finest meshes took {} to {} {whose}",
+            duration(fast),
+            duration(slow)
+        ));
+        let ratios = &best["speedup"];
+        if let (Some(low), Some(high)) = (ratios["low"].as_f64(), ratios["high"].as_f64()) {
+            text.push_str(&format!(
+                ", {} to {} times as long in one run on one machine",
+                rounded(low),
+                rounded(high)
+            ));
+        } else if !live {
+            text.push_str(", which is not divided by a time of this one");
+        }
+    }
+    text.push('.');
+    Some(text)
+}
+
+/// Two significant digits with thousands apart.
+fn rounded(value: f64) -> String {
+    let scale = 10f64.powi(value.abs().max(1.0).log10().floor() as i32 - 1);
+    let whole = ((value / scale).round() * scale) as u64;
+    let digits = whole.to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(",")
+}
+
+/// Seconds with a fitting unit.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 0.1 => format!("{:.1} ms", s * 1e3),
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s if s < 10.0 => format!("{s:.1} s"),
+        s => format!("{s:.0} s"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+
+    #[test]
+    fn failed_gates_come_first_and_are_named() {
+        let summary = json!({
+            "gates": [
+                { "name": "pressure", "method": "mirror", "passed": false, "note": "worst at a" },
+                { "name": "stress", "method": "mirror", "passed": true, "note": "" },
+            ],
+            "range": { "stress_c": 0.1 },
+            "method_summary": [{ "method": "mirror", "cases": 8, "compared": 0 }],
+        });
+        let text = sentences(&summary);
+        assert_eq!(text[0], "1 of 2 accuracy gates fail: pressure (mirror): worst at a.");
+        assert_eq!(text[1], "mirror could not be compared with FEM in any case.");
+        assert_eq!(text.len(), 2);
+    }
+
+    #[test]
+    fn times_and_ratios_read_well() {
+        assert_eq!(
+            [4.2e-5, 0.0123, 0.27, 3.21, 45.4].map(duration),
+            ["42 µs", "12.3 ms", "270 ms", "3.2 s", "45 s"]
+        );
+        assert_eq!([14_234.0, 950.4, 3.0].map(rounded), ["14,000", "950", "3"]);
+    }
+}

@@ -1,0 +1,109 @@
+//! FEM's answers on the study's terms: recorded or live results in units of C and p0, with the
+//! difference of the two finest meshes as FEM's own error at every point.
+
+use super::run::{Provenance, Reference};
+use super::sampled::{Quantity, Sampled, SampledCurve, SampledLine};
+use crate::fem::{self, MeshResult};
+
+/// From the reader of records or from a live run.
+///
+/// The error at a point is the difference of the finest mesh to the next; none is stated for a
+/// single mesh. It is not multiplied by Richardson's factor, which is known only where the meshes
+/// converge with an order: a band of the plain difference is there for every curve.
+pub fn from_fem(reference: &fem::Reference) -> Reference {
+    let finest = reference.finest();
+    let next = reference.meshes.get(1);
+    let hertz = reference.case.hertz();
+    let (c, p0) = (hertz.c_m, hertz.p0_pa);
+    let lines = finest.lines.iter().map(|line| SampledLine {
+        name: line.name.to_string(),
+        at: line.at_m.iter().map(|at| at.map(|v| v / c)).collect(),
+        p: line.p_pa.iter().map(|p| p / p0).collect(),
+        own_error: next.and_then(|n| n.line(line.name)).map(|other| {
+            line.p_pa.iter().zip(&other.p_pa).map(|(a, b)| (a - b).abs() / p0).collect()
+        }),
+    });
+    let curves = finest.curves.iter().map(|curve| SampledCurve {
+        body: curve.body,
+        name: curve.name.to_string(),
+        at: curve.at_m.iter().map(|at| at.map(|v| v / c)).collect(),
+        stress: curve.stress_pa.iter().map(|&s| s * (1.0 / p0)).collect(),
+        own_error: next.and_then(|n| n.curve(curve.body, curve.name)).map(|other| {
+            let pairs = curve.stress_pa.iter().zip(&other.stress_pa);
+            pairs.map(|(a, b)| Quantity::ALL.map(|q| (q.of(a) - q.of(b)).abs() / p0)).collect()
+        }),
+    });
+    Reference {
+        sampled: Sampled {
+            source: "fem".to_string(),
+            lines: lines.collect(),
+            curves: curves.collect(),
+        },
+        provenance: provenance(finest, reference.source == "live"),
+    }
+}
+
+fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
+    let summary = &mesh.summary;
+    let text = |name: &str| summary.more.get(name).and_then(|v| v.as_str()).map(str::to_string);
+    let pair = |value: &serde_json::Value| -> Option<[f64; 2]> {
+        let spread = value["spread"].as_f64().unwrap_or(0.0);
+        Some([value["median"].as_f64()?, spread])
+    };
+    Provenance {
+        live,
+        date: text("date"),
+        machine: Some(summary.processor().to_string()),
+        command: text("command"),
+        unknowns: Some(summary.unknowns as u64),
+        seconds: Some(summary.total_seconds()),
+        seconds_spread: None,
+        stages: summary.seconds.clone(),
+        versions: summary
+            .versions
+            .iter()
+            .filter(|(name, _)| *name != "processor")
+            .map(|(name, v)| {
+                (name.clone(), v.as_str().map_or_else(|| v.to_string(), str::to_string))
+            })
+            .collect(),
+        sam_seconds: summary
+            .more
+            .get("sam_seconds")
+            .and_then(|v| v.as_object())
+            .into_iter()
+            .flatten()
+            .filter_map(|(method, v)| Some((method.clone(), pair(v)?)))
+            .collect(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::{Range, errors};
+
+    #[test]
+    fn a_record_is_its_own_reference() {
+        let mut seen = 0;
+        for name in fem::Reference::embedded_names() {
+            let record = fem::Reference::embedded(name).unwrap().unwrap();
+            let reference = from_fem(&record);
+            let mut same = reference.sampled.clone();
+            same.source = "again".to_string();
+            let half_length = record.case.factors().slenderness;
+            let rows =
+                errors::compare(name, half_length, &reference.sampled, &same, &Range::default())
+                    .unwrap();
+            // Two lines with two ranges each, fourteen curves with eight quantities.
+            assert_eq!(rows.len(), 4 + 14 * 8, "{name}");
+            assert!(rows.iter().all(|r| r.max == 0.0 && r.points > 10), "{name}");
+            let stated = rows.iter().all(|r| r.ref_error_max.is_some());
+            assert_eq!(stated, record.meshes.len() > 1, "{name}");
+            assert!(reference.provenance.seconds.is_some_and(|s| s > 0.0));
+            assert!(!reference.provenance.live);
+            seen += 1;
+        }
+        assert_eq!(seen, fem::Reference::embedded_names().count());
+    }
+}
