@@ -91,7 +91,12 @@ fn row(text: &mut String, place: &str, values: &[f64]) {
     text.push_str(place);
     for (i, value) in values.iter().enumerate() {
         let comma = if i == 0 { "" } else { "," };
-        write!(text, "{comma}{value:e}").expect("a string grows");
+        // Many stresses vanish by symmetry.
+        let written = match value {
+            0.0 => write!(text, "{comma}0"),
+            _ => write!(text, "{comma}{value:e}"),
+        };
+        written.expect("a string grows");
     }
     text.push('\n');
 }

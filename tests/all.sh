@@ -1,0 +1,77 @@
+#!/usr/bin/env bash
+# Runs every check and test of the project; installs what they need first, if it is missing.
+#
+#   bash tests/all.sh
+#
+# Installs Debian or Ubuntu packages as root or by sudo. Exit code 0 if all passed, 2 if something is
+# missing that it cannot install, else that of what failed.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+began=$SECONDS
+
+step() {
+    printf '\n=== %s (after %d s)\n' "$1" "$((SECONDS - began))"
+}
+
+# Notes a package as missing unless the check that follows it passes.
+missing=()
+need() {
+    local package=$1
+    shift
+    "$@" >/dev/null 2>&1 || missing+=("$package")
+}
+
+step "tools"
+command -v cargo >/dev/null || {
+    echo "error: cargo is not on the PATH; install Rust 1.89 or newer (rustup)" >&2
+    exit 2
+}
+need gmsh command -v gmsh
+need python3-dolfinx /usr/bin/python3 -c 'import dolfinx.fem.petsc'
+need python3-pytest /usr/bin/python3 -c 'import pytest'
+# The reference BLAS makes the finite elements several times slower.
+need libopenblas0-serial test -e /usr/lib/"$(uname -m)"-linux-gnu/openblas-serial/libblas.so.3
+need openmpi-bin command -v mpirun
+need gcc command -v cc
+# The page is tested in a real browser.
+need chromium command -v chromium
+if ((${#missing[@]})); then
+    echo "to be installed: ${missing[*]}"
+    as_root=()
+    if [[ $(id -u) != 0 ]]; then
+        as_root=(sudo -n)
+    fi
+    if ! command -v apt-get >/dev/null || ! "${as_root[@]}" true 2>/dev/null; then
+        echo "error: this needs apt-get, and root or sudo without a password; install by hand:" \
+            "${missing[*]}" >&2
+        exit 2
+    fi
+    "${as_root[@]}" apt-get update -qq
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+        apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
+# The interpreter's cache beside the sources would make cargo build anew.
+export PYTHONDONTWRITEBYTECODE=1
+
+step "format"
+cargo fmt --check
+
+step "clippy"
+cargo clippy --all-targets --quiet -- -D warnings
+
+step "documentation"
+RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
+
+step "build"
+cargo build --release
+
+step "installed tools, as the program sees them"
+target/release/edgeline doctor --fem
+
+step "tests of the finite-element side"
+/usr/bin/python3 -m pytest -q -p no:cacheprovider fem
+
+step "tests, those with live finite elements included"
+cargo test --release -- --include-ignored
+
+step "done"
