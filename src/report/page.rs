@@ -102,7 +102,7 @@ fn as_number(value: &minijinja::Value) -> Option<f64> {
 }
 
 /// Up to five significant digits, without an exponent where that stays short.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_string();
     }
