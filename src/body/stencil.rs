@@ -235,27 +235,49 @@ impl Stencil {
         }
     }
 
-    /// Calls `act(offset, weighted value)` for every source point, with the `values` at the first
-    /// nodes (zeros behind them) and their `charges`.
-    pub fn for_each(
-        &self,
-        reach: f64,
-        values: &[f64],
-        charges: &[f64],
-        mut act: impl FnMut(f64, f64),
-    ) {
+    /// Appends every source point within `reach` to `loads`, with the `values` at the first nodes
+    /// (zeros behind them) and their `charges`.
+    pub fn gather(&self, reach: f64, values: &[f64], charges: &[f64], loads: &mut LineLoads) {
         for &(u, charge, w) in &self.far {
             if u.abs() < reach {
-                act(u, w * charges[charge as usize]);
+                loads.push(u, w * charges[charge as usize]);
             }
         }
         for (&(u, first), w) in self.near.iter().zip(self.near_weights.chunks_exact(self.order)) {
             let first = first as usize;
             if u.abs() < reach && first < values.len() {
                 let local = &values[first..first + self.order];
-                act(u, w.iter().zip(local).map(|(w, v)| w * v).sum());
+                loads.push(u, w.iter().zip(local).map(|(w, v)| w * v).sum());
             }
         }
+    }
+}
+
+/// Line loads as a target sees them.
+#[derive(Debug, Clone, Default)]
+pub struct LineLoads {
+    /// Offsets target - source along the axis.
+    pub offsets: Vec<f64>,
+    /// Loads.
+    pub loads: Vec<f64>,
+}
+
+impl LineLoads {
+    /// Adds one.
+    pub fn push(&mut self, offset: f64, load: f64) {
+        self.offsets.push(offset);
+        self.loads.push(load);
+    }
+
+    /// Leaves none.
+    pub fn clear(&mut self) {
+        self.offsets.clear();
+        self.loads.clear();
+    }
+
+    /// Sum of `kernel(offset)` times the loads.
+    pub fn sum(&self, kernel: impl Fn(f64) -> f64) -> f64 {
+        self.offsets.iter().zip(&self.loads).map(|(&u, p)| p * kernel(u)).sum()
     }
 }
 
@@ -292,9 +314,9 @@ mod tests {
                 sources.scatter(&charge_row, &mut row);
                 let got: f64 = row.iter().sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
-                let mut sum = 0.0;
-                stencil.for_each(f64::INFINITY, &ones, &charges, |u, w| sum -= w * u.abs().ln());
-                assert!((sum - got).abs() < 1e-12);
+                let mut loads = LineLoads::default();
+                stencil.gather(f64::INFINITY, &ones, &charges, &mut loads);
+                assert!((loads.sum(kernel) - got).abs() < 1e-12);
             }
         }
     }

@@ -147,14 +147,6 @@ pub fn incomplete(u: f64, v: f64) -> (f64, f64) {
     (STEP * cos * j, STEP * sin * cos * n)
 }
 
-/// [`incomplete`] to leading order for small `rho` = sqrt(u^2 + v^2): J to rho^2, N to rho.
-#[inline]
-pub fn incomplete_near(u: f64, v: f64, rho: f64) -> (f64, f64) {
-    let angle = v.atan2(u);
-    let j = FRAC_PI_2 * (1.0 - u) + v * ((0.5 * rho).ln() + EULER_GAMMA - 1.0) + u * angle;
-    (j, FRAC_PI_2 - angle)
-}
-
 /// Positive nodes and weights of Gauss's ten-point rule on (-1, 1) (Abramowitz and Stegun 1964,
 /// table 25.4).
 const GAUSS_10: [(f64, f64); 5] = [

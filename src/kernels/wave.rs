@@ -14,7 +14,8 @@
 //! chapter 3). The inverse transforms in l are K0, K1 and their incomplete integrals:
 //! e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
 
-use super::bessel::{incomplete, incomplete_near, k0_k1};
+use super::bessel::{incomplete, k0_k1};
+use multiversion::multiversion;
 use std::f64::consts::FRAC_1_PI;
 use std::sync::{Arc, Mutex};
 
@@ -38,11 +39,7 @@ pub fn exact(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
     let rho = (u * u + v * v).sqrt();
     let x = k * rho;
     let (k0, k1) = k0_k1(x);
-    let (j, n) = if x < FLOOR {
-        incomplete_near(k * u.abs(), k * v, x)
-    } else {
-        incomplete(k * u.abs(), k * v)
-    };
+    let (j, n) = incomplete(k * u.abs(), k * v);
     let k1_rho = k1 / rho;
     // K2(x) k / rho^2, from K2 = K0 + 2 K1 / x.
     let k2_rho2 = (k * k0 + 2.0 * k1_rho) / (rho * rho);
@@ -180,18 +177,59 @@ impl WaveTable {
     }
 
     /// As [`exact`].
-    #[inline]
     pub fn line_load(&self, k: f64, u: f64, v: f64) -> WaveStress {
+        let [xx, ww, dd, xw, xd, wd] = self.sum(k, v, &[u], &[1.0]);
+        WaveStress { xx, ww, dd, xw, xd, wd }
+    }
+
+    /// The stresses xx, ww, dd, xw, xd, wd at the depth `v` > 0 of line loads `loads` at the
+    /// `offsets` target - source along the surface (of equal length).
+    pub fn sum(&self, k: f64, v: f64, offsets: &[f64], loads: &[f64]) -> [f64; 6] {
+        sum_loads(self, k, v, offsets, loads)
+    }
+
+    /// The stress ww alone.
+    #[inline]
+    pub fn ww(&self, k: f64, u: f64, v: f64) -> f64 {
         let (x, z) = (k * u.abs(), k * v);
         let rho = (x * x + z * z).sqrt();
         if rho >= CEILING {
-            return WaveStress::default();
+            return 0.0;
         }
         if rho < FLOOR {
-            return exact(k, self.nu, u, v);
+            return near(k, self.nu, u, v).ww;
         }
         let (patch, a, b) = Self::locate(x, z, rho);
-        let (patch, a, b) = (&self.patches[patch], a as f32, b as f32);
+        let mut sum = 0.0;
+        for row in self.ww[patch].iter().rev() {
+            let inner = row.iter().rev().fold(0.0, |inner, c| inner * b + c);
+            sum = sum * a + inner;
+        }
+        k / rho * sum
+    }
+}
+
+/// [`WaveTable::sum`], compiled for the processor's vector units too.
+#[multiversion(targets("x86_64+avx2+fma"))]
+fn sum_loads(table: &WaveTable, k: f64, v: f64, offsets: &[f64], loads: &[f64]) -> [f64; 6] {
+    let mut total = [0.0; 6];
+    let z = k * v;
+    for (&u, &load) in offsets.iter().zip(loads) {
+        let x = k * u.abs();
+        let rho = (x * x + z * z).sqrt();
+        if rho >= CEILING {
+            continue;
+        }
+        if rho < FLOOR {
+            let s = near(k, table.nu, u, v);
+            let s = [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
+            for i in 0..6 {
+                total[i] += load * s[i];
+            }
+            continue;
+        }
+        let (patch, a, b) = WaveTable::locate(x, z, rho);
+        let (patch, a, b) = (&table.patches[patch], a as f32, b as f32);
         let mut sum = [0f32; LANES];
         for row in patch.iter().rev() {
             let mut inner = row[ORDER - 1];
@@ -204,38 +242,33 @@ impl WaveTable {
                 sum[i] = sum[i] * a + inner[i];
             }
         }
-        let sum = sum.map(f64::from);
-        let scale = k / rho;
+        let scale = load * k / rho;
         // xw and wd are odd in u.
         let odd = if u < 0.0 { -scale } else { scale };
-        WaveStress {
-            xx: scale * sum[0],
-            ww: scale * sum[1],
-            dd: scale * sum[2],
-            xw: odd * sum[3],
-            xd: scale * sum[4],
-            wd: odd * sum[5],
+        let scales = [scale, scale, scale, odd, scale, odd];
+        for i in 0..6 {
+            total[i] += scales[i] * f64::from(sum[i]);
         }
     }
+    total
+}
 
-    /// The stress ww alone.
-    #[inline]
-    pub fn ww(&self, k: f64, u: f64, v: f64) -> f64 {
-        let (x, z) = (k * u.abs(), k * v);
-        let rho = (x * x + z * z).sqrt();
-        if rho >= CEILING {
-            return 0.0;
-        }
-        if rho < FLOOR {
-            return exact(k, self.nu, u, v).ww;
-        }
-        let (patch, a, b) = Self::locate(x, z, rho);
-        let mut sum = 0.0;
-        for row in self.ww[patch].iter().rev() {
-            let inner = row.iter().rev().fold(0.0, |inner, c| inner * b + c);
-            sum = sum * a + inner;
-        }
-        k / rho * sum
+/// [`exact`] to first order in `k` at distances much shorter than 1/k: the plane-strain line load
+/// (Johnson 1985, Eq. 2.23) and the even term that a Poisson's ratio other than 1/2 adds; relative
+/// error below (k rho)^2 ln(k rho).
+#[inline]
+fn near(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
+    let free = 1.0 - 2.0 * nu;
+    let square = u * u + v * v;
+    let radial = 2.0 * FRAC_1_PI * v / (square * square);
+    let spread = 0.5 * free * k;
+    WaveStress {
+        xx: -2.0 * nu * FRAC_1_PI * v / square - spread,
+        ww: -radial * u * u + spread,
+        dd: -radial * v * v,
+        xw: k * FRAC_1_PI * (free * u.atan2(v) - u * v / square),
+        xd: -k * FRAC_1_PI * v * v / square,
+        wd: -radial * u * v,
     }
 }
 

@@ -8,7 +8,7 @@
 //! contact costs no wavenumbers.
 
 use crate::base::{Panels, StressTensor};
-use crate::body::stencil::Stencil;
+use crate::body::stencil::{LineLoads, Stencil};
 use crate::body::{Body, EdgeModel, Layer};
 use crate::contact::ContactSolution;
 use crate::kernels::strip;
@@ -249,20 +249,22 @@ impl<'a> Field<'a> {
         let mut local_modes = vec![0.0; local.as_ref().map_or(0, |l| l.1.len())];
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
+        let mut scratch = LineLoads::default();
         for loads in &self.loads {
             let k = loads.k;
             if fading >= FADED {
                 break;
             }
-            let mut amplitudes = self.from_surface(&surface, loads, y, z);
+            let mut amplitudes = self.from_surface(&surface, loads, y, z, &mut scratch);
             if let Some((end, shares)) = &correction {
-                let on_end = self.from_surface(end, loads, body.half, z)[1];
+                let on_end = self.from_surface(end, loads, body.half, z, &mut scratch)[1];
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
                 let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    self.add_face(stencil, loads, z, depth, into, &mut amplitudes);
+                    let face = self.from_face(stencil, loads, z, depth, into, &mut scratch);
+                    amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                 }
                 let plate = body.plate_stress(k, &loads.plate, y, z);
                 amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
@@ -281,7 +283,7 @@ impl<'a> Field<'a> {
             let small = k > 1.0 && loads.weight * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
-                let (sin, cos) = (k * x).sin_cos();
+                let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
                 for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
                     *s += loads.weight * a * if i == 3 || i == 4 { sin } else { cos };
                 }
@@ -290,72 +292,55 @@ impl<'a> Field<'a> {
         sums.into_iter().map(StressTensor::from_components).collect()
     }
 
-    /// Amplitudes from P on z = 0 and its images, at (`y`, `z`).
-    fn from_surface(&self, stencil: &Stencil, loads: &Loads, y: f64, z: f64) -> Amplitudes {
+    /// Amplitudes from P on z = 0 and its images, at (`y`, `z`); `scratch` is overwritten.
+    fn from_surface(
+        &self,
+        stencil: &Stencil,
+        loads: &Loads,
+        y: f64,
+        z: f64,
+        scratch: &mut LineLoads,
+    ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
-        let mut sum = [0.0; 6];
         let reach = body.reach(k);
         if z > reach {
-            return sum;
+            return [0.0; 6];
         }
+        scratch.clear();
+        stencil.gather(reach, &loads.surface, &loads.surface_charges, scratch);
+        body.for_strips(k, y, z, |u, w| scratch.push(u, w * loads.mean));
         if z == 0.0 {
-            let free = 1.0 - 2.0 * body.nu;
-            let (mut spread, mut shear) = (0.0, 0.0);
-            let mut add = |u: f64, p: f64| {
-                spread += p * surface_spread(k, u);
-                shear += p * surface_spread_shear(k, u);
-            };
-            stencil.for_each(reach, &loads.surface, &loads.surface_charges, &mut add);
-            body.for_strips(k, y, z, |u, w| add(u, w * loads.mean));
             let p = value_at(&body.surface.axis, &loads.surface, y);
-            return surface_limit(body.nu, free, p, spread, shear);
+            return surface_limit(body.nu, k, p, scratch);
         }
-        let mut add = |u: f64, p: f64| {
-            let s = body.kernel.line_load(k, u, z);
-            let all = [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
-            sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += p * s);
-        };
-        stencil.for_each(reach, &loads.surface, &loads.surface_charges, &mut add);
-        body.for_strips(k, y, z, |u, w| add(u, w * loads.mean));
-        sum
+        body.kernel.sum(k, z, &scratch.offsets, &scratch.loads)
     }
 
-    /// Adds the amplitudes from q on one end face, `depth` from it; `into` is the sign of the
-    /// direction into the body along y.
-    fn add_face(
+    /// Amplitudes from q on one end face, `depth` from it, at the depth `z` in the body; `into` is
+    /// the sign of the direction into the body along y.
+    fn from_face(
         &self,
         stencil: &Stencil,
         loads: &Loads,
         z: f64,
         depth: f64,
         into: f64,
-        sum: &mut Amplitudes,
-    ) {
+        scratch: &mut LineLoads,
+    ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
-        if depth > body.reach(k) || loads.face.is_empty() {
-            return;
-        }
         let reach = body.reach(k);
-        if depth == 0.0 {
-            let (mut spread, mut shear) = (0.0, 0.0);
-            stencil.for_each(reach, &loads.face, &loads.face_charges, |u, q| {
-                spread += q * surface_spread(k, u);
-                shear += q * surface_spread_shear(k, u);
-            });
-            let q = value_at(&body.face.axis, &loads.face, z);
-            let [xx, ww, dd, xw, ..] =
-                surface_limit(body.nu, 1.0 - 2.0 * body.nu, q, spread, shear);
-            sum[0] += xx;
-            sum[1] += dd;
-            sum[2] += ww;
-            sum[4] += xw;
-            return;
+        if depth > reach || loads.face.is_empty() {
+            return [0.0; 6];
         }
-        stencil.for_each(reach, &loads.face, &loads.face_charges, |u, q| {
-            let s = body.kernel.line_load(k, u, depth);
-            let all = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
-            sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += q * s);
-        });
+        scratch.clear();
+        stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
+        let [xx, ww, dd, xw, xd, wd] = if depth == 0.0 {
+            let q = value_at(&body.face.axis, &loads.face, z);
+            surface_limit(body.nu, k, q, scratch)
+        } else {
+            body.kernel.sum(k, depth, &scratch.offsets, &scratch.loads)
+        };
+        [xx, dd, ww, into * xd, xw, into * wd]
     }
 }
 
@@ -370,9 +355,12 @@ fn value_at(axis: &Panels, values: &[f64], at: f64) -> f64 {
 }
 
 /// Amplitudes on a loaded surface itself, see [`surface_spread`]: xx, along the surface, along the
-/// depth, xw, and no shear on the surface.
-fn surface_limit(nu: f64, free: f64, p: f64, spread: f64, shear: f64) -> Amplitudes {
-    [-2.0 * nu * p - free * spread, -p + free * spread, -p, free * shear, 0.0, 0.0]
+/// depth, xw, and no shear on the surface. `p` is the load there.
+fn surface_limit(nu: f64, k: f64, p: f64, loads: &LineLoads) -> Amplitudes {
+    let free = 1.0 - 2.0 * nu;
+    let spread = free * loads.sum(|u| surface_spread(k, u));
+    let shear = free * loads.sum(|u| surface_spread_shear(k, u));
+    [-2.0 * nu * p - spread, -p + spread, -p, shear, 0.0, 0.0]
 }
 
 /// Share of an end face's normal stress that the reconstructed correction of
