@@ -103,10 +103,11 @@ class Body:
         else:
             solver.setType("cg")
             solver.setTolerances(rtol=tolerance, max_it=5000)
-            self.matrix.setNearNullSpace(self._rigid_motions())
-            options["pc_type"] = "gamg"
-            options["mg_levels_ksp_type"] = "chebyshev"
-            options["mg_levels_pc_type"] = "jacobi"
+            options["pc_type"] = "hypre"
+            options["pc_hypre_type"] = "boomeramg"
+            # Far elements are up to a thousand times longer than wide. Only a high threshold coarsens along
+            # the strong couplings alone; aggregation does not, whatever modes it is given.
+            options["pc_hypre_boomeramg_strong_threshold"] = 0.8
         solver.setFromOptions()
         try:
             solver.setUp()
@@ -115,24 +116,6 @@ class Body:
         if linear == "direct" and solver.getPC().getFactorMatrix().getMumpsInfog(1) < 0:
             raise FemError("MUMPS failed to factor a stiffness matrix (out of memory?)")
         return solver
-
-    def _rigid_motions(self):
-        """The six rigid-body modes, orthonormal, which the multigrid's coarse spaces must contain."""
-        modes = [self.matrix.createVecRight() for _ in range(6)]
-        x = self.nodes[: self._owned]
-        for mode, vector in enumerate(modes):
-            values = np.zeros((self._owned, 3))
-            if mode < 3:
-                values[:, mode] = 1.0
-            else:
-                a, b = ((0, 1), (0, 2), (1, 2))[mode - 3]
-                values[:, a], values[:, b] = -x[:, b], x[:, a]
-            vector.array[:] = values.ravel()
-        for i, vector in enumerate(modes):
-            for other in modes[:i]:
-                vector.axpy(-vector.dot(other), other)
-            vector.normalize()
-        return PETSc.NullSpace().create(vectors=modes, comm=self.comm)
 
     def number_contact_nodes(self, count, find):
         """Tell the body its contact nodes.

@@ -34,14 +34,23 @@ def run_stage(stage, request, folder, ranks=1):
     return subprocess.run(command, capture_output=True, text=True, env=environment, cwd="/", check=False)
 
 
-@pytest.fixture(scope="session")
-def live(tmp_path_factory):
-    """A coarse flush contact, meshed and solved by the command line: (case, request, folder)."""
-    folder = tmp_path_factory.mktemp("live")
-    case = steel_case(5e-4, 5.0, 1.0)
+def _solved(folder, case, size):
+    """A case meshed and solved by the command line: (case, request, folder)."""
     request = folder / "request.json"
-    request.write_text(json.dumps(standard_request(case, 2.0).to_json()))
+    request.write_text(json.dumps(standard_request(case, size).to_json()))
     for stage in ("mesh", "solve"):
         done = run_stage(stage, request, folder)
         assert done.returncode == 0, done.stderr
     return case, request, folder
+
+
+@pytest.fixture(scope="session")
+def live(tmp_path_factory):
+    """A coarse flush contact: (case, request, folder)."""
+    return _solved(tmp_path_factory.mktemp("live"), steel_case(5e-4, 5.0, 1.0), 2.0)
+
+
+@pytest.fixture(scope="session")
+def small(tmp_path_factory):
+    """A contact too coarse to be right, for comparing programs with themselves."""
+    return _solved(tmp_path_factory.mktemp("small"), steel_case(1e-3, 3.0, 0.75), 4.0)
