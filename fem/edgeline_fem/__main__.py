@@ -51,8 +51,14 @@ def _probe(arguments):
     print(json.dumps({**versions(), "gmsh": gmsh}))
 
 
+def _cases(arguments):
+    from .record import read_cases
+
+    print("\n".join(read_cases(arguments.folder / "cases.toml")))
+
+
 def _record(arguments):
-    from .record import read_cases, record
+    from .record import Run, read_cases, record
 
     cases = read_cases(arguments.folder / "cases.toml")
     names = arguments.cases or list(cases)
@@ -60,11 +66,12 @@ def _record(arguments):
     if unknown:
         raise FemError(f"there is no case '{unknown[0]}' in {arguments.folder / 'cases.toml'}; "
                        f"known are {', '.join(cases)}")
+    run = Run(arguments.linear, arguments.ranks, arguments.launcher)
     # Coarse meshes of all cases come first: an early stop leaves something of every case.
     for size in sorted(arguments.sizes, reverse=True):
         for name in names:
             _log(f"{name}, size {size:g}")
-            if not record(cases[name], size, arguments.folder, _log):
+            if not record(cases[name], size, arguments.folder, _log, run):
                 _log("recorded already")
 
 
@@ -87,7 +94,15 @@ def main():
     command.add_argument("--cases", nargs="+", help="names of cases; all of cases.toml if left out")
     command.add_argument("--sizes", nargs="+", type=float, default=[2.0, 1.4, 1.0],
                          help="mesh sizes, 1 is the production mesh (default: 2 1.4 1)")
+    command.add_argument("--linear", choices=("direct", "iterative"), default="direct",
+                         help="linear solver (default: direct)")
+    command.add_argument("--ranks", type=int, default=1, help="MPI ranks of the solve stage (default: 1)")
+    command.add_argument("--launcher", default="mpirun -n {ranks}",
+                         help="what starts the ranks (default: 'mpirun -n {ranks}')")
     command.set_defaults(run=_record)
+    command = commands.add_parser("cases", help="list the names of the cases that can be recorded")
+    command.add_argument("folder", type=Path, help="folder with cases.toml")
+    command.set_defaults(run=_cases)
     command = commands.add_parser("probe", help="print the versions of what is installed, as JSON")
     command.add_argument("--gmsh", default="gmsh", help="name or path of the gmsh program")
     command.set_defaults(run=_probe)

@@ -8,7 +8,7 @@ import mpi4py
 import numpy as np
 import petsc4py
 import ufl
-from dolfinx import cpp, fem, geometry, mesh
+from dolfinx import cpp, fem, mesh
 from dolfinx.fem import petsc as fem_petsc
 from mpi4py import MPI
 from petsc4py import PETSc
@@ -44,17 +44,11 @@ def hexahedral_mesh(comm, points, cells):
     return mesh.create_mesh(comm, cells, points, ufl.Mesh(ufl.VectorElement(scalar)))
 
 
-def quadratic_space(domain, components):
-    """Continuous quadratic vectors with ``components`` entries."""
+def displacement_space(domain):
+    """Continuous quadratic vectors with three components."""
     if hasattr(fem, "functionspace"):
-        return fem.functionspace(domain, ("Lagrange", 2, (components,)))
-    return fem.VectorFunctionSpace(domain, ("Lagrange", 2), dim=components)
-
-
-def element_nodes(space):
-    """Reference coordinates of a space's nodes within one element, (27, 3)."""
-    points = space.element.interpolation_points
-    return points() if callable(points) else points
+        return fem.functionspace(domain, ("Lagrange", 2, (3,)))
+    return fem.VectorFunctionSpace(domain, ("Lagrange", 2))
 
 
 def evaluate_on_cells(expression, domain, cells):
@@ -69,11 +63,6 @@ def local_size(space):
     """Numbers of nodes owned by and known to this rank."""
     index_map = space.dofmap.index_map
     return index_map.size_local, index_map.size_local + index_map.num_ghosts
-
-
-def squared_distances(domain, cells, points):
-    """Squared distance of each point (n, 3) to its cell (n,)."""
-    return geometry.squared_distance(domain, domain.topology.dim, cells, points)
 
 
 def geometry_nodes(domain):
@@ -94,12 +83,3 @@ def assemble_vector(form):
     vector = fem_petsc.assemble_vector(fem.form(form))
     vector.ghostUpdate(addv=PETSc.InsertMode.ADD, mode=PETSc.ScatterMode.REVERSE)
     return vector
-
-
-def add_ghosts(vector):
-    """Add up what all ranks hold of a dofs' vector (dolfinx.la), and give the sums to all of them."""
-    if hasattr(dolfinx.la, "ScatterMode"):
-        vector.scatter_reverse(dolfinx.la.ScatterMode.add)
-    else:
-        vector.scatter_reverse(dolfinx.la.InsertMode.add)
-    vector.scatter_forward()

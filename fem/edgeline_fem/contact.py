@@ -83,18 +83,35 @@ class ContactGrid:
         return lumped + (forces - back.ravel()) / self.weights
 
     def sample(self, pressure, points):
-        """Nodal ``pressure`` interpolated to ``points`` (n, 2); 0 outside the grid.
+        """Nodal ``pressure`` interpolated to ``points`` (n, 2); 0 outside the contact, never negative.
 
-        Across the contact the square of the pressure is interpolated: it is smooth where the pressure
-        itself falls like a square root, at the contact's edge. The result is never negative.
+        Across the contact the square of the pressure is interpolated: it is smooth up to the contact's
+        edge, where the pressure falls like a square root. The nodes of the element that the edge cuts, and
+        of the one before it, see the cut; there the square is continued from the four elements before them.
         """
-        points = np.asarray(points, dtype=float).reshape(-1, 2)
-        limit = np.array([self.x[-1], self.y[-1]])
-        inside = np.all(points <= limit * (1.0 + 1e-12), axis=1)
-        clipped = np.minimum(points, limit)
-        along = _interpolation(self.y, clipped[:, 1]) @ pressure.reshape(self.shape).T
-        square = np.sum(_interpolation(self.x, clipped[:, 0]) * np.maximum(along, 0.0) ** 2, axis=1)
-        return np.where(inside, np.sqrt(np.maximum(square, 0.0)), 0.0)
+        found = np.zeros(len(points))
+        limit = np.array([self.x[-1], self.y[-1]]) * (1.0 + 1e-9)
+        for number, (x, y) in enumerate(points):
+            if x > limit[0] or y > limit[1]:
+                continue
+            line = pressure.reshape(self.shape) @ _interpolation(self.y, [min(y, self.y[-1])])[0]
+            square = np.maximum(line, 0.0) ** 2
+            outside = np.flatnonzero(line <= 1e-3 * line.max())
+            last = outside[0] - 1 if len(outside) else len(line) - 1
+            sound = 2 * (last // 2) - 2
+            if x > self.x[sound] and sound >= 8:
+                fit = slice(sound - 8, sound + 1)
+                curve = np.polyfit(self.x[fit] - self.x[sound], square[fit], 2)
+                value = np.polyval(curve, x - self.x[sound])
+                # A parabola that opens upwards comes back beyond the edge.
+                roots = np.roots(curve)
+                beyond = [r.real for r in roots if abs(r.imag) < 1e-12 and r.real > 0.0]
+                if beyond and x - self.x[sound] > min(beyond):
+                    value = 0.0
+            else:
+                value = _interpolation(self.x, [min(x, self.x[-1])])[0] @ square
+            found[number] = np.sqrt(max(value, 0.0))
+        return found
 
 
 def _cells(nodes):

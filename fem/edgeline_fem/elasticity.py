@@ -1,5 +1,6 @@
 """One elastic body: its stiffness, the compliance of its contact nodes, and stresses inside it."""
 
+import itertools
 import time
 
 import numpy as np
@@ -9,12 +10,13 @@ from petsc4py import PETSc
 
 from . import compat
 from .meshing import read_msh
+from .recovery import StressField
 from .request import FemError
 
 # Exact for the polynomial part of a quadratic hexahedron's stiffness on a parallelepiped.
 _QUADRATURE = {"quadrature_degree": 4}
 
-STRESS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_PAIRS = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
 def load_mesh(comm, path):
@@ -46,7 +48,7 @@ class Body:
         self.young, self.poisson = young, poisson
         self.seconds = {}
         began = time.perf_counter()
-        self.space = compat.quadratic_space(domain, 3)
+        self.space = compat.displacement_space(domain)
         self._owned, self._known = compat.local_size(self.space)
         self.nodes = self.space.tabulate_dof_coordinates()[: self._known]
         self._mu = fem.Constant(domain, PETSc.ScalarType(0.5 * young / (1.0 + poisson)))
@@ -189,73 +191,16 @@ class Body:
         held = np.fromiter(self._held[2], dtype=np.int64, count=len(self._held[2]))
         return self.comm.allreduce(-float(inner.array[held].sum()))
 
-    def nodal_stress(self):
-        """Stress at the nodes: evaluated in every element and averaged over those that share a node.
-
-        Returns a :class:`StressField` with the components :data:`STRESS` (units of p0), nothing enforced.
-        """
+    def stress_field(self):
+        """The :class:`~edgeline_fem.recovery.StressField` of the state that :meth:`keep` left."""
         stress = self._stress(self.displacement)
-        pairs = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
-        space = compat.quadratic_space(self.domain, 6)
-        expression = fem.Expression(
-            ufl.as_vector([stress[i, j] for i, j in pairs]), compat.element_nodes(self.space)
-        )
+        x = ufl.SpatialCoordinate(self.domain)
+        wanted = [x[0], x[1], x[2], *(stress[i, j] for i, j in _PAIRS)]
+        at = np.array(list(itertools.product((0.5 - 0.5 / 3**0.5, 0.5 + 0.5 / 3**0.5), repeat=3)))
         cells = np.arange(self.domain.topology.index_map(3).size_local, dtype=np.int32)
-        values = compat.evaluate_on_cells(expression, self.domain, cells).reshape(-1, 6)
-        nodes = np.concatenate([space.dofmap.cell_dofs(c) for c in cells])
-        mean, sharing = fem.Function(space), fem.Function(space)
-        known = compat.local_size(space)[1]
-        for component in range(6):
-            mean.x.array[component::6] = np.bincount(nodes, values[:, component], known)
-            sharing.x.array[component::6] = np.bincount(nodes, minlength=known)
-        for vector in (mean.x, sharing.x):
-            compat.add_ghosts(vector)
-        mean.x.array[:] /= sharing.x.array
-        return StressField(mean)
-
-
-class StressField:
-    """A stress tensor per node of a body's mesh, with quadratic interpolation between nodes."""
-
-    def __init__(self, function):
-        self._function = function
-        space = function.function_space
-        self.comm = space.mesh.comm
-        self.nodes = space.tabulate_dof_coordinates()[: compat.local_size(space)[1]]
-        self.values = function.x.array.reshape(-1, 6)
-        """The components at :attr:`nodes`, ghosts included; writing to them changes the field."""
-
-    def sample(self, points):
-        """Stress at ``points`` (n, 3), in the order of :data:`STRESS`, as an array (n, 6).
-
-        A point that rounding or a curved face puts just outside the mesh takes the nearest element's
-        value. Raises :class:`FemError` for a point farther out.
-        """
-        points = np.ascontiguousarray(points, dtype=np.float64)
-        domain = self._function.function_space.mesh
-        corners = domain.geometry.x[compat.geometry_nodes(domain)]
-        owned = domain.topology.index_map(3).size_local
-        low, high = corners[:owned].min(axis=1), corners[:owned].max(axis=1)
-        slack = 1e-3 * (high - low)
-        low, high = low - slack, high + slack
-        best = np.full(len(points), np.inf)
-        cells = np.full(len(points), -1, dtype=np.int32)
-        for number, point in enumerate(points):
-            candidates = np.flatnonzero(np.all((low <= point) & (point <= high), axis=1)).astype(np.int32)
-            if len(candidates):
-                distance = compat.squared_distances(
-                    domain, candidates, np.repeat(point[None, :], len(candidates), axis=0)
-                )
-                nearest = int(np.argmin(distance))
-                best[number], cells[number] = distance[nearest], candidates[nearest]
-        # Each point is evaluated by the first rank that is nearest to it.
-        everywhere = np.array(self.comm.allgather(best))
-        if not np.all(np.isfinite(everywhere.min(axis=0))):
-            lost = points[np.flatnonzero(~np.isfinite(everywhere.min(axis=0)))[0]]
-            raise FemError(f"the point {lost.tolist()} (units of C, z is depth) lies outside the body")
-        mine = np.flatnonzero(np.argmin(everywhere, axis=0) == self.comm.rank)
-        values = np.zeros((len(points), 6))
-        if len(mine):
-            values[mine] = np.reshape(self._function.eval(points[mine], cells[mine]), (-1, 6))
-        self.comm.Allreduce(values.copy(), values)
-        return values
+        expression = fem.Expression(ufl.as_vector(wanted), at)
+        values = compat.evaluate_on_cells(expression, self.domain, cells).reshape(len(cells), 8, 9)
+        # The vertices are the first eight of an element's nodes.
+        corners = self.domain.geometry.x[compat.geometry_nodes(self.domain)[: len(cells), :8]]
+        gathered = [np.concatenate(self.comm.allgather(part)) for part in (values, corners)]
+        return StressField(gathered[0][:, :, :3], gathered[0][:, :, 3:], gathered[1])

@@ -107,15 +107,15 @@ def make_axes(case, options):
     core_depth = (1.0 - _CORE_SIDE) * radius
     core = max(2, round(3.0 / scale))
 
-    def along(y):
-        return grown(options.end, length - y)
-
-    y = graded_axis(0.0, length, along, scale)
+    longer = block_length > length * (1.0 + 1e-9)
+    end = options.corner if longer else options.end
+    y = graded_axis(0.0, length, lambda v: end + options.growth * (length - v), scale)
     shared_y = len(y) - 1
-    if block_length > length * (1.0 + 1e-9):
+    if longer:
 
         def outward(v):
-            return min(grown(options.end, v - length), grown(options.free_end, block_length - v))
+            return min(end + options.beyond * (v - length),
+                       options.free_end + options.beyond * (block_length - v))
 
         y = np.concatenate((y, graded_axis(length, block_length, outward, scale)[1:]))
     return Axes(

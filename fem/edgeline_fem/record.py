@@ -3,10 +3,16 @@
 The layout of a record is described in results/reference/README.md.
 """
 
+import contextlib
 import csv
+import dataclasses
 import datetime
+import fcntl
 import io
 import json
+import math
+import os
+import shlex
 import shutil
 import subprocess
 import sys
@@ -21,8 +27,8 @@ from .standard_points import pressure_lines, standard_curves
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
               "tau_max")
-# Errors leave out this neighbourhood of the roller's end (units of C) on curves at the surface: for a
-# longer block the pressure has no limit there.
+# Errors leave out points this near to the end of the contact line (units of C): for a longer block the
+# pressure has no limit there.
 EDGE_RANGE = 0.1
 
 
@@ -82,7 +88,10 @@ def _merge(path, size, new):
     _, old = _rows(path)
     header, rows = _rows(new)
     kept = [row for row in old if float(row[0]) != size]
-    kept += [[f"{size:g}", *row] for row in rows]
+    stresses = next(i for i, name in enumerate(header) if name.endswith("_pa"))
+    kept += [
+        [f"{size:g}", *row[:stresses], *(f"{float(value):.6g}" for value in row[stresses:])] for row in rows
+    ]
     kept.sort(key=lambda row: -float(row[0]))  # stable: rows of one mesh stay in order
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
@@ -114,23 +123,21 @@ def order_and_factor(differences, sizes):
 
 
 def _series(folder, half_length_m, c_m, p0_pa):
-    """Curves by name and mesh: ``{(body, curve, component): {size: values}}`` in p0, edges left out."""
+    """Curves by name and mesh: ``{(body, curve, component): {size: values}}`` in p0, corner left out."""
     series = {}
+
+    def add(key, mesh, y, z, value):
+        if math.hypot(float(y) - half_length_m, float(z)) >= EDGE_RANGE * c_m * 0.999:
+            meshes = series.setdefault(key, {})
+            meshes.setdefault(float(mesh), []).append(float(value) / p0_pa)
+
     _, rows = _rows(Path(folder) / "curves.csv")
-    for mesh, body, curve, _, y, _, *values in rows:
-        if curve.startswith("surface-along-y") and abs(float(y) - half_length_m) < EDGE_RANGE * c_m * 0.999:
-            continue
+    for mesh, body, curve, _, y, z, *values in rows:
         for component, value in zip(COMPONENTS, values):
-            series.setdefault((body, curve, component), {}).setdefault(float(mesh), []).append(
-                float(value) / p0_pa
-            )
+            add((body, curve, component), mesh, y, z, value)
     _, rows = _rows(Path(folder) / "pressure.csv")
     for mesh, line, _, y, value, *_ in rows:
-        if abs(float(y) - half_length_m) < EDGE_RANGE * c_m * 0.999:
-            continue
-        series.setdefault(("contact", line, "pressure"), {}).setdefault(float(mesh), []).append(
-            float(value) / p0_pa
-        )
+        add(("contact", line, "pressure"), mesh, y, 0.0, value)
     return {key: {size: np.array(v) for size, v in meshes.items()} for key, meshes in series.items()}
 
 
@@ -166,9 +173,29 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
     return found
 
 
-def _stage(stage, request, folder, log):
+@dataclasses.dataclass(frozen=True)
+class Run:
+    """How stages are run: the linear solver, and for the solve stage the ranks and what starts them.
+
+    ``launcher`` is the command before the interpreter's when there is more than one rank, with
+    ``{ranks}`` for their number.
+    """
+
+    linear: str = "direct"
+    ranks: int = 1
+    launcher: str = "mpirun -n {ranks}"
+
+    def command(self, stage):
+        """What stands before the stage's arguments."""
+        python = [sys.executable, "-m", "edgeline_fem", stage]
+        if stage == "mesh" or self.ranks == 1:
+            return python
+        return [*shlex.split(self.launcher.format(ranks=self.ranks)), *python]
+
+
+def _stage(stage, run, request, folder, log):
     """Run one stage as a process of its own, so that its memory is its own; raise if it fails."""
-    command = [sys.executable, "-m", "edgeline_fem", stage, str(request), str(folder)]
+    command = [*run.command(stage), str(request), str(folder)]
     done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
     if done.returncode != 0:
         tail = "\n".join(done.stderr.strip().splitlines()[-10:])
@@ -176,15 +203,37 @@ def _stage(stage, request, folder, log):
     log(done.stderr.strip().splitlines()[-1])
 
 
-def record(case, size, folder, log, **overrides):
+@contextlib.contextmanager
+def _locked(folder):
+    """Hold the only lock on a folder; raise if another process has it. Freed if this process dies."""
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError as error:
+            raise FemError(f"{folder}: another process is recording this case") from error
+        yield
+    finally:
+        os.close(handle)
+
+
+def record(case, size, folder, log, run=Run(), **overrides):
     """Solve ``case`` on the mesh of ``size`` and add it to the record in ``folder``/<case name>.
 
-    Returns False if the record holds that mesh already. Other meshes of the record are kept; the record
-    is complete and readable at any moment, also if this process is killed.
+    ``run`` is the :class:`Run`, ``overrides`` are further mesh options. Returns False if the record holds
+    that mesh already. Other meshes of the record are kept; the record is readable at any moment, and after
+    a kill the next call takes up where this one was.
     """
     target = Path(folder) / case.name
+    target.mkdir(parents=True, exist_ok=True)
+    with _locked(target):
+        return _record(case, size, target, log, run, overrides)
+
+
+def _record(case, size, target, log, run, overrides):
     path = target / "record.json"
     request = standard_request(case, size, **overrides)
+    request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear))
     options = request.to_json()["mesh"]
     data = json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
     if data is not None:
@@ -195,23 +244,22 @@ def record(case, size, folder, log, **overrides):
             return False
     work = target / f".work-{size:g}"
     shutil.rmtree(work, ignore_errors=True)
-    work.mkdir(parents=True)
+    work.mkdir()
     asked = work / "request.json"
     asked.write_text(json.dumps(request.to_json()), encoding="utf-8")
     began = datetime.datetime.now(datetime.timezone.utc)
     for stage in ("mesh", "solve"):
-        _stage(stage, asked, work, log)
+        _stage(stage, run, asked, work, log)
     summary = json.loads((work / "fem.json").read_text(encoding="utf-8"))
     scales = case.scales()
-    length = case.roller_half_length()
     if data is None:
         data = {
             "schema": 1,
             "case": case.to_json(),
             "hertz": summary["hertz"],
             "dimensionless": {
-                "W": np.pi / (4.0 * scales.radius**2),
-                "S_l": length,
+                "W": math.pi / (4.0 * scales.radius**2),
+                "S_l": case.roller_half_length(),
                 "L_r": case.roller_length_m / case.block_length_m,
             },
             "edge_range_c": EDGE_RANGE,
@@ -219,10 +267,11 @@ def record(case, size, folder, log, **overrides):
         }
     for key in ("schema", "case", "hertz"):
         summary.pop(key)
+    command = f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}"
+    if run != Run():
+        command += f" --linear {run.linear} --ranks {run.ranks}"
     data["meshes"][f"{size:g}"] = {
-        "date": began.isoformat(timespec="seconds"),
-        "command": f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}",
-        **summary,
+        "date": began.isoformat(timespec="seconds"), "command": f"{command} results/reference", **summary,
     }
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
     for name in ("curves.csv", "pressure.csv"):

@@ -106,16 +106,23 @@ class MeshOptions:
     size: float = 1.0
     across: float = 0.16
     """Element size across the contact as far as ``contact_reach`` (size 1)."""
-    edge: float = 0.045
+    edge: float = 0.03
     """The same at the contact's edge x = 1, where the pressure has a vertical tangent."""
-    depth: float = 0.08
+    depth: float = 0.05
     """Element size at the surface, along z (size 1)."""
-    end: float = 0.065
-    """Element size at the roller's end, along y (size 1)."""
-    free_end: float = 1.2
+    end: float = 0.06
+    """Element size at the roller's end, along y, if the block ends there as well (size 1)."""
+    corner: float = 0.02
+    """The same if the block goes on: the pressure is singular then (size 1)."""
+    beyond: float = 0.6
+    """Increase of element size per unit of distance along y, in the block beyond the roller's end."""
+    free_end: float = 2.0
     """Element size at the end of a block that is longer than the roller, along y (size 1)."""
     growth: float = 0.42
-    """Increase of element size per unit of distance along x and y, near the contact (size 1)."""
+    """Increase of element size per unit of distance along x and y, near the contact (size 1).
+
+    Along the contact line it holds all the way.
+    """
     depth_growth: float = 0.34
     """The same along z."""
     far_growth: float = 1.4

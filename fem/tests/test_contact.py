@@ -9,9 +9,9 @@ import pytest
 from mpi4py import MPI
 
 from conftest import FEM, run_stage, steel_case
-from edgeline_fem.contact import ContactGrid, solve_contact
+from edgeline_fem.contact import ContactGrid, half_space_compliance, solve_contact
 from edgeline_fem.meshing import make_meshes
-from edgeline_fem.model import build_bodies, enforce_boundaries, invariants, press_bodies
+from edgeline_fem.model import build_bodies, press_bodies
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError
 
@@ -33,13 +33,27 @@ def test_grid_recovers_smooth_pressures():
     assert found.tolist() == [3 * 5 + 3, 2 * 5 + 2, -1]
 
 
-def test_grid_samples_an_ellipse_exactly():
-    """The square of a Hertz pressure is quadratic, so its samples are exact."""
-    grid = ContactGrid([0.0, 0.5, 1.0], [0.0, 1.0])
-    nodal = np.sqrt(np.maximum(0.0, 1.0 - grid.x**2))[:, None] * np.ones(grid.shape[1])
-    points = [(0.3, 0.7), (0.95, 0.1), (1.0, 1.0), (1.2, 0.5)]
-    expected = [math.sqrt(max(0.0, 1.0 - x * x)) for x, _ in points]
+def test_grid_samples_a_hertz_pressure_up_to_its_edge():
+    """The square of a Hertz pressure is quadratic, so its samples are exact, between nodes as well.
+
+    Wrong values next to the edge, as a cut element has them, do not matter.
+    """
+    grid = ContactGrid(np.linspace(0.0, 1.5, 16), [0.0, 1.0])
+    nodal = np.sqrt(np.maximum(0.0, 1.02**2 - grid.x**2))[:, None] * np.ones(grid.shape[1])
+    nodal[(grid.x > 0.95) & (grid.x < 1.02)] *= 1.05
+    points = [(0.3, 0.7), (0.83, 0.2), (0.95, 0.1), (1.0, 1.0), (1.04, 0.0), (1.7, 0.5)]
+    expected = [math.sqrt(max(0.0, 1.02**2 - x * x)) for x, _ in points]
     assert grid.sample(nodal.ravel(), points) == pytest.approx(expected, abs=1e-7)
+
+
+def test_the_half_space_model_is_love_in_the_mean():
+    """One cell far from all others: the model's entry against the closed form at its centre."""
+    grid = ContactGrid([0.0, 0.1, 0.2], [0.0, 0.1, 0.2])
+    model = half_space_compliance(grid, 0.0, 1.0)
+    assert model == pytest.approx(model.T, rel=1e-12)
+    assert np.linalg.eigvalsh(model).min() > 0.0
+    # Corner to corner, with the images of both planes: 1 / (pi r) at sqrt(x^2 + y^2) from all four.
+    assert model[-1, 0] == pytest.approx(4.0 / (math.pi * math.hypot(0.2, 0.2)), rel=0.05)
 
 
 def test_contact_solver_on_a_small_dense_problem():
@@ -59,38 +73,6 @@ def test_contact_solver_on_a_small_dense_problem():
         solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 2, silent)
 
 
-def test_invariants():
-    von_mises, tau_max = invariants([[3.0, 1.0, 2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
-    assert von_mises == pytest.approx([math.sqrt(3.0), math.sqrt(3.0)])
-    assert tau_max == pytest.approx([1.0, 1.0])
-
-
-def test_enforced_tractions_are_exact_and_keep_a_right_field():
-    """A field that meets its tractions passes unchanged; a wrong normal stress is put right."""
-
-    class Field:
-        comm = MPI.COMM_SELF
-        nodes = np.array([[0.3, 0.5, 0.0], [0.3, 1.0, 0.7], [0.3, 1.0, 0.0]])
-        values = np.array([[-0.4, -0.3, -0.8, 0.02, 0.0, 0.0], [0.1, 0.0, -0.2, 0.0, 0.03, 0.0],
-                           [-0.2, 0.0, -0.6, 0.0, 0.0, 0.0]])
-
-    def flat(nodes):
-        return np.where(nodes[:, 2] == 0.0, 0.0, np.nan)
-
-    def pressure(nodes):
-        return np.where(nodes[:, 1] == 1.0, 0.6, 0.8)
-
-    right = Field.values.copy()
-    assert enforce_boundaries(Field, 0.3, 1.0, flat, pressure) == (0.0, 0.0)
-    assert Field.values == pytest.approx(right)
-    Field.values[0, 2] -= 0.07
-    Field.values[1, 1] += 0.05
-    assert enforce_boundaries(Field, 0.3, 1.0, flat, pressure) == pytest.approx((0.05, 0.07))
-    assert Field.values[:, 2] == pytest.approx([-0.8, -0.2 - 0.05 * 0.3 / 0.7, -0.6])
-    assert Field.values[0, 0] == pytest.approx(-0.4 + 0.07 * 0.3 / 0.7)
-    assert Field.values[1:, 1] == pytest.approx([0.0, 0.0])
-
-
 def test_hertz_line_contact(tmp_path):
     """A slice in plane strain: peak pressure and half-width within half a percent, stresses too."""
     case = steel_case(2e-5, 0.5, 1.0)
@@ -98,9 +80,8 @@ def test_hertz_line_contact(tmp_path):
     meshed = make_meshes(request, tmp_path)
     grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
     bodies, _ = build_bodies(MPI.COMM_SELF, tmp_path, request, plane_strain=True)
-    load = math.pi * 0.5 / 4.0
     solution, reaction_error = press_bodies(bodies, grid, case, request.solver, silent)
-    assert solution.forces.sum() == pytest.approx(load, rel=1e-12)
+    assert solution.forces.sum() == pytest.approx(math.pi * 0.5 / 4.0, rel=1e-12)
     assert reaction_error < 1e-8
     assert solution.smallest_gap > -1e-7
 
@@ -117,10 +98,10 @@ def test_hertz_line_contact(tmp_path):
     # Johnson, Contact Mechanics, 1985, Eq. 4.45.
     xx, zz = -((1.0 + 2.0 * z**2) / s - 2.0 * z), -1.0 / s
     for body in bodies.values():
-        found = body.nodal_stress().sample([(0.0, 0.2, v) for v in z])
-        assert found[:, 2] == pytest.approx(zz, abs=1e-2)
-        assert found[:, 0] == pytest.approx(xx, abs=1e-2)
-        assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=1e-2)
+        found = body.stress_field().sample([(0.0, 0.2, v) for v in z])
+        assert found[:, 2] == pytest.approx(zz, abs=5e-3)
+        assert found[:, 0] == pytest.approx(xx, abs=5e-3)
+        assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=5e-3)
 
 
 def rows(path):

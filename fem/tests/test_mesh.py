@@ -55,7 +55,7 @@ def test_the_roller_has_a_true_cylinders_volume(meshes):
     domain = load_mesh(MPI.COMM_SELF, folder / "roller.msh")
     volume = fem.assemble_scalar(fem.form(fem.Constant(domain, 1.0) * ufl.dx))
     # Quadratic edges follow the arc to fourth order.
-    assert volume == pytest.approx(0.25 * math.pi * radius**2 * 5.0, rel=1e-4)
+    assert volume == pytest.approx(0.25 * math.pi * radius**2 * 5.0, rel=3e-4)
 
 
 def test_surface_nodes_lie_on_the_true_arc_over_those_of_the_block(meshes):

@@ -1,10 +1,14 @@
 """Records: resumable, error estimates with known answers."""
 
+import fcntl
 import json
+import os
+import subprocess
+import sys
 
 import pytest
 
-from conftest import STEEL, steel_case
+from conftest import FEM, STEEL, steel_case
 from edgeline_fem.record import order_and_factor, read_cases, record
 from edgeline_fem.request import FemError
 
@@ -53,3 +57,39 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
     with pytest.raises(FemError, match="holds another case"):
         other = steel_case(6e-4, 5.0, 1.0)
         record(other, 3.0, tmp_path, lines.append)
+
+
+def test_two_processes_do_not_record_one_case(tmp_path):
+    case = steel_case(5e-4, 5.0, 1.0)
+    (tmp_path / "test").mkdir()
+    handle = os.open(tmp_path / "test", os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX)
+        with pytest.raises(FemError, match="another process is recording"):
+            record(case, 4.0, tmp_path, print)
+    finally:
+        os.close(handle)
+
+
+@pytest.mark.slow
+def test_the_cluster_script_records_with_two_ranks(tmp_path):
+    (tmp_path / "cases.toml").write_text(
+        '["other"]\nW = 1e-4\nS_l = 5.0\nL_r = 1.0\n'
+        "roller = { radius_m = 0.01, young_pa = 210e9, poisson = 0.3 }\n"
+        "block = { young_pa = 210e9, poisson = 0.3 }\n"
+        '["flush"]\nW = 5e-4\nS_l = 3.0\nL_r = 1.0\n'
+        "roller = { radius_m = 0.01, young_pa = 210e9, poisson = 0.3 }\n"
+        "block = { young_pa = 210e9, poisson = 0.3 }\n"
+    )
+    environment = {
+        **os.environ, "SLURM_ARRAY_TASK_ID": "2", "SLURM_NTASKS": "2", "SLURM_SUBMIT_DIR": str(FEM.parent),
+        "LAUNCHER": "mpirun --oversubscribe -n {ranks}", "PYTHON": sys.executable,
+        "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
+    }
+    script = FEM.parent / "docs/cluster/record.sbatch"
+    done = subprocess.run(["bash", str(script), str(tmp_path), "4", "3"], capture_output=True, text=True,
+                          env=environment, cwd="/", check=False)
+    assert done.returncode == 0, done.stderr
+    data = json.loads((tmp_path / "flush" / "record.json").read_text())
+    assert [data["meshes"][size]["ranks"] for size in ("4", "3")] == [2, 2]
+    assert not (tmp_path / "other").exists()

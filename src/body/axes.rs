@@ -3,6 +3,9 @@
 use crate::base::Panels;
 use serde::Serialize;
 
+/// Depth (C) below which the load on an end face has no features of the contact's width.
+const FACE_TAIL: f64 = 8.0;
+
 /// How finely everything is resolved; all lengths are in units of C.
 ///
 /// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
@@ -23,6 +26,8 @@ pub struct Resolution {
     pub k_order: usize,
     /// Width of the wavenumber panels above 2.
     pub k_step: f64,
+    /// Growth of the wavenumber panels up to 0.5.
+    pub k_ratio: f64,
     /// Smallest wavenumber panel's end: 1 / the extent in x and z that is resolved.
     pub k_min: f64,
     /// Images of the corrected pressure in the end faces on either side, in lengths of the body;
@@ -30,6 +35,8 @@ pub struct Resolution {
     pub images: usize,
     /// How many decay lengths 1/k an end face's axis reaches.
     pub face_reach: f64,
+    /// How many decay lengths 1/k away a load is felt.
+    pub reach: f64,
 }
 
 impl Resolution {
@@ -42,25 +49,29 @@ impl Resolution {
                 corner: 0.04,
                 ratio: 2.5,
                 modes: 3,
-                k_max: 16.0,
+                k_max: 20.0,
                 k_order: 4,
-                k_step: 3.5,
-                k_min: 1e-3,
+                k_step: 4.0,
+                k_min: 2e-3,
+                k_ratio: 6.0,
                 images: 1,
                 face_reach: 10.0,
+                reach: 10.0,
             }
         } else {
             Self {
                 order: 4,
-                corner: 0.01,
-                ratio: 2.0,
-                modes: 4,
+                corner: 0.015,
+                ratio: 2.5,
+                modes: 3,
                 k_max: 40.0,
                 k_order: 6,
-                k_step: 4.0,
-                k_min: 2e-4,
+                k_step: 5.0,
+                k_min: 4e-4,
+                k_ratio: 4.0,
                 images: 1,
                 face_reach: 14.0,
+                reach: 14.0,
             }
         }
     }
@@ -75,9 +86,11 @@ impl Resolution {
             k_max: 2.0 * self.k_max,
             k_order: self.k_order,
             k_step: 0.5 * self.k_step,
+            k_ratio: self.k_ratio.sqrt(),
             k_min: 0.5 * self.k_min,
             images: 2 * self.images,
             face_reach: 2.0 * self.face_reach,
+            reach: (2.0 * self.reach).min(30.0),
         }
     }
 
@@ -111,15 +124,15 @@ impl Resolution {
         self.corner.max(ledge / 16.0)
     }
 
-    /// [`Resolution::contact_axis`] and panels on to a body's end face at `half`, graded from the
-    /// contact's end and towards the face.
+    /// [`Resolution::contact_axis`] and panels on to a body's end face at `half`, graded towards the
+    /// face.
     pub fn body_axis(&self, half_length: f64, half: f64) -> Panels {
         let mut breaks = self.contact_axis(half_length).breaks().to_vec();
         let ledge = half - half_length;
         if ledge > 0.0 {
-            let outward = self.graded(self.corner.min(0.25 * ledge), 0.5 * ledge);
-            let inward = self.graded(self.end_panel(ledge).min(0.25 * ledge), 0.5 * ledge);
-            breaks.extend(outward[1..].iter().map(|s| half_length + s));
+            // What the end face sends to the surface is smooth at the contact's end: only the
+            // face itself asks for grading.
+            let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
             breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
         }
         Panels::new(breaks, self.order)
@@ -129,17 +142,25 @@ impl Resolution {
     /// smallest wavenumber.
     pub fn face_axis(&self, ledge: f64) -> Panels {
         let deepest = self.face_reach / self.k_min;
-        Panels::new(self.graded(self.end_panel(ledge), deepest), self.order)
+        let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
+        // Where the load only fades, panels may grow faster.
+        let mut next = FACE_TAIL * self.ratio * self.ratio;
+        while next * self.ratio < deepest {
+            s.push(next);
+            next *= self.ratio * self.ratio;
+        }
+        s.push(deepest);
+        Panels::new(s, self.order)
     }
 
-    /// Wavenumbers across the contact and their quadrature weights: panels growing by four from
+    /// Wavenumbers across the contact and their quadrature weights: panels growing from
     /// `k_min`, then equal ones that resolve the transforms' oscillation.
     pub fn wavenumbers(&self) -> Panels {
         let mut breaks = vec![0.0];
         let mut next = self.k_min;
-        while next < 0.3 {
+        while next * self.k_ratio.sqrt() < 0.5 {
             breaks.push(next);
-            next *= 4.0;
+            next *= self.k_ratio;
         }
         breaks.extend([0.5, 1.0, 2.0]);
         let count = ((self.k_max - 2.0) / self.k_step).ceil().max(1.0);

@@ -7,13 +7,14 @@
 
 use super::axes::Resolution;
 use super::model::EdgeModel;
-use super::stencil::{Image, Stencil};
+use super::stencil::{Image, Sources, Stencil};
 use crate::base::Panels;
 use crate::kernels::bessel::k0;
 use crate::kernels::plate;
-use crate::kernels::wave::{REACH, line_load};
+use crate::kernels::wave::WaveTable;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A finite body and everything about it that does not depend on the wavenumber.
 #[derive(Debug, Clone)]
@@ -26,9 +27,11 @@ pub struct Body {
     pub model: EdgeModel,
     /// Axis of the surface pressure P that acts on the half-space: the contact, and for the
     /// complete model the surface on to the end face.
-    pub surface: Panels,
+    pub surface: Sources,
     /// Axis of the depth along an end face.
-    pub face: Panels,
+    pub face: Sources,
+    /// Stresses of line loads in this body's material.
+    pub kernel: Arc<WaveTable>,
     /// Images of the surface axis, itself and its mirror in y = 0 included, as they act on the
     /// displacement.
     images: Vec<Image>,
@@ -37,12 +40,15 @@ pub struct Body {
     /// Nodes of `surface` that belong to the contact; they come first.
     contact: usize,
     /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
-    pub strips: Vec<(f64, f64)>,
+    strips: Vec<(f64, f64)>,
     face_wavenumbers: Panels,
     resolution: Resolution,
     compliance_stencils: Vec<Stencil>,
     to_face: Vec<Stencil>,
     from_faces: Vec<[Stencil; 2]>,
+    reach: f64,
+    /// Distance from the contact's end to the end face.
+    ledge: f64,
     cosines: DMatrix<f64>,
 }
 
@@ -73,7 +79,8 @@ impl Body {
         let contact = contact_axis.len();
         let surface = if complete { resolution.body_axis(half_length, half) } else { contact_axis };
         let ledge = half - half_length;
-        let face = resolution.face_axis(ledge);
+        let face = Sources::new(resolution.face_axis(ledge));
+        let surface = Sources::new(surface);
         let image = |sign: f64, lengths: i32, weight: f64| Image {
             sign,
             shift: 2.0 * half * f64::from(lengths),
@@ -105,11 +112,14 @@ impl Body {
             compliance_stencils: Vec::new(),
             to_face: Vec::new(),
             from_faces: Vec::new(),
+            kernel: WaveTable::shared(nu),
+            reach: resolution.reach,
+            ledge,
             cosines: DMatrix::zeros(0, 0),
             surface,
             face,
         };
-        body.compliance_stencils = body.surface.nodes()[..contact]
+        body.compliance_stencils = body.surface.axis.nodes()[..contact]
             .iter()
             .map(|&y| Stencil::new(&body.surface, &body.images, y, 0.0))
             .collect();
@@ -124,22 +134,36 @@ impl Body {
         let half = self.half;
         let near = (2 * self.resolution.images + 1) as f64 * half;
         let mut breaks = vec![near];
-        let mut step = half;
-        while breaks[breaks.len() - 1] < near + REACH / self.resolution.k_min {
-            breaks.push(breaks[breaks.len() - 1] + step);
-            step *= 2.0;
+        let mut last = near;
+        while last < near + self.reach / self.resolution.k_min {
+            last *= 2.5;
+            breaks.push(last);
         }
         let strip = Panels::new(breaks, self.resolution.order);
         self.strips = strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
+        // Everything is even about the face: what lies behind it doubles what lies before it.
+        let before: Vec<Image> = self
+            .images
+            .iter()
+            .filter(|i| i.shift <= 0.0)
+            .map(|i| Image { weight: 2.0, ..*i })
+            .collect();
         self.to_face = self
             .face
+            .axis
             .nodes()
             .iter()
-            .map(|&z| Stencil::new(&self.surface, &self.images, half, z))
+            .map(|&z| Stencil::new(&self.surface, &before, half, z))
             .collect();
-        self.from_faces =
-            self.surface.nodes().iter().map(|&y| self.face_stencils(y, 0.0)).collect();
-        let (face, axis) = (&self.face, &self.face_wavenumbers);
+        let both = [Image { sign: 1.0, shift: 0.0, weight: 2.0 }];
+        self.from_faces = self
+            .surface
+            .axis
+            .nodes()
+            .iter()
+            .map(|&y| [half - y, half + y].map(|d| Stencil::new(&self.face, &both, 0.0, d)))
+            .collect();
+        let (face, axis) = (&self.face.axis, &self.face_wavenumbers);
         let order = face.order();
         self.cosines = DMatrix::zeros(axis.len(), face.len());
         let mut moments = vec![0.0; order];
@@ -170,9 +194,9 @@ impl Body {
     /// Face nodes that a wavenumber reaches.
     pub fn face_len(&self, k: f64) -> usize {
         let deepest = self.resolution.face_reach / k;
-        let panels =
-            (0..self.face.panel_count()).take_while(|&i| self.face.panel(i)[0] < deepest).count();
-        panels * self.face.order()
+        let face = &self.face.axis;
+        let panels = (0..face.panel_count()).take_while(|&i| face.panel(i)[0] < deepest).count();
+        panels * face.order()
     }
 
     /// Whether the plate's part beyond its two half-spaces matters at wavenumber `k`.
@@ -180,44 +204,47 @@ impl Body {
         k * self.half < 8.0
     }
 
-    /// Adds the kernel of the uniform strips to every entry of a row over the surface nodes.
-    fn add_strips(&self, k: f64, y: f64, depth: f64, kernel: impl Fn(f64) -> f64, row: &mut [f64]) {
-        let sum = self.strip_sum(k, y, depth, kernel);
-        if sum != 0.0 {
-            for (r, w) in row.iter_mut().zip(self.surface.weights()) {
-                *r += sum * w / self.half;
-            }
-        }
+    /// Offset beyond which loads of wavenumber `k` are not felt.
+    pub fn reach(&self, k: f64) -> f64 {
+        self.reach / k
     }
 
-    /// Integral of a kernel of the offset over the strips, as seen from (`y`, `depth`).
-    pub fn strip_sum(&self, k: f64, y: f64, depth: f64, kernel: impl Fn(f64) -> f64) -> f64 {
-        let mut sum = 0.0;
+    /// Calls `act(offset, weight)` for the quadrature points of the uniform strips that (`y`,
+    /// `depth`) feels at wavenumber `k`.
+    pub fn for_strips(&self, k: f64, y: f64, depth: f64, mut act: impl FnMut(f64, f64)) {
+        let reach = self.reach(k);
         for &(s, w) in &self.strips {
+            // Ascending in s: the nearer end decides.
+            if s - y.abs() > reach {
+                break;
+            }
             for u in [y - s, y + s] {
-                if k * u.hypot(depth) < REACH {
-                    sum += w * kernel(u);
+                if u * u + depth * depth < reach * reach {
+                    act(u, w);
                 }
             }
         }
-        sum
     }
 
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
-        let n = self.surface.len();
-        let reach = REACH / k;
-        let mut displacement = DMatrix::zeros(self.contact, n);
-        let mut row = vec![0.0; n];
+        let n = self.surface.axis.len();
+        let mut displacement = Rows::new(&self.surface, n);
+        let kernel = |u: f64| 2.0 * k0(k * u.abs());
         for (i, stencil) in self.compliance_stencils.iter().enumerate() {
-            row.fill(0.0);
-            let kernel = |u: f64| 2.0 * k0(k * u.abs());
-            stencil.add_row(reach, kernel, &mut row);
-            self.add_strips(k, self.surface.nodes()[i], 0.0, kernel, &mut row);
-            displacement.row_mut(i).copy_from_slice(&row);
+            displacement.push(|charges, nodes| {
+                stencil.add_row(self.reach(k), kernel, charges, nodes);
+                let mut strips = 0.0;
+                let y = self.surface.axis.nodes()[i];
+                self.for_strips(k, y, 0.0, |u, w| strips += w * kernel(u));
+                self.add_mean(strips, nodes);
+            });
         }
-        if self.model != EdgeModel::QuarterSpace {
-            return Layer { compliance: displacement, surface: None, face: None };
+        let displacement = displacement.finish();
+        // An end face that is too far from the contact for this wavenumber carries nothing.
+        if self.model != EdgeModel::QuarterSpace || self.ledge > self.reach(k) {
+            let compliance = displacement.columns(0, self.contact).into_owned();
+            return Layer { compliance, surface: None, face: None };
         }
         let to_face = self.to_face_matrix(k);
         let from_face = self.from_face_matrix(k, to_face.nrows());
@@ -231,42 +258,57 @@ impl Body {
         }
     }
 
+    /// Adds what strips of unit pressure do to a row over the surface's nodes: they carry the mean.
+    fn add_mean(&self, strips: f64, row: &mut [f64]) {
+        if strips != 0.0 {
+            for (r, w) in row.iter_mut().zip(self.surface.axis.weights()) {
+                *r += strips * w / self.half;
+            }
+        }
+    }
+
     /// T_zy: compressive stress yy on the end face per P.
     fn to_face_matrix(&self, k: f64) -> DMatrix<f64> {
-        let n = self.surface.len();
-        let rows = self.face_len(k);
-        let mut matrix = DMatrix::zeros(rows, n);
-        let mut row = vec![0.0; n];
-        for (i, stencil) in self.to_face[..rows].iter().enumerate() {
-            let z = self.face.nodes()[i];
-            row.fill(0.0);
-            let kernel = |u: f64| -line_load(k, self.nu, u, z).ww;
-            stencil.add_row(REACH / k, kernel, &mut row);
-            self.add_strips(k, self.half, z, kernel, &mut row);
-            matrix.row_mut(i).copy_from_slice(&row);
+        let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
+        for (i, stencil) in self.to_face[..self.face_len(k)].iter().enumerate() {
+            let z = self.face.axis.nodes()[i];
+            let kernel = |u: f64| -self.kernel.ww(k, u, z);
+            matrix.push(|charges, nodes| {
+                if k * z > self.reach {
+                    return;
+                }
+                stencil.add_row(self.reach(k), kernel, charges, nodes);
+                // The strip behind y = 0 and its mirror image in the face.
+                let mut strip = 0.0;
+                self.for_strips(k, self.half, z, |u, w| {
+                    strip += if u > 0.0 { w * kernel(u) } else { 0.0 };
+                });
+                self.add_mean(2.0 * strip, nodes);
+            });
         }
-        matrix
+        matrix.finish()
     }
 
     /// T_yz: compressive stress zz on z = 0 per q on both end faces.
     fn from_face_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
-        let n = self.surface.len();
-        let mut matrix = DMatrix::zeros(n, columns);
-        let mut row = vec![0.0; columns];
+        let n = self.surface.axis.len();
+        let mut matrix = Rows::new(&self.face, columns);
         for (i, stencils) in self.from_faces.iter().enumerate() {
-            let y = self.surface.nodes()[i];
-            row.fill(0.0);
-            for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
-                if k * depth < REACH {
-                    stencil.add_row(REACH / k, |u| -line_load(k, self.nu, u, depth).ww, &mut row);
+            let y = self.surface.axis.nodes()[i];
+            matrix.push(|charges, nodes| {
+                for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
+                    if k * depth < self.reach {
+                        let kernel = |u: f64| -self.kernel.ww(k, u, depth);
+                        stencil.add_row(self.reach(k), kernel, charges, nodes);
+                    }
                 }
-            }
-            matrix.row_mut(i).copy_from_slice(&row);
+            });
         }
+        let mut matrix = matrix.finish();
         if self.plate_matters(k) {
             let axis = &self.face_wavenumbers;
             let plate = DMatrix::from_fn(n, axis.len(), |i, m| {
-                let y = self.surface.nodes()[i];
+                let y = self.surface.axis.nodes()[i];
                 let weight = axis.weights()[m] / PI;
                 -weight * plate::remainder(self.half, self.nu, k, axis.nodes()[m], y)[2]
             });
@@ -299,5 +341,35 @@ impl Body {
         }
         let q = nalgebra::DVector::from_column_slice(q);
         (self.cosines.columns(0, q.len()) * q).data.into()
+    }
+}
+
+/// Rows over the nodes of sources, filled one after the other.
+struct Rows<'a> {
+    sources: &'a Sources,
+    columns: usize,
+    charges: Vec<f64>,
+    nodes: Vec<f64>,
+}
+
+impl<'a> Rows<'a> {
+    /// No rows yet; `columns` first nodes are kept.
+    fn new(sources: &'a Sources, columns: usize) -> Self {
+        let charges = vec![0.0; sources.charge_count()];
+        Self { sources, columns, charges, nodes: Vec::new() }
+    }
+
+    /// Appends a row that `fill` writes over the charges and over the nodes, both zero at first.
+    fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
+        self.charges.fill(0.0);
+        let start = self.nodes.len();
+        self.nodes.resize(start + self.columns, 0.0);
+        fill(&mut self.charges, &mut self.nodes[start..]);
+        self.sources.scatter(&self.charges, &mut self.nodes[start..]);
+    }
+
+    /// The matrix over the nodes.
+    fn finish(self) -> DMatrix<f64> {
+        DMatrix::from_row_slice(self.nodes.len() / self.columns, self.columns, &self.nodes)
     }
 }

@@ -2,9 +2,12 @@
 
 mod doctor;
 mod fem;
+mod gate;
 mod points;
 mod progress;
+mod report;
 mod solve;
+mod study;
 
 use crate::base::{Error, Result};
 use clap::{Parser, Subcommand};
@@ -30,6 +33,9 @@ struct Arguments {
 enum Command {
     Solve(solve::Arguments),
     Fem(fem::Arguments),
+    Study(study::Arguments),
+    Gate(gate::Arguments),
+    Report(report::Arguments),
     Doctor(doctor::Arguments),
 }
 
@@ -37,6 +43,8 @@ enum Command {
 enum Outcome {
     /// All was done.
     Done,
+    /// All was done, and an accuracy gate does not hold.
+    GateFailed,
 }
 
 /// Runs the program with `arguments`, the program's name first, and returns its exit code.
@@ -52,10 +60,14 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let outcome = match arguments.command {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
+        Command::Gate(arguments) => gate::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
         Command::Doctor(arguments) => doctor::run(arguments),
     };
     match outcome {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::GateFailed) => ExitCode::from(1),
         Err(e) => {
             eprintln!("error: {e}");
             ExitCode::from(2)

@@ -50,6 +50,9 @@ pub struct ContactSolution {
 /// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
 const SCREEN: f64 = 2.0;
 
+/// Entries of the collocation matrix per wavenumber that are as good as none.
+const NEGLIGIBLE: f64 = 1e-9;
+
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
 const SCREEN_POINTS: usize = 12;
 
@@ -296,6 +299,9 @@ fn linear_solve(
                 let column = column.as_mut_slice();
                 for (i, r) in remainder.column(j).iter().enumerate() {
                     let r = factor * r;
+                    if r.abs() < NEGLIGIBLE {
+                        continue;
+                    }
                     let rows = layout.unknowns(i);
                     for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
                         *entry += r * c;

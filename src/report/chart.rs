@@ -60,6 +60,26 @@ pub struct Series {
     pub markers: bool,
     /// Half-height of a band around the points.
     pub band: Option<Vec<f64>>,
+    /// Points that the axes need not make room for, such as those at a singular edge.
+    pub beyond: Vec<bool>,
+}
+
+impl Series {
+    /// Points that are marked and not joined.
+    pub fn marks(name: &str, look: Look, points: Vec<(f64, f64)>) -> Self {
+        let name = name.to_string();
+        Self { name, look, points, line: false, markers: true, band: None, beyond: Vec::new() }
+    }
+
+    /// Points that are marked and joined.
+    pub fn curve(name: &str, look: Look, points: Vec<(f64, f64)>) -> Self {
+        Self { line: true, ..Self::marks(name, look, points) }
+    }
+
+    /// Indices of the points that the axes make room for.
+    fn counted(&self) -> impl Iterator<Item = usize> {
+        (0..self.points.len()).filter(|&i| !self.beyond.get(i).copied().unwrap_or(false))
+    }
 }
 
 /// A word at a place of a panel.
@@ -239,9 +259,9 @@ fn tick(value: f64, step: f64) -> String {
     format!("{value:.digits$}").replace('-', "\u{2212}")
 }
 
-/// Round steps that divide a range into four to eight parts.
-fn nice_step(low: f64, high: f64) -> f64 {
-    let rough = (high - low) / 5.0;
+/// A round step that divides a range into about `parts` parts.
+fn nice_step(low: f64, high: f64, parts: f64) -> f64 {
+    let rough = (high - low) / parts;
     let decade = 10f64.powf(rough.log10().floor());
     let share = rough / decade;
     decade
@@ -295,7 +315,10 @@ impl Axis {
             }
             return all;
         }
-        let step = nice_step(self.low, self.high);
+        // Numbers beside each other need more room than numbers above each other.
+        let sideways = self.to > self.from;
+        let room = f64::from((self.to - self.from).abs()) / if sideways { 60.0 } else { 42.0 };
+        let step = nice_step(self.low, self.high, room.clamp(2.0, 6.0));
         let first = (self.low / step - 1e-9).ceil() as i64;
         let last = (self.high / step + 1e-9).floor() as i64;
         (first..=last).map(|i| (i as f64 * step, tick(i as f64 * step, step))).collect()
@@ -326,7 +349,10 @@ fn limits(values: impl Iterator<Item = f64>, log: bool) -> (f64, f64) {
 
 impl Panel {
     fn axes(&self, width: i32, height: i32, left: i32) -> (Axis, Axis) {
+        let (x_low, x_high) = self.x_range.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
+        let shown = move |p: &&(f64, f64)| p.0 >= x_low - 1e-9 && p.0 <= x_high + 1e-9;
         let points = || self.series.iter().flat_map(|s| &s.points);
+        let counted = || self.series.iter().flat_map(|s| s.counted().map(|i| &s.points[i]));
         let vertical = self.rules.iter().filter_map(|r| match r {
             Rule::Vertical(v, _) => Some(*v),
             Rule::Horizontal(..) => None,
@@ -337,11 +363,13 @@ impl Panel {
         });
         let (mut x, y) = if self.bars.is_empty() {
             let bands = self.series.iter().flat_map(|s| {
-                let pairs = s.points.iter().zip(s.band.iter().flatten());
-                pairs.flat_map(|(p, e)| [p.1 - e, p.1 + e])
+                let band = s.band.as_deref().unwrap_or_default();
+                let pairs = s.counted().filter_map(|i| Some((s.points[i], band.get(i)?)));
+                pairs.filter(|(p, _)| shown(&p)).flat_map(|(p, e)| [p.1 - e, p.1 + e])
             });
             let x = limits(points().map(|p| p.0).chain(vertical), self.log.0);
-            (x, limits(points().map(|p| p.1).chain(bands).chain(horizontal), self.log.1))
+            let y = counted().filter(shown).map(|p| p.1);
+            (x, limits(y.chain(bands).chain(horizontal), self.log.1))
         } else {
             let bars = self.bars.iter().map(|b| b.value).chain([0.0]);
             (limits(bars.chain(vertical), false), (self.bars.len() as f64 - 0.4, -0.6))
@@ -502,15 +530,18 @@ impl Panel {
             }
         }
         for s in &self.series {
-            let pixels: Vec<(i32, i32)> =
-                s.points.iter().filter(|p| inside(p)).map(|p| (x.at(p.0), y.at(p.1))).collect();
-            draw_line(area, &pixels, s.look, s.line)?;
+            let points: Vec<(f64, f64)> = s.points.iter().filter(|p| inside(p)).copied().collect();
+            let pixel = |p: (f64, f64)| (x.at(p.0), y.at(p.1));
+            for run in clipped(&points, y.low, y.high) {
+                let pixels: Vec<(i32, i32)> = run.into_iter().map(pixel).collect();
+                draw_line(area, &pixels, s.look, s.line)?;
+            }
             if !s.markers {
                 continue;
             }
             // Markers as near as they can be without touching each other.
             let mut last: Option<(i32, i32)> = None;
-            for &p in &pixels {
+            for p in points.into_iter().filter(|p| p.1 >= y.low && p.1 <= y.high).map(pixel) {
                 let far = |(a, b): (i32, i32)| (p.0 - a).pow(2) + (p.1 - b).pow(2) >= 12 * 12;
                 if last.is_none_or(far) {
                     draw_marker(area, p, s.look)?;
@@ -519,5 +550,67 @@ impl Panel {
             }
         }
         Ok(())
+    }
+}
+
+/// The parts of a polyline between two heights, cut where it leaves them.
+fn clipped(points: &[(f64, f64)], low: f64, high: f64) -> Vec<Vec<(f64, f64)>> {
+    let mut runs: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    let inside = |p: (f64, f64)| p.1 >= low && p.1 <= high;
+    let cut = |a: (f64, f64), b: (f64, f64)| {
+        let level = if a.1.max(b.1) > high { high } else { low };
+        let share = (level - a.1) / (b.1 - a.1);
+        (a.0 + share * (b.0 - a.0), level)
+    };
+    for (i, &p) in points.iter().enumerate() {
+        let before = i.checked_sub(1).map(|j| points[j]);
+        match (before.filter(|&q| inside(q) != inside(p)), inside(p)) {
+            (Some(q), true) => runs.push(vec![cut(q, p), p]),
+            (Some(q), false) => {
+                if let Some(run) = runs.last_mut() {
+                    run.push(cut(q, p));
+                }
+            }
+            (None, true) => {
+                if let Some(run) = runs.last_mut() {
+                    run.push(p);
+                }
+            }
+            (None, false) => {}
+        }
+    }
+    runs.retain(|r| r.len() > 1);
+    runs
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_is_cut_where_it_leaves_the_axes() {
+        let runs = clipped(&[(0.0, 0.0), (1.0, 2.0), (2.0, 0.0), (3.0, -4.0)], -1.0, 1.0);
+        let expected: [&[(f64, f64)]; 2] =
+            [&[(0.0, 0.0), (0.5, 1.0)], &[(1.5, 1.0), (2.0, 0.0), (2.25, -1.0)]];
+        assert_eq!(runs, expected);
+    }
+
+    #[test]
+    fn axes_leave_room_for_counted_points_only() {
+        let mut series = Series::curve("s", look("fem"), vec![(0.0, 1.0), (1.0, 2.0), (2.0, 99.0)]);
+        series.beyond = vec![false, false, true];
+        let panel = Panel { series: vec![series], ..Default::default() };
+        let (x, y) = panel.axes(400, 300, 60);
+        assert!(x.high > 2.0 && y.high < 3.0 && y.low < 1.0);
+    }
+
+    #[test]
+    fn ticks_are_round_and_spelt_out() {
+        let axis = Axis { low: -0.11, high: 0.42, log: false, from: 0, to: 300 };
+        let texts: Vec<String> = axis.ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(texts, ["\u{2212}0.1", "0", "0.1", "0.2", "0.3", "0.4"]);
+        let log = Axis { low: 2e-5, high: 3.0, log: true, from: 0, to: 300 };
+        let texts: Vec<String> = log.ticks().into_iter().map(|t| t.1).collect();
+        assert_eq!(texts, ["1e-4", "0.001", "0.01", "0.1", "1"]);
     }
 }

@@ -1,6 +1,7 @@
 //! One file per form of output.
 
 pub mod chart;
+pub mod gates;
 pub mod page;
 pub mod plots;
 pub mod solution;

@@ -70,9 +70,6 @@ fn render(
     environment.add_filter("seconds", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, duration)
     });
-    environment.add_filter("decades", move |v: minijinja::Value| {
-        as_number(&v).map_or_else(dash, |v| format!("{v:.2}").replace('-', "−"))
-    });
     environment.add_filter("short", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, |v| short(v).replace('-', "−"))
     });
@@ -88,6 +85,7 @@ fn render(
         caveats => CAVEATS,
         error_tables => error_tables(files),
         times => times(files),
+        any_ratio => files.study.rows.iter().any(|r| !files.study.text(r, "log10_speedup").is_empty()),
         effects => effects(files),
         details => details(files),
     };
@@ -102,7 +100,7 @@ fn as_number(value: &minijinja::Value) -> Option<f64> {
 }
 
 /// Up to five significant digits, without an exponent where that stays short.
-fn short(value: f64) -> String {
+pub fn short(value: f64) -> String {
     if value == 0.0 {
         return "0".to_string();
     }
@@ -195,25 +193,40 @@ fn error_tables(files: &StudyFiles) -> Vec<Value> {
         .collect()
 }
 
-/// Times of every case and source.
+/// Times, one row a case with a cell for each method and one for FEM.
 fn times(files: &StudyFiles) -> Vec<Value> {
     let study = &files.study;
-    study
-        .rows
-        .iter()
-        .map(|r| {
+    let mut cases: Vec<&str> = Vec::new();
+    for row in &study.rows {
+        let case = study.text(row, "case");
+        if !cases.contains(&case) {
+            cases.push(case);
+        }
+    }
+    let of = |case: &str, source: &str| {
+        let found = study
+            .rows
+            .iter()
+            .find(|r| study.text(r, "case") == case && study.text(r, "source") == source);
+        found.map_or(Value::Null, |r| {
             json!({
-                "case": study.text(r, "case"),
-                "source": study.text(r, "source"),
+                "source": source,
                 "seconds": cell(study, r, "seconds"),
                 "spread": cell(study, r, "seconds_spread"),
                 "cold": cell(study, r, "seconds_cold"),
                 "all_threads": cell(study, r, "seconds_all_threads"),
                 "threads": study.text(r, "threads"),
                 "unknowns": study.text(r, "unknowns"),
-                "log10_speedup": cell(study, r, "log10_speedup"),
+                "ratio": study.number(r, "log10_speedup").map(|d| 10f64.powf(d)),
                 "timed_on": study.text(r, "timed_on"),
             })
+        })
+    };
+    cases
+        .into_iter()
+        .map(|case| {
+            let methods: Vec<Value> = methods(files).iter().map(|m| of(case, m)).collect();
+            json!({ "case": case, "methods": methods, "fem": of(case, "fem") })
         })
         .collect()
 }

@@ -96,6 +96,7 @@ impl<'a> Case<'a> {
                 let points = self.points(table, &with_source, &coordinate, value);
                 let fem = source == "fem";
                 let band = fem.then(|| self.band(filter, &coordinate, value, points.len()));
+                let beyond = self.beyond(table, &with_source);
                 (!points.is_empty()).then(|| Series {
                     name: if fem { "FEM".to_string() } else { source.to_string() },
                     look: look(source),
@@ -103,7 +104,22 @@ impl<'a> Case<'a> {
                     line: !fem,
                     markers: true,
                     band: band.flatten(),
+                    beyond,
                 })
+            })
+            .collect()
+    }
+
+    /// Which points of a curve lie where nothing is compared: values are singular there.
+    fn beyond(&self, table: &Table, filter: &[(&str, &str)]) -> Vec<bool> {
+        let mut filter = filter.to_vec();
+        filter.push(("case", self.name));
+        let excluded = self.files.summary["range"]["stress_c"].as_f64().unwrap_or(0.0);
+        rows(table, &filter)
+            .iter()
+            .map(|r| {
+                let get = |name| table.number(r, name).unwrap_or(0.0) / self.c_m;
+                (get("y_m") - self.half_length).hypot(get("z_m")) < excluded * (1.0 - 1e-6)
             })
             .collect()
     }
@@ -229,14 +245,7 @@ impl<'a> EffectRows<'a> {
             title: response.replace('_', " "),
             x_label: "half-normal quantile".to_string(),
             y_label: format!("|effect| ({})", self.unit),
-            series: vec![Series {
-                name: String::new(),
-                look: look("quarter-space"),
-                points: points.clone(),
-                line: false,
-                markers: true,
-                band: None,
-            }],
+            series: vec![Series::marks("", look("quarter-space"), points.clone())],
             notes: notes.collect(),
             rules: self
                 .limits()
@@ -315,20 +324,12 @@ fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> 
             let series: Vec<Series> = lines
                 .iter()
                 .zip(looks)
-                .map(|(line, look)| Series {
-                    name: String::new(),
-                    look,
-                    points: levels
-                        .iter()
-                        .enumerate()
-                        .filter_map(|(x, level)| {
-                            let (sum, n) = means.get(&(line.clone(), level.clone()))?;
-                            Some((x as f64, sum / *n as f64))
-                        })
-                        .collect(),
-                    line: true,
-                    markers: true,
-                    band: None,
+                .map(|(line, look)| {
+                    let means = levels.iter().enumerate().filter_map(|(x, level)| {
+                        let (sum, n) = means.get(&(line.clone(), level.clone()))?;
+                        Some((x as f64, sum / *n as f64))
+                    });
+                    Series::curve("", look, means.collect())
                 })
                 .collect();
             let notes = series
@@ -369,19 +370,15 @@ fn time_and_error(files: &StudyFiles) -> Figure {
         y_label: "error / p0".to_string(),
         series: sources
             .iter()
-            .map(|source| Series {
-                name: if *source == "fem" { "FEM (its own error)" } else { source }.to_string(),
-                look: look(source),
-                points: rows(study, &[("source", source)])
-                    .iter()
-                    .filter_map(|r| {
-                        let e = study.number(r, if *source == "fem" { own } else { error })?;
-                        Some((study.number(r, "seconds")?, e))
-                    })
-                    .collect(),
-                line: false,
-                markers: true,
-                band: None,
+            .map(|source| {
+                let fem = *source == "fem";
+                let points = rows(study, &[("source", source)]);
+                let points = points.iter().filter_map(|r| {
+                    let e = study.number(r, if fem { own } else { error })?;
+                    Some((study.number(r, "seconds")?, e))
+                });
+                let name = if fem { "FEM (its own error)" } else { source };
+                Series::marks(name, look(source), points.collect())
             })
             .collect(),
         log: (true, true),

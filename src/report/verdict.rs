@@ -55,7 +55,7 @@ fn gates(summary: &Value) -> String {
         .filter(|g| g["passed"] != true)
         .map(|g| {
             let text = |key: &str| g[key].as_str().unwrap_or_default().to_string();
-            format!("{} ({}): {}", text("name"), text("method"), text("note"))
+            format!("{} ({})", text("name"), text("method"))
         })
         .collect();
     match (gates.len(), failed.len()) {
@@ -147,7 +147,7 @@ mod tests {
             "method_summary": [{ "method": "mirror", "cases": 8, "compared": 0 }],
         });
         let text = sentences(&summary);
-        assert_eq!(text[0], "1 of 2 accuracy gates fail: pressure (mirror): worst at a.");
+        assert_eq!(text[0], "1 of 2 accuracy gates fail: pressure (mirror).");
         assert_eq!(text[1], "mirror could not be compared with FEM in any case.");
         assert_eq!(text.len(), 2);
     }

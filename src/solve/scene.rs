@@ -142,7 +142,7 @@ impl SolvedScene {
         let settings = ContactSettings {
             modes: resolution.modes,
             end_zone: resolution.end_zone(),
-            tolerance: 1e-7,
+            tolerance: 1e-3 * scene.tolerance,
             max_iterations: 40,
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
@@ -178,7 +178,7 @@ impl SolvedScene {
     /// The stress field of a body, without what only the roller's own shape adds.
     pub fn field(&self, kind: BodyKind) -> Field<'_> {
         let (body, layers) = self.body(kind);
-        Field::new(body, &self.wavenumbers, layers, &self.pressure, GAMMA)
+        Field::new(body, &self.wavenumbers, layers, &self.pressure, GAMMA, self.scene.tolerance)
     }
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.

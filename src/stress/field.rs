@@ -12,7 +12,7 @@ use crate::body::stencil::Stencil;
 use crate::body::{Body, EdgeModel, Layer};
 use crate::contact::ContactSolution;
 use crate::kernels::strip;
-use crate::kernels::wave::{REACH, line_load, surface_spread, surface_spread_shear};
+use crate::kernels::wave::{surface_spread, surface_spread_shear};
 use nalgebra::DVector;
 use std::f64::consts::PI;
 
@@ -89,15 +89,20 @@ struct Loads {
     k: f64,
     /// Quadrature weight of the wavenumber, over pi.
     weight: f64,
-    /// P at the surface's nodes.
+    /// P at the surface's nodes, and its charges.
     surface: Vec<f64>,
+    surface_charges: Vec<f64>,
     /// Mean of P over the body's length.
     mean: f64,
-    /// q at the face's first nodes.
+    /// q at the face's first nodes, and its charges.
     face: Vec<f64>,
+    face_charges: Vec<f64>,
     /// Transform of q for the plate.
     plate: Vec<f64>,
 }
+
+/// Depth (C) from which [`Field::down`] interpolates, on panels that double.
+const SMOOTH_DEPTH: f64 = 0.15;
 
 /// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
 const ON_SURFACE: f64 = 1e-9;
@@ -110,19 +115,27 @@ pub struct Field<'a> {
     loads: Vec<Loads>,
     /// Stress transition factor of [`EdgeModel::Guilbault`].
     gamma: f64,
+    /// A wavenumber's share of a stress that is as good as none (p0).
+    negligible: f64,
 }
+
+/// After so many negligible wavenumbers in a row, more than a period of the oscillation that the
+/// contact's width gives the amplitudes, the rest is left out.
+const FADED: usize = 8;
 
 /// Amplitudes of xx, yy, zz, xy, xz, yz.
 type Amplitudes = [f64; 6];
 
 impl<'a> Field<'a> {
-    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`.
+    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`, with wavenumbers
+    /// left out that change no stress by more than about a tenth of `tolerance` (p0).
     pub fn new(
         body: &'a Body,
         wavenumbers: &Panels,
         layers: &[Layer],
         pressure: &'a Pressure,
         gamma: f64,
+        tolerance: f64,
     ) -> Self {
         let loads = wavenumbers
             .nodes()
@@ -135,31 +148,99 @@ impl<'a> Field<'a> {
                 let surface = layer.surface.as_ref().map_or_else(|| p.as_slice().to_vec(), times);
                 let face = layer.face.as_ref().map(times).unwrap_or_default();
                 let total: f64 =
-                    surface.iter().zip(body.surface.weights()).map(|(p, w)| p * w).sum();
+                    surface.iter().zip(body.surface.axis.weights()).map(|(p, w)| p * w).sum();
                 Loads {
                     k,
                     weight: w / PI,
                     mean: total / body.half,
                     plate: body.plate_transform(k, &face),
+                    surface_charges: body.surface.charges(&surface),
+                    face_charges: body.face.charges(&face),
                     surface,
                     face,
                 }
             })
             .collect();
-        Self { body, pressure, loads, gamma }
+        Self { body, pressure, loads, gamma, negligible: 0.005 * tolerance }
     }
 
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
     ///
     /// On a loaded surface or a free end face the known tractions are used.
     pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let (side, y) = (y.signum(), y.abs());
         let z = if z < ON_SURFACE { 0.0 } else { z };
+        let remainders = self.remainders(y, z, xs);
+        xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
+    }
+
+    /// Stresses at the points (`x`, `y`, z) for each z of `zs`, in their order: what
+    /// [`Field::at`] gives, with the smooth part interpolated over the depth where points lie
+    /// closer than it varies.
+    pub fn down(&self, x: f64, y: f64, zs: &[f64], order: usize) -> Vec<StressTensor> {
+        let deepest = zs.iter().fold(0.0, |m: f64, z| m.max(*z));
+        let mut breaks = vec![SMOOTH_DEPTH];
+        while 2.0 * 1.3 * breaks[breaks.len() - 1] < deepest {
+            breaks.push(2.0 * breaks[breaks.len() - 1]);
+        }
+        let shallow = zs.iter().filter(|z| **z < SMOOTH_DEPTH).count();
+        if deepest <= SMOOTH_DEPTH || zs.len() - shallow <= breaks.len() * order {
+            return zs.iter().map(|&z| self.at(y, z, &[x])[0]).collect();
+        }
+        breaks.push(deepest);
+        let axis = Panels::new(breaks, order);
+        let nodes: Vec<StressTensor> =
+            axis.nodes().iter().map(|&z| self.remainders(y, z, &[x])[0]).collect();
+        zs.iter()
+            .map(|&z| {
+                if z < SMOOTH_DEPTH {
+                    return self.at(y, z, &[x])[0];
+                }
+                let (first, weights) = axis.interpolation(z);
+                let mut sum = StressTensor::default();
+                for (w, s) in weights.iter().zip(&nodes[first..]) {
+                    sum += *s * *w;
+                }
+                self.complete(x, y, z, sum)
+            })
+            .collect()
+    }
+
+    /// Whether `y` (C) lies on an end face.
+    fn on_face(&self, y: f64) -> bool {
+        self.body.half - y.abs() < ON_SURFACE * self.body.half
+    }
+
+    /// The stress whose part beyond the endless contact of the local pressure is `remainder`.
+    fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
+        let mut s = remainder;
+        if let Some((a, c)) = self.pressure.modes(y) {
+            let [xx, zz, xz] = strip::stress(a, &c, x, z);
+            s.xx += xx;
+            s.zz += zz;
+            s.xz += xz;
+            s.yy += self.body.nu * (xx + zz);
+        }
+        if z == 0.0 {
+            s.zz = -self.pressure.at(x, y);
+            (s.xz, s.yz) = (0.0, 0.0);
+        }
+        if self.on_face(y) && self.body.model == EdgeModel::QuarterSpace {
+            (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
+        }
+        if y < 0.0 {
+            (s.xy, s.yz) = (-s.xy, -s.yz);
+        }
+        s
+    }
+
+    /// Stresses at (x, |`y`|, `z`) for each x of `xs`, less those of an endless contact of the
+    /// pressure at `y`.
+    fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        let y = y.abs();
         let body = self.body;
         let surface = Stencil::new(&body.surface, &body.stress_images, y, z);
         let complete = body.model == EdgeModel::QuarterSpace;
         let faces = complete.then(|| body.face_stencils(y, z));
-        let on_face = body.half - y < ON_SURFACE * body.half;
         let correction = (body.model == EdgeModel::Guilbault).then(|| {
             let end = Stencil::new(&body.surface, &body.stress_images, body.half, z);
             (end, [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma)))
@@ -167,15 +248,19 @@ impl<'a> Field<'a> {
         let local = self.pressure.modes(y);
         let mut local_modes = vec![0.0; local.as_ref().map_or(0, |l| l.1.len())];
         let mut sums = vec![[0.0; 6]; xs.len()];
+        let mut fading = 0;
         for loads in &self.loads {
             let k = loads.k;
+            if fading >= FADED {
+                break;
+            }
             let mut amplitudes = self.from_surface(&surface, loads, y, z);
             if let Some((end, shares)) = &correction {
                 let on_end = self.from_surface(end, loads, body.half, z)[1];
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
-                let depths = [if on_face { 0.0 } else { body.half - y }, body.half + y];
+                let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
                     self.add_face(stencil, loads, z, depth, into, &mut amplitudes);
                 }
@@ -191,6 +276,10 @@ impl<'a> Field<'a> {
                 amplitudes[2] += (1.0 + k * z) * e;
                 amplitudes[4] += k * z * e;
             }
+            let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
+            // Only once oscillations across the contact are resolved does a small amplitude last.
+            let small = k > 1.0 && loads.weight * largest < self.negligible;
+            fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = (k * x).sin_cos();
                 for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
@@ -198,62 +287,36 @@ impl<'a> Field<'a> {
                 }
             }
         }
-        sums.iter()
-            .zip(xs)
-            .map(|(sum, &x)| {
-                let mut s = StressTensor::from_components(*sum);
-                if let Some((a, c)) = &local {
-                    let [xx, zz, xz] = strip::stress(*a, c, x, z);
-                    s.xx += xx;
-                    s.zz += zz;
-                    s.xz += xz;
-                    s.yy += body.nu * (xx + zz);
-                }
-                if z == 0.0 {
-                    s.zz = -self.pressure.at(x, y);
-                    (s.xz, s.yz) = (0.0, 0.0);
-                }
-                if on_face && complete {
-                    (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
-                }
-                if side < 0.0 {
-                    (s.xy, s.yz) = (-s.xy, -s.yz);
-                }
-                s
-            })
-            .collect()
+        sums.into_iter().map(StressTensor::from_components).collect()
     }
 
     /// Amplitudes from P on z = 0 and its images, at (`y`, `z`).
     fn from_surface(&self, stencil: &Stencil, loads: &Loads, y: f64, z: f64) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
         let mut sum = [0.0; 6];
-        let reach = REACH / k;
+        let reach = body.reach(k);
+        if z > reach {
+            return sum;
+        }
         if z == 0.0 {
             let free = 1.0 - 2.0 * body.nu;
             let (mut spread, mut shear) = (0.0, 0.0);
-            stencil.for_each(reach, &loads.surface, |u, p| {
+            let mut add = |u: f64, p: f64| {
                 spread += p * surface_spread(k, u);
                 shear += p * surface_spread_shear(k, u);
-            });
-            spread += loads.mean * body.strip_sum(k, y, z, |u| surface_spread(k, u));
-            shear += loads.mean * body.strip_sum(k, y, z, |u| surface_spread_shear(k, u));
-            let p = value_at(&body.surface, &loads.surface, y);
+            };
+            stencil.for_each(reach, &loads.surface, &loads.surface_charges, &mut add);
+            body.for_strips(k, y, z, |u, w| add(u, w * loads.mean));
+            let p = value_at(&body.surface.axis, &loads.surface, y);
             return surface_limit(body.nu, free, p, spread, shear);
         }
         let mut add = |u: f64, p: f64| {
-            let s = line_load(k, body.nu, u, z);
+            let s = body.kernel.line_load(k, u, z);
             let all = [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
             sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += p * s);
         };
-        stencil.for_each(reach, &loads.surface, &mut add);
-        for &(s, w) in &body.strips {
-            for u in [y - s, y + s] {
-                if k * u.abs() < REACH {
-                    add(u, w * loads.mean);
-                }
-            }
-        }
+        stencil.for_each(reach, &loads.surface, &loads.surface_charges, &mut add);
+        body.for_strips(k, y, z, |u, w| add(u, w * loads.mean));
         sum
     }
 
@@ -269,17 +332,17 @@ impl<'a> Field<'a> {
         sum: &mut Amplitudes,
     ) {
         let (body, k) = (self.body, loads.k);
-        if k * depth > REACH {
+        if depth > body.reach(k) || loads.face.is_empty() {
             return;
         }
-        let reach = REACH / k;
+        let reach = body.reach(k);
         if depth == 0.0 {
             let (mut spread, mut shear) = (0.0, 0.0);
-            stencil.for_each(reach, &loads.face, |u, q| {
+            stencil.for_each(reach, &loads.face, &loads.face_charges, |u, q| {
                 spread += q * surface_spread(k, u);
                 shear += q * surface_spread_shear(k, u);
             });
-            let q = value_at(&body.face, &loads.face, z);
+            let q = value_at(&body.face.axis, &loads.face, z);
             let [xx, ww, dd, xw, ..] =
                 surface_limit(body.nu, 1.0 - 2.0 * body.nu, q, spread, shear);
             sum[0] += xx;
@@ -288,8 +351,8 @@ impl<'a> Field<'a> {
             sum[4] += xw;
             return;
         }
-        stencil.for_each(reach, &loads.face, |u, q| {
-            let s = line_load(k, body.nu, u, depth);
+        stencil.for_each(reach, &loads.face, &loads.face_charges, |u, q| {
+            let s = body.kernel.line_load(k, u, depth);
             let all = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
             sum.iter_mut().zip(all).for_each(|(sum, s)| *sum += q * s);
         });

@@ -94,8 +94,9 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<String>) {
         );
         return (all, skipped);
     }
+    // For each response the methods that have no value of it at some corner.
+    let mut absent: Vec<(String, Vec<&str>)> = Vec::new();
     for &method in &run.methods {
-        let mut absent: Vec<String> = Vec::new();
         for response in responses() {
             let mut corners = Vec::new();
             let mut centre = None;
@@ -111,17 +112,20 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<String>) {
             let (levels, values): (Vec<_>, Vec<_>) = corners.iter().cloned().unzip();
             match factorial::analyse(&levels, &values, centre) {
                 Ok(analysis) => all.push(Effects { method, response, analysis, corners, centre }),
-                Err(_) => absent.push(response.name),
+                Err(_) => match absent.iter_mut().find(|(name, _)| *name == response.name) {
+                    Some((_, methods)) => methods.push(method.name()),
+                    None => absent.push((response.name, vec![method.name()])),
+                },
             }
         }
-        if !absent.is_empty() {
-            let what = if absent.len() == responses().len() {
-                "all".to_string()
-            } else {
-                absent.join(", ")
-            };
+    }
+    if absent.len() == responses().len() {
+        skipped.push("Effects: no corner or not every one could be compared.".to_string());
+    } else {
+        for (response, methods) in absent {
             skipped.push(format!(
-                "Effects of {method}: {what} responses have no value at one corner or more."
+                "Effects on {response} ({}): it has no value at one corner or more.",
+                methods.join(", ")
             ));
         }
     }

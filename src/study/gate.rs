@@ -14,6 +14,9 @@ use std::path::Path;
 /// The thresholds that are built into the program.
 pub const DEFAULT_GATES: &str = include_str!("gates.toml");
 
+/// The accepted numbers that are built into the program.
+pub const DEFAULT_BASELINE: &str = include_str!("../../results/baseline.json");
+
 /// The thresholds file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]

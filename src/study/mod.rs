@@ -7,6 +7,7 @@ pub mod effects;
 pub mod errors;
 pub mod factorial;
 pub mod gate;
+pub mod live;
 pub mod reference;
 mod run;
 mod sampled;

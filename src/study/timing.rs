@@ -52,7 +52,12 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[low] + (place - low as f64) * (sorted[high] - sorted[low])
 }
 
-/// Runs `work` once cold and `repeats` times warm on `threads` threads (0: all of the machine).
+/// Repeats of one measurement stop when they have taken this long together (s): a slow piece of work
+/// needs fewer of them for the same trust, and a study has many to measure.
+const BUDGET_S: f64 = 0.5;
+
+/// Runs `work` once cold and up to `repeats` times warm, at least once, on `threads` threads (0: all
+/// of the machine).
 ///
 /// # Errors
 /// The first error of `work`: no time counts for an answer that was not computed.
@@ -72,7 +77,10 @@ pub fn measure<T: Send, E: Send>(
     };
     let all = || -> Result<Timing, E> {
         let cold = timed()?;
-        let warm = (0..repeats.max(1)).map(|_| timed()).collect::<Result<Vec<f64>, E>>()?;
+        let mut warm = vec![timed()?];
+        while warm.len() < repeats && warm.iter().sum::<f64>() < BUDGET_S {
+            warm.push(timed()?);
+        }
         Ok(Timing::new(rayon::current_num_threads(), cold, &warm))
     };
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
@@ -125,5 +133,7 @@ mod tests {
         assert_eq!((timing.threads, timing.repeats), (1, 3));
         assert_eq!(count(), 4);
         assert_eq!(measure(1, 3, || Err::<(), _>("no")), Err("no"));
+        let slow = || Ok::<_, ()>(std::thread::sleep(std::time::Duration::from_millis(300)));
+        assert_eq!(measure(1, 50, slow).unwrap().repeats, 2);
     }
 }

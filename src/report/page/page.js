@@ -116,8 +116,14 @@
     const visible = d.x.map((v, i) => [v, i]).filter(([v]) => v >= x0 - 1e-12 && v <= x1 + 1e-12).map(([, i]) => i);
     let [y0, y1] = [Infinity, -Infinity];
     const take = (v) => { if (v !== null && Number.isFinite(v)) { y0 = Math.min(y0, v); y1 = Math.max(y1, v); } };
+    // Where errors are not counted, values may be singular: the axis need not make room for them,
+    // unless nothing else is in view.
+    const { caseData, curve, key } = chosen();
+    const excluded = key.startsWith("contact") ? data.range.pressure_c[0] : data.range.stress_c;
+    const near = curve.points.map((p) => Math.hypot(p[1] - caseData.S_l, p[2]) < excluded * (1 - 1e-6));
+    const counted = visible.filter((i) => !near[i]);
     for (const s of d.series) {
-      for (const i of visible) {
+      for (const i of counted.length > 1 ? counted : visible) {
         take(s.values[i]);
         if (s.source === "fem" && d.band && s.values[i] !== null) { take(s.values[i] - d.band[i]); take(s.values[i] + d.band[i]); }
       }
@@ -135,10 +141,6 @@
     const clip = element("clipPath", { id: "inside" });
     clip.append(element("rect", { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top }));
     parts.push(clip);
-    // Where errors are not counted.
-    const { caseData, curve, key } = chosen();
-    const excluded = key.startsWith("contact") ? data.range.pressure_c[0] : data.range.stress_c;
-    const near = curve.points.map((p) => Math.hypot(p[1] - caseData.S_l, p[2]) < excluded * (1 - 1e-9));
     const from = near.indexOf(true);
     if (from >= 0) {
       const to = near.lastIndexOf(true);

@@ -1,0 +1,88 @@
+"""Recovery of stresses: what it reproduces, and the tractions put in afterwards."""
+
+import itertools
+import math
+
+import numpy as np
+import pytest
+
+from edgeline_fem.recovery import StressField, enforce_tractions, invariants
+from edgeline_fem.request import FemError
+
+
+def box_field(stress_at):
+    """A graded box of elements with values of ``stress_at(points)`` at the superconvergent points."""
+    axes = [np.array([0.0, 0.2, 0.5, 1.0])] * 3
+    points, corners = [], []
+    for cell in itertools.product(range(3), repeat=3):
+        low = np.array([axis[i] for axis, i in zip(axes, cell)])
+        size = np.array([axis[i + 1] - axis[i] for axis, i in zip(axes, cell)])
+        for collection, offset in ((points, 0.5 / math.sqrt(3.0)), (corners, 0.5)):
+            signs = np.array(list(itertools.product((-1.0, 1.0), repeat=3)))
+            collection.append(low + size * (0.5 + offset * signs))
+    points = np.array(points)
+    return StressField(points, stress_at(points.reshape(-1, 3)).reshape(-1, 8, 6), np.array(corners))
+
+
+def quadratic(points):
+    """A quadratic stress with the parities of the planes x = 0 and y = 0."""
+    x, y, z = points.T
+    even = 1.0 + x**2 - 0.5 * y**2 + 0.3 * z - z**2 + x**2 * y**2 * z
+    return np.stack([even, 2.0 * even, z, x * y * z, x * z, y * (1.0 + z)], axis=1)
+
+
+POINTS = [(0.0, 0.0, 0.0), (0.1, 0.7, 0.3), (1.0, 1.0, 1.0), (0.0, 1.0, 0.02), (0.2, 0.5, 0.5), (0.35, 0.0, 0.9)]
+
+
+def test_patches_reproduce_quadratics_everywhere():
+    field = box_field(quadratic)
+    assert field.sample(POINTS) == pytest.approx(quadratic(np.array(POINTS)), abs=1e-10)
+
+
+def test_elements_alone_reproduce_trilinear_fields():
+    def trilinear(points):
+        x, y, z = points.T
+        return np.stack([1.0 + z, 2.0 - z, 3.0 * z, x * y, x * z, y], axis=1)
+
+    field = box_field(trilinear)
+    alone = np.ones(len(POINTS), dtype=bool)
+    assert field.sample(POINTS, alone) == pytest.approx(trilinear(np.array(POINTS)), abs=1e-12)
+
+
+def test_a_point_outside_is_named():
+    with pytest.raises(FemError, match="outside the body"):
+        box_field(quadratic).sample([(0.5, 0.5, 1.5)])
+
+
+def test_invariants():
+    von_mises, tau_max = invariants([[3.0, 1.0, 2.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    assert von_mises == pytest.approx([math.sqrt(3.0), math.sqrt(3.0)])
+    assert tau_max == pytest.approx([1.0, 1.0])
+
+
+def test_tractions_that_hold_are_left_alone_and_others_put_right():
+    points = np.array([[0.3, 0.5, 0.0], [0.3, 1.0, 0.7], [0.3, 1.0, 0.0]])
+    pressure = np.array([0.8, 0.0, 0.6])
+    right = np.array([[-0.4, -0.3, -0.8, 0.02, 0.0, 0.0], [0.1, 0.0, -0.2, 0.0, 0.03, 0.0],
+                      [-0.2, 0.0, -0.6, 0.0, 0.0, 0.0]])
+    stress = right.copy()
+    assert enforce_tractions(points, stress, 0.3, 1.0, np.inf, pressure) == pytest.approx((0.0, 0.0))
+    assert stress == pytest.approx(right)
+    stress[0, 2] -= 0.07
+    stress[1, 1] += 0.05
+    assert enforce_tractions(points, stress, 0.3, 1.0, np.inf, pressure) == pytest.approx((0.05, 0.07))
+    assert stress[:, 2] == pytest.approx([-0.8, -0.2 - 0.05 * 0.3 / 0.7, -0.6])
+    assert stress[0, 0] == pytest.approx(-0.4 + 0.07 * 0.3 / 0.7)
+    assert stress[1:, 1] == pytest.approx([0.0, 0.0])
+
+
+def test_tractions_on_the_arc_act_along_z():
+    """On a tilted surface the traction is along z: sigma . n has no part across."""
+    points = np.array([[1.0, 0.5, 0.0]])
+    stress = np.array([[-0.3, -0.2, -0.4, 0.05, 0.02, 0.01]])
+    enforce_tractions(points, stress, 0.3, 5.0, 10.0, np.array([0.5]))
+    xx, yy, zz, xy, xz, yz = stress[0]
+    sine, cosine = 0.1, math.sqrt(0.99)
+    normal = np.array([sine, 0.0, -cosine])  # outwards
+    tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
+    assert tensor @ normal == pytest.approx([0.0, 0.0, 0.5 * cosine], abs=1e-12)

@@ -1,0 +1,125 @@
+//! `edgeline gate`: does it still hold?
+
+use super::study::{What, built_in_baseline, built_in_gates, find_study};
+use super::{Outcome, print, print_json};
+use crate::base::{Error, Result, prepare_folder, write_whole};
+use crate::report::gates;
+use crate::report::study_files::pretty;
+use crate::study::gate::{self, Baseline};
+use clap::{Args, ValueHint};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Holds the models to their accuracy gates: absolute limits, and drift from accepted numbers.
+///
+/// Prints a table of every gate with value, limit and margin; writes gates.json, gates.md and
+/// junit.xml into the output folder, and the Markdown also to the file that $GITHUB_STEP_SUMMARY
+/// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes some seconds with recorded
+/// finite-element curves.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A study file; the built-in two-level factorial study if left out
+    #[arg(value_hint = ValueHint::FilePath)]
+    study: Option<PathBuf>,
+    /// Folder for the results; made if it is not there
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+    /// Thresholds (TOML) in place of those built into the program
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    gates: Option<PathBuf>,
+    /// Accepted numbers (JSON) in place of those built into the program
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    baseline: Option<PathBuf>,
+    /// Accept the numbers of this run: show what changes and write them to --baseline
+    #[arg(long, requires = "baseline")]
+    accept: bool,
+    #[command(flatten)]
+    what: What,
+    /// Print the outcomes as one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// Changes that `--accept` lists; more are counted.
+const LISTED: usize = 40;
+
+pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+    let study = find_study(arguments.study.as_deref())?;
+    let thresholds = match &arguments.gates {
+        Some(path) => gate::parse(&read(path)?, path)?,
+        None => built_in_gates()?,
+    };
+    let accepted = match &arguments.baseline {
+        // What is to be written need not be there yet.
+        Some(path) if arguments.accept && !path.exists() => Baseline::default(),
+        Some(path) => Baseline::parse(&read(path)?, path)?,
+        None => built_in_baseline()?,
+    };
+    prepare_folder(&arguments.out)?;
+    let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
+    let run = arguments.what.run(&study, &arguments.out, if timed { 5 } else { 0 })?;
+
+    if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {
+        return accept(path, &accepted, &Baseline::of(&run), arguments.json);
+    }
+    let outcomes = gate::evaluate(&run, &thresholds, Some(&accepted));
+    let markdown = gates::markdown(&outcomes);
+    let json = gates::json(&outcomes);
+    write_whole(&arguments.out.join("gates.json"), pretty(&json))?;
+    write_whole(&arguments.out.join("gates.md"), &markdown)?;
+    write_whole(&arguments.out.join("junit.xml"), gates::junit(&outcomes))?;
+    if let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY") {
+        append(Path::new(&path), &markdown)?;
+    }
+    if arguments.json {
+        print_json(&json)?;
+    } else {
+        print(&format!("{}{}\n", gates::table(&outcomes), gates::headline(&outcomes)))?;
+    }
+    let hold = outcomes.iter().all(|o| o.passed);
+    Ok(if hold { Outcome::Done } else { Outcome::GateFailed })
+}
+
+/// Writes the numbers of a run as the accepted ones and says what that changes.
+fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Result<Outcome> {
+    let places: usize = now.numbers.values().map(|v| v.len()).sum();
+    let sound = now.numbers.values().flat_map(|v| v.values()).all(|v| v.is_finite());
+    if places == 0 || !sound {
+        return Err(Error::Value {
+            key: "--accept".to_string(),
+            value: format!("{places} numbers"),
+            reason: "nothing was compared, or a number is not finite".to_string(),
+            remedy: "run `edgeline study` and see what is wrong".to_string(),
+        });
+    }
+    let changes = accepted.changes(now, 0.0);
+    write_whole(path, now.to_json())?;
+    let mut lines: Vec<String> = changes.iter().map(gate::Change::describe).collect();
+    if json {
+        return print_json(&serde_json::json!({ "accepted": places, "changes": lines }))
+            .map(|()| Outcome::Done);
+    }
+    let more = lines.len().saturating_sub(LISTED);
+    lines.truncate(LISTED);
+    if more > 0 {
+        lines.push(format!("and {more} more"));
+    }
+    lines.push(format!("accepted {places} numbers into {}", path.display()));
+    print(&(lines.join("\n") + "\n"))?;
+    Ok(Outcome::Done)
+}
+
+fn read(path: &Path) -> Result<String> {
+    std::fs::read_to_string(path).map_err(|source| Error::Io {
+        action: "read",
+        path: path.to_path_buf(),
+        source,
+    })
+}
+
+/// Adds to the end of a file: other steps of a job write there too.
+fn append(path: &Path, text: &str) -> Result<()> {
+    let io = |source| Error::Io { action: "append to", path: path.to_path_buf(), source };
+    let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(io)?;
+    file.write_all(text.as_bytes()).map_err(io)
+}

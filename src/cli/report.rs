@@ -1,0 +1,26 @@
+//! `edgeline report`: the page of a finished run again.
+
+use super::{Outcome, print};
+use crate::base::Result;
+use crate::report::study_files::StudyFiles;
+use crate::report::{page, plots};
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// Makes report.html, report.md and plots/*.svg again from the files of a finished study.
+///
+/// Reads summary.json and the CSV files of the run and writes beside them. Takes about a second.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// The folder that `edgeline study --out` wrote
+    #[arg(value_hint = ValueHint::DirPath)]
+    run: PathBuf,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+    let files = StudyFiles::read(&arguments.run)?;
+    plots::write(&files, &arguments.run.join("plots"))?;
+    page::write(&files, &arguments.run)?;
+    print(&format!("wrote report.html, report.md and plots into {}\n", arguments.run.display()))?;
+    Ok(Outcome::Done)
+}

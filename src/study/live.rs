@@ -1,0 +1,62 @@
+//! FEM run within a study: on this machine, in this run.
+
+use super::reference::from_fem;
+use super::run::Reference;
+use super::timing::Timing;
+use crate::base::Result;
+use crate::case::Case;
+use crate::fem::{self, Driver, Settings};
+use std::path::Path;
+
+/// How much coarser the second mesh is, whose difference to the first is FEM's own error.
+const COARSER: f64 = 1.4;
+
+/// Live FEM: the drivers of the mesh asked for and of a coarser one.
+pub struct Live {
+    fine: Driver,
+    coarse: Driver,
+    repeats: usize,
+}
+
+impl Live {
+    /// Finds the tools. `repeats` (at least 1) runs of the finer mesh give the time's spread.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn new(settings: Settings, repeats: usize) -> Result<Self> {
+        let coarser = Settings { size: settings.size * COARSER, ..settings.clone() };
+        Ok(Self {
+            fine: Driver::new(settings)?,
+            coarse: Driver::new(coarser)?,
+            repeats: repeats.max(1),
+        })
+    }
+
+    /// Solves a case in folders below `folder`; `progress` is told what goes on.
+    ///
+    /// Every repeat has a folder of its own, and a run that is done there already is not done
+    /// again: its time is that of the run that left it.
+    ///
+    /// # Errors
+    /// As [`Driver::run`].
+    pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<Reference> {
+        let coarse = self.coarse.run(case, &folder.join("coarser"), progress)?;
+        let fine = (1..=self.repeats)
+            .map(|i| self.fine.run(case, &folder.join(format!("run-{i}")), progress))
+            .collect::<Result<Vec<_>>>()?;
+        let seconds: Vec<f64> = fine.iter().map(|r| r.summary.total_seconds()).collect();
+        let timing = Timing::new(1, seconds[0], &seconds);
+        let meshes = fine.into_iter().take(1).chain([coarse]).collect();
+        let mut reference = from_fem(&fem::Reference {
+            case: case.clone(),
+            source: "live",
+            meshes,
+            errors: Vec::new(),
+        });
+        reference.provenance.seconds = Some(timing.median_s);
+        if self.repeats > 1 {
+            reference.provenance.seconds_spread = Some(timing.spread_s());
+        }
+        Ok(reference)
+    }
+}
