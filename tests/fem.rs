@@ -188,10 +188,10 @@ fn failing_children_are_reported_with_the_end_of_their_log() {
 fn hanging_children_are_stopped_with_all_that_they_started() {
     let bench = Bench::new();
     let began = Instant::now();
-    let said = refused(bench.fake("hang").args(["--solve-timeout", "1"]));
-    assert!(said.contains("stage solve: took longer than 1 s and was stopped"), "{said}");
+    let said = refused(bench.fake("hang").args(["--solve-timeout", "4"]));
+    assert!(said.contains("stage solve: took longer than 4 s and was stopped"), "{said}");
     assert!(said.contains("--solve-timeout") && said.contains("| thinking"), "{said}");
-    assert!(began.elapsed() < Duration::from_secs(20));
+    assert!(began.elapsed() < Duration::from_secs(60), "the child was waited for");
     bench.assert_no_process_is_left();
 }
 
@@ -335,8 +335,14 @@ fn run_under_fire(
             kill(pid, libc::SIGKILL);
         }
         let status = driver.wait().unwrap();
-        hits += u32::from(!status.success());
         bench.assert_no_process_is_left();
+        if status.success() {
+            // It came too late: the next one has something to hit again.
+            fs::remove_dir_all(bench.out()).unwrap();
+            fs::create_dir(bench.out()).unwrap();
+        } else {
+            hits += 1;
+        }
     }
     let output = command().output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
