@@ -188,10 +188,10 @@ fn failing_children_are_reported_with_the_end_of_their_log() {
 fn hanging_children_are_stopped_with_all_that_they_started() {
     let bench = Bench::new();
     let began = Instant::now();
-    let said = refused(bench.fake("hang").args(["--solve-timeout", "1"]));
-    assert!(said.contains("stage solve: took longer than 1 s and was stopped"), "{said}");
+    let said = refused(bench.fake("hang").args(["--solve-timeout", "4"]));
+    assert!(said.contains("stage solve: took longer than 4 s and was stopped"), "{said}");
     assert!(said.contains("--solve-timeout") && said.contains("| thinking"), "{said}");
-    assert!(began.elapsed() < Duration::from_secs(20));
+    assert!(began.elapsed() < Duration::from_secs(60), "the child was waited for");
     bench.assert_no_process_is_left();
 }
 
@@ -199,7 +199,7 @@ fn hanging_children_are_stopped_with_all_that_they_started() {
 fn nonsense_is_refused_and_computed_anew() {
     for (mode, wanted) in [
         ("not-finite", "curves.csv:7: 'nan' is not a finite number"),
-        ("too-few-rows", "points of roller along-y-0.78C are not the"),
+        ("too-few-rows", "curves.csv: the 13 points of roller along-y-0.78C are not the 20"),
         ("cut-json", "fem.json:1: is not JSON"),
         ("bad-mesh-json", "mesh.json:1: is not JSON"),
         ("lost-load", "load_error_rel = 1e-3 is more than 1e-6"),
@@ -335,8 +335,14 @@ fn run_under_fire(
             kill(pid, libc::SIGKILL);
         }
         let status = driver.wait().unwrap();
-        hits += u32::from(!status.success());
         bench.assert_no_process_is_left();
+        if status.success() {
+            // It came too late: the next one has something to hit again.
+            fs::remove_dir_all(bench.out()).unwrap();
+            fs::create_dir(bench.out()).unwrap();
+        } else {
+            hits += 1;
+        }
     }
     let output = command().output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));

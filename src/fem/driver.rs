@@ -261,6 +261,8 @@ impl Run<'_> {
                 mpirun.env(variable, "1");
             }
             mpirun.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
+            // Ranks that wait would otherwise keep others from the cores that they share.
+            mpirun.env("OMPI_MCA_mpi_yield_when_idle", "1");
             mpirun
         };
         self.stage("solve", command, settings.solve_timeout, "--solve-timeout")
@@ -330,7 +332,7 @@ impl Run<'_> {
         let path = folder.join("pressure.csv");
         let lines: Vec<_> =
             parse_lines(&read(&path)?, &path)?.into_iter().map(|(_, line)| line).collect();
-        check_points(self.case, &curves, &lines, &path)?;
+        check_points(self.case, &curves, &lines, folder)?;
         Ok(MeshResult { size: self.driver.settings.size, summary, curves, lines })
     }
 }

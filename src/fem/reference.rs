@@ -174,8 +174,7 @@ impl Reference {
             force_n,
             tolerance: Case::DEFAULT_TOLERANCE,
         };
-        let curves_path = folder.join(FILES[1]);
-        let mut curves = parse_curves(curves, &curves_path)?;
+        let mut curves = parse_curves(curves, &folder.join(FILES[1]))?;
         let mut lines = parse_lines(lines, &folder.join(FILES[2]))?;
         let mut meshes = Vec::new();
         for (size, summary) in record.meshes {
@@ -188,7 +187,7 @@ impl Reference {
                 curves.extract_if(.., |(s, _)| *s == parsed).map(|(_, curve)| curve).collect();
             let own_lines: Vec<PressureLine> =
                 lines.extract_if(.., |(s, _)| *s == parsed).map(|(_, line)| line).collect();
-            check_points(&case, &own_curves, &own_lines, &curves_path)?;
+            check_points(&case, &own_curves, &own_lines, folder)?;
             meshes.push(MeshResult { size: parsed, summary, curves: own_curves, lines: own_lines });
         }
         if meshes.is_empty() {

@@ -135,7 +135,8 @@ pub fn wanted_lines(case: &Case) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     LINE_NAMES.into_iter().zip([along_y, along_x]).collect()
 }
 
-/// Checks that `curves` and `lines` are those of `case`, point by point.
+/// Checks that `curves` and `lines`, from `curves.csv` and `pressure.csv` in `folder`, are those
+/// of `case`, point by point.
 ///
 /// # Errors
 /// [`Error::File`] that names the first curve or line that is missing, too many, or elsewhere.
@@ -143,8 +144,9 @@ pub fn check_points(
     case: &Case,
     curves: &[Curve],
     lines: &[PressureLine],
-    path: &Path,
+    folder: &Path,
 ) -> Result<()> {
+    let path = &folder.join("curves.csv");
     let near = SAME_POINT * case.hertz().c_m;
     let same = |got: &[f64], want: &[f64]| {
         got.iter().zip(want).all(|(g, w)| (g - w).abs() <= near + 1e-8 * w.abs())
@@ -171,6 +173,7 @@ pub fn check_points(
             return Err(nonsense(path, None, message));
         }
     }
+    let path = &folder.join("pressure.csv");
     let wanted = wanted_lines(case);
     let matches = lines.len() == wanted.len()
         && lines.iter().zip(&wanted).all(|(line, (name, points))| {

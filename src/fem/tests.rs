@@ -75,7 +75,7 @@ fn damaged_records_are_refused_with_their_place() {
     let message = damage("curves.csv", &|t| t.replace("sigma_xy_pa", "tau_xy_pa"));
     assert!(message.contains("curves.csv:1: has no column sigma_xy_pa"), "{message}");
     let message = damage("pressure.csv", &|t| t.lines().take(5).collect::<Vec<_>>().join("\n"));
-    assert!(message.contains("pressure lines are not those"), "{message}");
+    assert!(message.contains("pressure.csv: the pressure lines are not those"), "{message}");
     let message = damage("record.json", &|t| t[..t.len() / 2].to_string());
     assert!(message.contains("record.json:"), "{message}");
     let message =
