@@ -150,7 +150,8 @@ impl Page {
 
     fn resize(&mut self, width: u32, height: u32) {
         let mobile = width < 600;
-        let size = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile });
+        let size =
+            json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": mobile });
         self.call("Emulation.setDeviceMetricsOverride", size);
     }
 
@@ -278,7 +279,8 @@ fn the_page_works_in_a_browser() {
     assert_eq!(page.eval("document.getElementById('case').options.length"), json!(2));
 
     // A selector changes the curve and what is said of it.
-    let path = "document.querySelector('#chart path[data-source=\"quarter-space\"]').getAttribute('d')";
+    let path =
+        "document.querySelector('#chart path[data-source=\"quarter-space\"]').getAttribute('d')";
     let before = page.text(path);
     page.choose("body", "block");
     page.choose("curve", "depth-0.9");
@@ -286,8 +288,9 @@ fn the_page_works_in_a_browser() {
     let after = page.text(path);
     assert!(!before.is_empty() && !after.is_empty() && before != after);
     let title = page.text("document.querySelector('#chart .axis-title:last-of-type').textContent");
-    let titles =
-        page.text("[...document.querySelectorAll('#chart .axis-title')].map((t) => t.textContent).join('|')");
+    let titles = page.text(
+        "[...document.querySelectorAll('#chart .axis-title')].map((t) => t.textContent).join('|')",
+    );
     assert!(titles.contains("z / C") && titles.contains("σyy / p0"), "{titles} {title}");
 
     // By keyboard from point to point; the values are those of the files.

@@ -145,8 +145,16 @@ fn a_fem_curve_off_by_two_percent_fails_the_command_and_accepting_shows_it() {
     let records = copy_records(&at.join("records"));
     let gate = |more: &[&str]| {
         let usual = [
-            "gate", "small.toml", "--reference", "records", "--methods", "quarter-space",
-            "--baseline", "accepted.json", "--out", "gate",
+            "gate",
+            "small.toml",
+            "--reference",
+            "records",
+            "--methods",
+            "quarter-space",
+            "--baseline",
+            "accepted.json",
+            "--out",
+            "gate",
         ];
         edgeline(&[&usual, more].concat(), at)
     };

@@ -61,11 +61,8 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
         let row = study_rows.iter().find(|r| r["source"] == source && r["case"] == case);
         row.unwrap()[column].parse().unwrap()
     };
-    let cases: Vec<&str> = study_rows
-        .iter()
-        .filter(|r| r["source"] == "fem")
-        .map(|r| r["case"].as_str())
-        .collect();
+    let cases: Vec<&str> =
+        study_rows.iter().filter(|r| r["source"] == "fem").map(|r| r["case"].as_str()).collect();
     for case in &cases {
         for column in ["pressure_rms", "stress_rms", "von_mises_rms"] {
             let best = of("quarter-space", case, column);
@@ -108,7 +105,11 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
     assert_eq!(again.status.code(), Some(0), "{}", said(&again));
     assert_eq!(text(&out.join("report.html")), page);
     assert_eq!(text(&out.join("report.md")), markdown);
-    assert!(!page.contains("http://") || page.matches("http://").count() == page.matches("http://www.w3.org/2000/svg").count());
+    assert!(
+        !page.contains("http://")
+            || page.matches("http://").count()
+                == page.matches("http://www.w3.org/2000/svg").count()
+    );
 }
 
 #[test]
