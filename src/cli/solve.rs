@@ -4,7 +4,7 @@ use super::{Outcome, print, print_json};
 use crate::base::{Error, Result, prepare_folder};
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::report::solution;
+use crate::report::{field, solution};
 use crate::solve::{Options, Solution, solve};
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
@@ -31,6 +31,12 @@ pub(super) struct Arguments {
     /// CSV file of further points, with the columns body,x_m,y_m,z_m
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     points: Option<PathBuf>,
+    /// Also write the stress fields of both bodies
+    #[arg(long, conflicts_with = "points")]
+    field: bool,
+    /// Points of a quarter of a body's field across, along and into it
+    #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_values_t = field::DEFAULT_COUNTS, value_parser = count, requires = "field")]
+    field_points: Vec<usize>,
     /// Only this body's curves; both by default
     #[arg(long, value_parser = body())]
     body: Vec<BodyKind>,
@@ -60,6 +66,14 @@ fn body() -> impl TypedValueParser<Value = BodyKind> {
     })
 }
 
+/// Parses a number of grid points.
+fn count(text: &str) -> std::result::Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(value) if (2..=2000).contains(&value) => Ok(value),
+        _ => Err("give a number of points between 2 and 2000".into()),
+    }
+}
+
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let mut case = Case::find(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
@@ -76,6 +90,9 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         options.points = super::points::read(path, &case)?;
     }
     prepare_folder(&arguments.out)?;
+    if arguments.field {
+        write_field(&case, &options, &arguments)?;
+    }
     let found = solve(&case, &options)?;
     solution::write(&found, &options, &arguments.out)?;
     if arguments.json {
@@ -84,6 +101,21 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         print(&text(&case, &found, &arguments))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Writes the fields. They come from a solution of their own, which leaves the other files as they
+/// are without them.
+fn write_field(case: &Case, options: &Options, arguments: &Arguments) -> Result<()> {
+    let counts: [usize; 3] =
+        arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
+            key: "--field-points".into(),
+            value: format!("{:?}", arguments.field_points),
+            reason: "a field has three directions".into(),
+            remedy: "give for example 33,49,41".into(),
+        })?;
+    let points = field::points(case, counts);
+    let options = Options { points, curves: Vec::new(), ..options.clone() };
+    field::write(case, &solve(case, &options)?, counts, &arguments.out).map(|_| ())
 }
 
 /// The tolerance if it is within its legal range.
@@ -138,8 +170,9 @@ fn text(case: &Case, found: &Solution, arguments: &Arguments) -> String {
         found.seconds.total * 1e3
     ));
     let points = if arguments.points.is_some() { ", points.csv" } else { "" };
+    let field = if arguments.field { ", the fields (*.vtr) and their contours" } else { "" };
     lines.push(format!(
-        "wrote summary.json, pressure.csv, curves.csv{points} into {}",
+        "wrote summary.json, pressure.csv, curves.csv{points}{field} into {}",
         arguments.out.display()
     ));
     lines.join("\n") + "\n"

@@ -135,6 +135,22 @@ pub struct Figure {
 }
 
 const FONT: &str = "sans-serif";
+
+/// Makes the built-in font known for pictures; SVG leaves letters to its viewer. It has no bold
+/// letters of its own.
+pub fn register_font() {
+    static ONCE: std::sync::Once = std::sync::Once::new();
+    ONCE.call_once(|| {
+        for style in [FontStyle::Normal, FontStyle::Bold] {
+            let font = include_bytes!("font/labels.ttf");
+            // The only fault that there is would be a font that cannot be parsed.
+            if plotters::style::register_font(FONT, style, font).is_err() {
+                unreachable!("the built-in font can be parsed");
+            }
+        }
+    });
+}
+
 const TITLE_HEIGHT: i32 = 34;
 const LEGEND_HEIGHT: i32 = 26;
 /// Mean width of a character relative to the font's size, as SVG viewers' sans-serif has it.
@@ -439,9 +455,13 @@ impl Panel {
             let i = i as i32;
             let (ends, at, text, pos) = match rule {
                 Rule::Vertical(v, text) => {
+                    // At the lower end, where the bars are short.
                     let at = x.at(*v);
-                    let pos = Pos::new(HPos::Left, VPos::Top);
-                    (vec![(at, y.from), (at, y.to)], (at + 3, y.to + 2 + 14 * i), text, pos)
+                    let room = at + 40 < x.to;
+                    let (place, side) =
+                        if room { (at + 3, HPos::Left) } else { (at - 3, HPos::Right) };
+                    let pos = Pos::new(side, VPos::Bottom);
+                    (vec![(at, y.from), (at, y.to)], (place, y.from - 3 - 15 * i), text, pos)
                 }
                 Rule::Horizontal(v, text) => {
                     let at = y.at(*v);
@@ -522,8 +542,9 @@ impl Panel {
         for s in &self.series {
             if let Some(band) = &s.band {
                 let pairs = || s.points.iter().zip(band).filter(|(p, _)| inside(p));
-                let upper = pairs().map(|(p, e)| (x.at(p.0), y.at(p.1 + e)));
-                let lower = pairs().map(|(p, e)| (x.at(p.0), y.at(p.1 - e)));
+                let within = |v: f64| y.at(v.clamp(y.low, y.high));
+                let upper = pairs().map(|(p, e)| (x.at(p.0), within(p.1 + e)));
+                let lower = pairs().map(|(p, e)| (x.at(p.0), within(p.1 - e)));
                 let lower: Vec<_> = lower.collect();
                 let outline: Vec<_> = upper.chain(lower.into_iter().rev()).collect();
                 area.draw(&Polygon::new(outline, s.look.colour.mix(0.18).filled()))?;

@@ -1,6 +1,8 @@
 //! One file per form of output.
 
 pub mod chart;
+mod contour;
+pub mod field;
 pub mod gates;
 pub mod page;
 pub mod plots;
@@ -8,6 +10,7 @@ pub mod solution;
 pub mod study_files;
 pub mod table;
 mod verdict;
+mod vtk;
 
 #[cfg(test)]
 mod tests;

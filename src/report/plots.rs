@@ -236,11 +236,15 @@ impl<'a> EffectRows<'a> {
             .iter()
             .map(|r| (self.number(r, "half_normal_quantile"), self.number(r, "effect").abs()))
             .collect();
-        let notes = self
-            .rows
-            .iter()
-            .zip(&points)
-            .map(|(r, &at)| Note { at, text: self.table.text(r, "term").replace(" x ", " × ") });
+        // Names of those that stand out, and of the largest two in any case: the small ones lie close
+        // together and are noise.
+        let mut largest: Vec<f64> = points.iter().map(|p| p.1).collect();
+        largest.sort_by(|a, b| b.total_cmp(a));
+        let second = largest.get(1).copied().unwrap_or(0.0);
+        let notes = self.rows.iter().zip(&points).filter_map(|(r, &at)| {
+            let named = at.1 >= second || self.table.text(r, "verdict") != "noise";
+            named.then(|| Note { at, text: self.table.text(r, "term").replace(" x ", " × ") })
+        });
         Panel {
             title: response.replace('_', " "),
             x_label: "half-normal quantile".to_string(),

@@ -1,0 +1,278 @@
+//! Stress fields of both bodies: VTK files, and contours of von Mises stress.
+//!
+//! The field is evaluated on a quarter of each body and mirrored: sigma_xy and sigma_xz are odd in
+//! x, sigma_xy and sigma_yz odd in y, everything else is even.
+
+use super::contour::Plane;
+use super::vtk::Grid;
+use crate::base::{Error, Result, StressTensor, write_whole};
+use crate::case::Case;
+use crate::solve::{Point, Solution};
+use crate::stress::BodyKind;
+use std::path::Path;
+
+/// Number of grid points of a quarter of a body across, along and into it.
+pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
+
+/// How far the field goes from the middle of the contact in x, beyond the roller's end in y, and
+/// into the body in z (C).
+const REACH: [f64; 3] = [2.5, 3.0, 5.0];
+
+/// Around the roller's edge (C) stresses may be singular: contours are cut there at the largest
+/// value outside, and the largest value is looked for outside.
+const EDGE: f64 = 0.1;
+
+/// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards: finer towards
+/// the roller's end along y and towards the surface along z. `counts` are at least 2 each.
+fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
+    let factors = case.factors();
+    let half = factors.slenderness;
+    let shares = |n: usize| (0..n).map(move |i| i as f64 / (n - 1) as f64);
+    let x = shares(counts[0]).map(|t| REACH[0] * t).collect();
+    let mut y: Vec<f64> =
+        shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
+    // The sine of a right angle need not be exactly 1, and the end face is a special place.
+    y[counts[1] - 1] = half;
+    let ledge = half / factors.length_ratio - half;
+    if body == BodyKind::Block && ledge > 1e-9 * half {
+        let reach = ledge.min(REACH[1]);
+        y.extend(shares(1 + counts[1] / 2).skip(1).map(|t| half + reach * t * t));
+    }
+    let z = shares(counts[2]).map(|t| REACH[2] * t * t).collect();
+    [x, y, z]
+}
+
+/// The points at which [`write`] needs stresses, for [`crate::solve::Options::points`].
+pub fn points(case: &Case, counts: [usize; 3]) -> Vec<Point> {
+    let c_m = case.hertz().c_m;
+    let mut all = Vec::new();
+    for body in BodyKind::ALL {
+        let [x, y, z] = axes(case, body, counts);
+        for &z in &z {
+            for &y in &y {
+                all.extend(x.iter().map(|&x| Point { body, at_m: [x, y, z].map(|v| v * c_m) }));
+            }
+        }
+    }
+    all
+}
+
+/// A quarter of a body's field in units of C and p0; x runs fastest.
+struct Quarter<'a> {
+    axes: [Vec<f64>; 3],
+    stress: Vec<StressTensor>,
+    case: &'a Case,
+    body: BodyKind,
+}
+
+impl Quarter<'_> {
+    fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
+        let [x, y, _] = &self.axes;
+        self.stress[(k * y.len() + j) * x.len() + i]
+    }
+
+    /// The whole body in the global frame (m, Pa), in which z points into the block: the roller lies
+    /// at z < 0 and its shears across z change their sign.
+    fn grid(&self) -> Grid {
+        let hertz = self.case.hertz();
+        let roller = self.body == BodyKind::Roller;
+        let mirrored = |axis: &[f64]| -> Vec<(usize, f64)> {
+            let left = axis.iter().enumerate().skip(1).rev().map(|(i, _)| (i, -1.0));
+            left.chain((0..axis.len()).map(|i| (i, 1.0))).collect()
+        };
+        let [x, y, z] = &self.axes;
+        let (xs, ys) = (mirrored(x), mirrored(y));
+        let mut zs: Vec<usize> = (0..z.len()).collect();
+        if roller {
+            zs.reverse();
+        }
+        let side = if roller { -1.0 } else { 1.0 };
+        let mut stress = Vec::with_capacity(xs.len() * ys.len() * zs.len());
+        for &k in &zs {
+            for &(j, sy) in &ys {
+                for &(i, sx) in &xs {
+                    let s = self.at(i, j, k) * hertz.p0_pa;
+                    let (xy, xz, yz) = (s.xy * sx * sy, s.xz * sx * side, s.yz * sy * side);
+                    stress.push(StressTensor { xy, xz, yz, ..s });
+                }
+            }
+        }
+        let metres = |axis: &[f64], order: &[(usize, f64)]| -> Vec<f64> {
+            order.iter().map(|&(i, sign)| sign * axis[i] * hertz.c_m).collect()
+        };
+        let depth = zs.iter().map(|&k| side * z[k] * hertz.c_m).collect();
+        Grid::of_stress([metres(x, &xs), metres(y, &ys), depth], &stress)
+    }
+
+    /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
+    fn pressure(&self) -> Grid {
+        let mut grid = self.grid();
+        let layer = grid.axes_m[0].len() * grid.axes_m[1].len();
+        grid.axes_m[2] = vec![0.0];
+        let (_, zz) = grid.arrays.swap_remove(2);
+        let values = zz[..layer].iter().map(|v| (-v).max(0.0)).collect();
+        grid.arrays = vec![("pressure_pa".to_string(), values)];
+        grid
+    }
+
+    /// Whether a point is near enough to the roller's edge for stresses to be singular.
+    fn at_edge(&self, j: usize, k: usize) -> bool {
+        let half = self.case.factors().slenderness;
+        (self.axes[1][j] - half).hypot(self.axes[2][k]) < EDGE * (1.0 - 1e-9)
+    }
+
+    /// Von Mises stress in the planes x = 0, y = the roller's end and z = the depth of its largest
+    /// value, with the names of their files.
+    fn planes(&self) -> Vec<(&'static str, Plane)> {
+        let [x, y, z] = &self.axes;
+        let half = self.case.factors().slenderness;
+        let end = y.iter().position(|v| *v == half).unwrap_or(y.len() - 1);
+        let value = |i: usize, j: usize, k: usize| self.at(i, j, k).von_mises();
+        let mut critical = (0, f64::NEG_INFINITY);
+        let mut limit = f64::NEG_INFINITY;
+        for k in 0..z.len() {
+            for j in (0..y.len()).filter(|&j| !self.at_edge(j, k)) {
+                for i in 0..x.len() {
+                    let v = value(i, j, k);
+                    limit = limit.max(v);
+                    if v > critical.1 {
+                        critical = (k, v);
+                    }
+                }
+            }
+        }
+        let shown = |i: usize, j: usize, k: usize| {
+            let v = value(i, j, k);
+            if self.at_edge(j, k) { v.min(limit) } else { v }
+        };
+        let mut planes = Vec::new();
+        let mut add = |name: &'static str,
+                       place: String,
+                       labels: [&str; 2],
+                       axes: [&Vec<f64>; 2],
+                       down,
+                       values| {
+            let (case, body) = (&self.case.name, self.body.name());
+            let plane = Plane {
+                title: format!("{case}, {body}: von Mises stress at {place}"),
+                labels: labels.map(String::from),
+                value_label: "von Mises / p0".to_string(),
+                axes: axes.map(Clone::clone),
+                down,
+                values,
+            };
+            planes.push((name, plane));
+        };
+        let over = |n: usize, m: usize, f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
+            (0..m).flat_map(|b| (0..n).map(move |a| (a, b))).map(|(a, b)| f(a, b)).collect()
+        };
+        let values = over(y.len(), z.len(), &|j, k| shown(0, j, k));
+        add("x0", "x = 0".to_string(), ["y / C", "z / C"], [y, z], true, values);
+        let values = over(x.len(), z.len(), &|i, k| shown(i, end, k));
+        add("end", "y = L1/2 (end)".to_string(), ["x / C", "z / C"], [x, z], true, values);
+        let k = critical.0;
+        let values = over(y.len(), x.len(), &|j, i| shown(i, j, k));
+        let place = format!("z = {:.2} C (critical depth)", z[k]);
+        add("critical-depth", place, ["y / C", "x / C"], [y, x], false, values);
+        planes
+    }
+}
+
+/// Writes `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the contours
+/// `field-<body>-<plane>.svg` and `.png` into `folder`; returns the names.
+///
+/// `solution` is that of `case` with [`points`] of the same `counts` as its only extra points.
+///
+/// # Errors
+/// [`Error::Io`] when a file cannot be written.
+///
+/// # Panics
+/// When the solution has other points.
+pub fn write(
+    case: &Case,
+    solution: &Solution,
+    counts: [usize; 3],
+    folder: &Path,
+) -> Result<Vec<String>> {
+    let mut names = Vec::new();
+    let mut put = |name: String, content: Vec<u8>| {
+        write_whole(&folder.join(&name), content).map(|()| names.push(name))
+    };
+    let mut stress = solution.points.iter().map(|&s| s * (1.0 / solution.hertz.p0_pa));
+    for body in BodyKind::ALL {
+        let axes = axes(case, body, counts);
+        let size = axes.iter().map(Vec::len).product();
+        let stress: Vec<StressTensor> = stress.by_ref().take(size).collect();
+        assert_eq!(stress.len(), size, "the solution has a stress for every point of the field");
+        let quarter = Quarter { axes, stress, case, body };
+        let name = body.name();
+        put(format!("field-{name}.vtr"), quarter.grid().to_vtr())?;
+        if body == BodyKind::Block {
+            put("pressure.vtr".to_string(), quarter.pressure().to_vtr())?;
+        }
+        for (place, plane) in quarter.planes() {
+            put(format!("field-{name}-{place}.svg"), plane.to_svg().into_bytes())?;
+            let (pixels, size) = plane.to_pixels();
+            let png = png(&pixels, size).map_err(|source| Error::Io {
+                action: "encode",
+                path: folder.join(format!("field-{name}-{place}.png")),
+                source,
+            })?;
+            put(format!("field-{name}-{place}.png"), png)?;
+        }
+    }
+    Ok(names)
+}
+
+/// Red, green and blue of each picture element as PNG.
+fn png(pixels: &[u8], (width, height): (u32, u32)) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.write_header()?.write_image_data(pixels)?;
+    Ok(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::EdgeModel;
+    use crate::solve::{Options, solve};
+
+    #[test]
+    fn the_grid_reaches_the_ends_and_mirrors_the_shears() {
+        let case = Case::find(Path::new("half-short")).unwrap();
+        let counts = [5, 7, 6];
+        let points = points(&case, counts);
+        // The block's grid goes on beyond the roller's end.
+        assert_eq!(points.len(), 5 * 7 * 6 + 5 * (7 + 3) * 6);
+        let options = Options { points, ..Options::new(EdgeModel::Mirror) };
+        let solution = solve(&case, &options).unwrap();
+        let [x, y, z] = axes(&case, BodyKind::Roller, counts);
+        assert_eq!((y[6], z[5], x[4]), (case.factors().slenderness, 5.0, 2.5));
+        let stress = solution.points[5 * 10 * 6..].to_vec();
+        let scale = 1.0 / solution.hertz.p0_pa;
+        let stress: Vec<_> = stress.into_iter().map(|s| s * scale).collect();
+        let quarter = Quarter { axes: [x, y, z], stress, case: &case, body: BodyKind::Roller };
+        let grid = quarter.grid();
+        let [nx, ny, nz] = [0, 1, 2].map(|k| grid.axes_m[k].len());
+        assert_eq!([nx, ny, nz], [9, 13, 6]);
+        assert!(grid.axes_m.iter().all(|a| a.windows(2).all(|w| w[0] < w[1])));
+        assert_eq!(grid.axes_m[2][5], 0.0, "the roller lies above the surface");
+        let array = |name: &str| &grid.arrays.iter().find(|(n, _)| n == name).unwrap().1;
+        let at = |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;
+        for (name, odd_x, odd_y) in [
+            ("sigma_xx_pa", 1.0, 1.0),
+            ("sigma_xy_pa", -1.0, -1.0),
+            ("sigma_xz_pa", -1.0, 1.0),
+            ("sigma_yz_pa", 1.0, -1.0),
+        ] {
+            let a = array(name);
+            let here = a[at(6, 9, 3)];
+            assert!(here != 0.0, "{name}");
+            assert_eq!(a[at(2, 9, 3)], odd_x * here, "{name}");
+            assert_eq!(a[at(6, 3, 3)], odd_y * here, "{name}");
+        }
+    }
+}

@@ -1,0 +1,155 @@
+//! `edgeline study` and `edgeline report` as a user meets them.
+
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+fn edgeline(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_edgeline")).args(arguments).output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+fn text(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn rows(path: &Path) -> Vec<HashMap<String, String>> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+/// A study of the given slendernesses, both length ratios and W = 1e-3.
+fn study_file(folder: &Path, slenderness: &str) -> PathBuf {
+    let path = folder.join("small.toml");
+    let content = format!(
+        "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n[block]\n\
+         young_pa = 210e9\npoisson = 0.3\n[factors]\nW = [1e-3]\nS_l = {slenderness}\n\
+         L_r = [0.5, 1.0]\n"
+    );
+    std::fs::write(&path, content).unwrap();
+    path
+}
+
+#[test]
+fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study_file(folder.path(), "[5.0, 20.0]");
+    let out = folder.path().join("deep/run");
+    let arguments = ["study", study.to_str().unwrap(), "--repeats", "2", "--json", "--out"];
+    let done = edgeline(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+
+    // Standard output holds one JSON object, which is the file, and nothing else.
+    let summary: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let file: serde_json::Value = serde_json::from_str(&text(&out.join("summary.json"))).unwrap();
+    assert_eq!(summary["method_summary"], file["method_summary"]);
+    assert_eq!(summary["contact_problems_solved"], 16);
+
+    let study_rows = rows(&out.join("study.csv"));
+    assert_eq!(study_rows.len(), 4 * 5);
+    assert!(study_rows.iter().all(|r| r["err"].is_empty()));
+    for name in ["curves.csv", "pressure.csv", "fem_error.csv", "errors.csv", "effects.csv"] {
+        assert!(rows(&out.join(name)).len() > 20, "{name}");
+    }
+    let plots = std::fs::read_dir(out.join("plots")).unwrap().count();
+    assert_eq!(plots, 4 * 7 + 4 * 3 + 1);
+
+    // The quarter-space model is the most accurate one on every measure.
+    let of = |source: &str, case: &str, column: &str| -> f64 {
+        let row = study_rows.iter().find(|r| r["source"] == source && r["case"] == case);
+        row.unwrap()[column].parse().unwrap()
+    };
+    let cases: Vec<&str> =
+        study_rows.iter().filter(|r| r["source"] == "fem").map(|r| r["case"].as_str()).collect();
+    for case in &cases {
+        for column in ["pressure_rms", "stress_rms", "von_mises_rms"] {
+            let best = of("quarter-space", case, column);
+            assert!(best < 0.02, "{case} {column} {best}");
+            for other in ["half-space", "mirror", "guilbault"] {
+                assert!(of(other, case, column) > best, "{other} {case} {column}");
+            }
+        }
+    }
+
+    // Every number of the error tables stands in study.csv: forty cells of them.
+    let markdown = text(&out.join("report.md"));
+    let (mut compared, mut method) = (0, "");
+    let columns = ["pressure_rms", "pressure_max", "stress_rms", "stress_max", "von_mises_rms"];
+    for line in markdown.lines() {
+        if let Some(name) = line.strip_prefix("### ") {
+            method = name;
+        }
+        let cells: Vec<&str> = line.split('|').map(str::trim).collect();
+        if method.is_empty() || cells.len() != 13 || !cases.contains(&cells[1]) {
+            continue;
+        }
+        for (cell, column) in cells[2..].iter().zip(columns) {
+            let expected = format!("{:.4}", of(method, cells[1], column));
+            assert_eq!(*cell, expected, "{method} {} {column}", cells[1]);
+            compared += 1;
+        }
+    }
+    assert_eq!(compared, 4 * 4 * 5);
+    // And those of the page are the same.
+    let page = text(&out.join("report.html"));
+    for case in &cases {
+        let cell = format!("<td>{:.4}</td>", of("guilbault", case, "von_mises_max"));
+        assert!(page.contains(&cell), "{case}: {cell}");
+    }
+
+    // The page is made of the run's files alone: made again, it is the same.
+    std::fs::remove_file(out.join("report.html")).unwrap();
+    let again = edgeline(&["report", out.to_str().unwrap()]);
+    assert_eq!(again.status.code(), Some(0), "{}", said(&again));
+    assert_eq!(text(&out.join("report.html")), page);
+    assert_eq!(text(&out.join("report.md")), markdown);
+    assert!(
+        !page.contains("http://")
+            || page.matches("http://").count()
+                == page.matches("http://www.w3.org/2000/svg").count()
+    );
+}
+
+#[test]
+fn cases_without_a_record_are_said_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let study = study_file(folder.path(), "[5.5]");
+    let out = folder.path().join("run");
+    let arguments = ["study", study.to_str().unwrap(), "--methods", "mirror", "--repeats", "0"];
+    let done = edgeline(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    assert!(said(&done).contains("is not compared with FEM"), "{}", said(&done));
+    let study_rows = rows(&out.join("study.csv"));
+    assert_eq!(study_rows.len(), 4);
+    for row in study_rows.iter().filter(|r| r["source"] == "fem") {
+        assert_eq!(row["err"], "there is no record of it");
+    }
+    assert!(rows(&out.join("errors.csv")).is_empty());
+}
+
+#[test]
+fn bad_input_ends_with_exit_code_2_and_one_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_string();
+    std::fs::write(path("file"), "").unwrap();
+    std::fs::write(path("bad.toml"), "name = \"x\"\nfactor = 1\n").unwrap();
+    for (arguments, wanted) in [
+        (vec!["study", "nowhere.toml"], "nowhere.toml"),
+        (vec!["study", &path("bad.toml")], "factor"),
+        (vec!["study", "--out", &path("file")], "cannot create the folder"),
+        (vec!["study", "--methods", "halfspace"], "halfspace"),
+        (vec!["study", "--exclude", "-1"], "--exclude"),
+        (vec!["study", "--reference", &path("nowhere"), "--out", &path("o")], "nowhere"),
+        (vec!["report", &path("nowhere")], "summary.json"),
+        (vec!["gate", "--accept"], "--baseline"),
+        (vec!["gate", "--gates", &path("bad.toml"), "--out", &path("o")], "bad.toml"),
+        (vec!["gate", "--baseline", &path("file"), "--out", &path("o")], "edgeline gate --accept"),
+    ] {
+        let done = edgeline(&arguments);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {}", said(&done));
+        assert!(said(&done).contains(wanted), "{arguments:?}: {}", said(&done));
+        assert!(done.stdout.is_empty(), "{arguments:?}");
+    }
+}
