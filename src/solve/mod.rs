@@ -1,5 +1,6 @@
 //! One case and one edge model to one solution, in SI units.
 
+mod grid;
 mod scene;
 
 use crate::base::{Error, HertzScales, Result, StressTensor};
@@ -12,6 +13,7 @@ use serde::Serialize;
 use serde_json::json;
 use std::time::Instant;
 
+pub use grid::solve_on_grid;
 pub use scene::{Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
 
 /// What to compute.

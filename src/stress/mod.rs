@@ -2,6 +2,8 @@
 
 pub mod curves;
 pub mod field;
+pub mod grid;
 
 pub use curves::{BodyKind, CurveSpec};
 pub use field::{Field, Pressure};
+pub use grid::{Grid, GridStress};
