@@ -1,12 +1,11 @@
 //! The gates notice what they are there for: another psi, a sign, a FEM curve that is off.
 
-use edgeline::base::Result;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
 use edgeline::fem;
-use edgeline::solve::{Options, Solution, solve_group};
+use edgeline::solve::{Options, solve_group};
 use edgeline::study::gate::{self, Baseline, Outcome};
-use edgeline::study::{Range, Setup, StudyRun, reference, run};
+use edgeline::study::{Range, Setup, Solver, StudyRun, reference, run};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -16,7 +15,7 @@ const STUDY: &str = "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 21
 
 const METHODS: [EdgeModel; 2] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 
-fn run_with(solver: &(dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync)) -> StudyRun {
+fn run_with(solver: &Solver) -> StudyRun {
     let study = Study::parse(STUDY, Path::new("small.toml")).unwrap();
     let answer = |case: &Case| {
         let found = fem::Reference::embedded_of(case).map_err(|e| e.to_string())?;

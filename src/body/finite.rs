@@ -246,8 +246,8 @@ impl Body {
             let compliance = displacement.columns(0, self.contact).into_owned();
             return Layer { compliance, surface: None, face: None };
         }
-        let to_face = self.to_face_matrix(k);
-        let from_face = self.from_face_matrix(k, to_face.nrows());
+        let to_face = self.surface_matrix(k);
+        let from_face = self.faces_matrix(k, to_face.nrows());
         let system = DMatrix::identity(n, n) - from_face * &to_face;
         let contact_columns = DMatrix::identity(n, self.contact);
         let surface = system.lu().solve(&contact_columns).expect("I - T T is regular for k > 0");
@@ -268,7 +268,7 @@ impl Body {
     }
 
     /// T_zy: compressive stress yy on the end face per P.
-    fn to_face_matrix(&self, k: f64) -> DMatrix<f64> {
+    fn surface_matrix(&self, k: f64) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
         for (i, stencil) in self.to_face[..self.face_len(k)].iter().enumerate() {
             let z = self.face.axis.nodes()[i];
@@ -290,7 +290,7 @@ impl Body {
     }
 
     /// T_yz: compressive stress zz on z = 0 per q on both end faces.
-    fn from_face_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
+    fn faces_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
         let n = self.surface.axis.len();
         let mut matrix = Rows::new(&self.face, columns);
         for (i, stencils) in self.from_faces.iter().enumerate() {

@@ -102,10 +102,11 @@ impl Sources {
                 continue;
             }
             let end = (cluster.panels.end * order).min(nodes.len());
-            for node in (cluster.panels.start * order).min(end)..end {
-                let column = &self.charges.column(node);
+            let start = (cluster.panels.start * order).min(end);
+            for (node, value) in nodes[..end].iter_mut().enumerate().skip(start) {
+                let column = self.charges.column(node);
                 let own = &column.as_slice()[i * order..(i + 1) * order];
-                nodes[node] += row.iter().zip(own).map(|(r, c)| r * c).sum::<f64>();
+                *value += row.iter().zip(own).map(|(r, c)| r * c).sum::<f64>();
             }
         }
     }

@@ -47,10 +47,10 @@ impl<'a> Case<'a> {
             let name = files.study.text(row, "case");
             let number = |column| files.study.number(row, column);
             let (c, p0, s) = (number("c_m"), number("p0_pa"), number("S_l"));
-            if let (Some(c_m), Some(p0_pa), Some(half_length)) = (c, p0, s) {
-                if !cases.iter().any(|c| c.name == name) {
-                    cases.push(Case { files, name, c_m, p0_pa, half_length });
-                }
+            if let (Some(c_m), Some(p0_pa), Some(half_length)) = (c, p0, s)
+                && !cases.iter().any(|c| c.name == name)
+            {
+                cases.push(Case { files, name, c_m, p0_pa, half_length });
             }
         }
         cases

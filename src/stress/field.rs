@@ -255,15 +255,15 @@ impl<'a> Field<'a> {
             if fading >= FADED {
                 break;
             }
-            let mut amplitudes = self.from_surface(&surface, loads, y, z, &mut scratch);
+            let mut amplitudes = self.surface_part(&surface, loads, y, z, &mut scratch);
             if let Some((end, shares)) = &correction {
-                let on_end = self.from_surface(end, loads, body.half, z, &mut scratch)[1];
+                let on_end = self.surface_part(end, loads, body.half, z, &mut scratch)[1];
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
                 let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    let face = self.from_face(stencil, loads, z, depth, into, &mut scratch);
+                    let face = self.face_part(stencil, loads, z, depth, into, &mut scratch);
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                 }
                 let plate = body.plate_stress(k, &loads.plate, y, z);
@@ -293,7 +293,7 @@ impl<'a> Field<'a> {
     }
 
     /// Amplitudes from P on z = 0 and its images, at (`y`, `z`); `scratch` is overwritten.
-    fn from_surface(
+    fn surface_part(
         &self,
         stencil: &Stencil,
         loads: &Loads,
@@ -318,7 +318,7 @@ impl<'a> Field<'a> {
 
     /// Amplitudes from q on one end face, `depth` from it, at the depth `z` in the body; `into` is
     /// the sign of the direction into the body along y.
-    fn from_face(
+    fn face_part(
         &self,
         stencil: &Stencil,
         loads: &Loads,

@@ -15,8 +15,8 @@ pub mod timing;
 
 pub use errors::{ErrorRow, Range};
 pub use run::{
-    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, StudyRun, problem_key,
-    run,
+    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, Solver, StudyRun,
+    problem_key, run,
 };
 pub use sampled::{Quantity, Sampled, SampledCurve, SampledLine};
 

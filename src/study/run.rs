@@ -49,6 +49,9 @@ pub struct Provenance {
     pub sam_seconds: BTreeMap<String, [f64; 2]>,
 }
 
+/// Solves cases that share a scene by one edge model, one answer a case in their order.
+pub type Solver<'a> = dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync + 'a;
+
 /// The part that a case plays in its study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Role {
@@ -138,7 +141,7 @@ pub struct Setup<'a> {
     /// Warm repeats of the timing; 0 leaves the timing out.
     pub repeats: usize,
     /// Solves cases that differ only in scale by one method, one result each, in order.
-    pub solver: &'a (dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync),
+    pub solver: &'a Solver<'a>,
     /// FEM's answer for a case, or why there is none.
     pub reference: &'a dyn Fn(&Case) -> std::result::Result<Reference, String>,
     /// Called with the number of steps done and of all steps, and what was just done.

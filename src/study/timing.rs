@@ -133,7 +133,10 @@ mod tests {
         assert_eq!((timing.threads, timing.repeats), (1, 3));
         assert_eq!(count(), 4);
         assert_eq!(measure(1, 3, || Err::<(), _>("no")), Err("no"));
-        let slow = || Ok::<_, ()>(std::thread::sleep(std::time::Duration::from_millis(300)));
+        let slow = || {
+            std::thread::sleep(std::time::Duration::from_millis(300));
+            Ok::<_, ()>(())
+        };
         assert_eq!(measure(1, 50, slow).unwrap().repeats, 2);
     }
 }
