@@ -1,9 +1,10 @@
 //! The gates notice what they are there for: another psi, a sign, a FEM curve that is off.
 
+use edgeline::base::Result;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
 use edgeline::fem;
-use edgeline::solve::{Options, solve_group};
+use edgeline::solve::{Options, Solution, solve_group};
 use edgeline::study::gate::{self, Baseline, Outcome};
 use edgeline::study::{Range, Setup, Solver, StudyRun, reference, run};
 use std::path::{Path, PathBuf};
