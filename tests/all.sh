@@ -35,6 +35,8 @@ need openmpi-bin command -v mpirun
 need gcc command -v cc
 # The page is tested in a real browser.
 need chromium command -v chromium
+# The fields are read by VTK's own reader.
+need python3-vtk9 /usr/bin/python3 -c 'import vtkmodules.vtkIOXML'
 if ((${#missing[@]})); then
     echo "to be installed: ${missing[*]}"
     as_root=()
@@ -53,6 +55,9 @@ fi
 # The interpreter's cache beside the sources would make cargo build anew.
 export PYTHONDONTWRITEBYTECODE=1
 
+# What is installed must not be skipped.
+export EDGELINE_REQUIRE_BROWSER=1 EDGELINE_REQUIRE_VTK=1
+
 step "format"
 cargo fmt --check
 
@@ -67,6 +72,9 @@ cargo build --release
 
 step "installed tools, as the program sees them"
 target/release/edgeline doctor --fem
+
+step "accuracy gates"
+target/release/edgeline gate --out target/gate
 
 step "tests of the finite-element side"
 /usr/bin/python3 -m pytest -q -p no:cacheprovider fem

@@ -367,8 +367,22 @@ fn pressure_lines(solved: &SolvedScene) -> Vec<PressureLine> {
     ]
 }
 
-/// Points of one body that share y and z, and so all kernels: their x, and where they belong.
-type Column = (BodyKind, [f64; 2], Vec<(f64, Slot)>);
+/// Points of one body on one line, which share much of their computation.
+struct Line {
+    body: BodyKind,
+    along: Along,
+    /// The running coordinate of each point (C), and where its stress belongs.
+    points: Vec<(f64, Slot)>,
+}
+
+/// A line's direction, and its two other coordinates (C).
+#[derive(Clone, Copy, PartialEq)]
+enum Along {
+    /// Along x, at y and z.
+    X(f64, f64),
+    /// Along z, at x and y.
+    Z(f64, f64),
+}
 
 /// Where a stress belongs: a standard curve's point, or an extra point.
 #[derive(Clone, Copy)]
@@ -392,35 +406,46 @@ fn stresses(
             curves.extend(all.into_iter().filter(|c| options.curves.iter().any(|n| n == c.name)));
         }
     }
-    let mut columns: Vec<Column> = Vec::new();
-    let mut index = std::collections::HashMap::new();
-    let mut add = |kind: BodyKind, [x, y, z]: [f64; 3], slot: Slot| {
+    let mut lines: Vec<Line> = Vec::new();
+    let mut add = |kind: BodyKind, along: Along, at: f64, slot: Slot| {
         // What both bodies share in the computation they share in the result.
-        let owner = if solved.bodies_shared() { BodyKind::Block } else { kind };
-        let column = *index.entry((owner, y.to_bits(), z.to_bits())).or_insert_with(|| {
-            columns.push((owner, [y, z], Vec::new()));
-            columns.len() - 1
+        let body = if solved.bodies_shared() { BodyKind::Block } else { kind };
+        let index = lines.iter().position(|l| l.body == body && l.along == along);
+        let index = index.unwrap_or_else(|| {
+            lines.push(Line { body, along, points: Vec::new() });
+            lines.len() - 1
         });
-        columns[column].2.push((x, slot));
+        lines[index].points.push((at, slot));
     };
     for (i, curve) in curves.iter().enumerate() {
-        for (j, &at) in curve.points.iter().enumerate() {
-            add(curve.body, at, Slot::Curve(i, j));
+        let depth = curve.points.windows(2).all(|p| p[0][..2] == p[1][..2]);
+        for (j, &[x, y, z]) in curve.points.iter().enumerate() {
+            let slot = Slot::Curve(i, j);
+            if depth {
+                add(curve.body, Along::Z(x, y), z, slot);
+            } else {
+                add(curve.body, Along::X(y, z), x, slot);
+            }
         }
     }
     for (i, point) in options.points.iter().enumerate() {
-        add(point.body, point.at_m.map(|v| v / c_m), Slot::Extra(i));
+        let [x, y, z] = point.at_m.map(|v| v / c_m);
+        add(point.body, Along::X(y, z), x, Slot::Extra(i));
     }
     let fields: Vec<_> = BodyKind::ALL
         .into_iter()
-        .filter(|&k| columns.iter().any(|c| c.0 == k))
+        .filter(|&k| lines.iter().any(|l| l.body == k))
         .map(|k| (k, solved.field(k)))
         .collect();
-    let values: Vec<Vec<StressTensor>> = columns
+    let values: Vec<Vec<StressTensor>> = lines
         .par_iter()
-        .map(|(kind, [y, z], xs)| {
-            let (_, field) = fields.iter().find(|f| f.0 == *kind).expect("every kind has a field");
-            field.at(*y, *z, &xs.iter().map(|x| x.0).collect::<Vec<_>>())
+        .map(|line| {
+            let (_, field) = fields.iter().find(|f| f.0 == line.body).expect("one a body");
+            let at: Vec<f64> = line.points.iter().map(|p| p.0).collect();
+            match line.along {
+                Along::X(y, z) => field.at(y, z, &at),
+                Along::Z(x, y) => field.down(x, y, &at, solved.resolution.order + 1),
+            }
         })
         .collect();
     let mut out: Vec<Curve> = curves
@@ -433,8 +458,8 @@ fn stresses(
         })
         .collect();
     let mut points = vec![StressTensor::default(); options.points.len()];
-    for ((_, _, xs), values) in columns.iter().zip(values) {
-        for ((_, slot), value) in xs.iter().zip(values) {
+    for (line, values) in lines.iter().zip(values) {
+        for ((_, slot), value) in line.points.iter().zip(values) {
             match *slot {
                 Slot::Curve(i, j) => out[i].stress_pa[j] = value,
                 Slot::Extra(i) => points[i] = value,
