@@ -172,15 +172,25 @@ impl<'d> Entry<'d> {
 
     /// The value as a table.
     pub fn table(self) -> Result<Table<'d>> {
-        match self.value.get_ref() {
-            DeValue::Table(entries) => Ok(Table {
-                document: self.document,
-                span: Some(self.value.span()),
-                name: self.key,
-                entries,
-            }),
-            _ => Err(self.refuse("a table belongs here", format!("write [{}]", self.key))),
-        }
+        self.as_table()
+            .ok_or_else(|| self.refuse("a table belongs here", format!("write [{}]", self.key)))
+    }
+
+    /// Where the value begins in the text, in bytes.
+    pub fn place(&self) -> usize {
+        self.value.span().start
+    }
+
+    /// Whether the value is a list.
+    pub fn is_list(&self) -> bool {
+        matches!(self.value.get_ref(), DeValue::Array(_))
+    }
+
+    /// The value as a table, if it is one.
+    pub fn as_table(&self) -> Option<Table<'d>> {
+        let DeValue::Table(entries) = self.value.get_ref() else { return None };
+        let (document, span) = (self.document, Some(self.value.span()));
+        Some(Table { document, span, name: self.key.clone(), entries })
     }
 
     /// The value as a finite number.
@@ -243,7 +253,7 @@ impl<'d> Entry<'d> {
 }
 
 /// Levenshtein's distance.
-fn edit_distance(a: &str, b: &str) -> usize {
+pub(super) fn edit_distance(a: &str, b: &str) -> usize {
     let b: Vec<char> = b.chars().collect();
     let mut row: Vec<usize> = (0..=b.len()).collect();
     for (i, ca) in a.chars().enumerate() {

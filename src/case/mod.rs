@@ -4,11 +4,13 @@ mod builtin;
 mod case_file;
 mod document;
 mod study_file;
+mod sweep_file;
 #[cfg(test)]
 mod tests;
 
 pub use builtin::{BUILTIN_CASES, builtin_case};
 pub use study_file::{DEFAULT_STUDY, Study};
+pub use sweep_file::Sweep;
 
 use crate::base::{HertzScales, Material};
 use serde::Serialize;

@@ -8,6 +8,7 @@ mod progress;
 mod report;
 mod solve;
 mod study;
+mod sweep;
 
 use crate::base::{Error, Result};
 use clap::{Parser, Subcommand};
@@ -34,6 +35,7 @@ enum Command {
     Solve(solve::Arguments),
     Fem(fem::Arguments),
     Study(study::Arguments),
+    Sweep(sweep::Arguments),
     Gate(gate::Arguments),
     Report(report::Arguments),
     Doctor(doctor::Arguments),
@@ -61,6 +63,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Solve(arguments) => solve::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
         Command::Study(arguments) => study::run(arguments),
+        Command::Sweep(arguments) => sweep::run(arguments),
         Command::Gate(arguments) => gate::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Doctor(arguments) => doctor::run(arguments),

@@ -163,7 +163,7 @@ fn solve_all(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
 }
 
 /// A bar on a terminal and nothing elsewhere.
-fn progress_bar() -> ProgressBar {
+pub(super) fn progress_bar() -> ProgressBar {
     let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
     let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
     bar.set_style(style.expect("a constant template"));

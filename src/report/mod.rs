@@ -8,6 +8,7 @@ pub mod page;
 pub mod plots;
 pub mod solution;
 pub mod study_files;
+pub mod sweep;
 pub mod table;
 mod verdict;
 mod vtk;

@@ -1,6 +1,7 @@
 //! One case and one edge model to one solution, in SI units.
 
 mod grid;
+mod key;
 mod scene;
 
 use crate::base::{Error, HertzScales, Result, StressTensor};
@@ -14,6 +15,7 @@ use serde_json::json;
 use std::time::Instant;
 
 pub use grid::solve_on_grid;
+pub use key::{END_DISTANCES, KeyResults, key_results};
 pub use scene::{Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
 
 /// What to compute.

@@ -11,6 +11,7 @@ pub mod live;
 pub mod reference;
 mod run;
 mod sampled;
+pub mod sweep;
 pub mod timing;
 
 pub use errors::{ErrorRow, Range};

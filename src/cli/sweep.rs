@@ -1,0 +1,126 @@
+//! `edgeline sweep`: thousands of cases.
+
+use super::solve::{checked_tolerance, edge_model};
+use super::study::progress_bar;
+use super::{Outcome, print, print_json};
+use crate::base::{Result, prepare_folder};
+use crate::body::EdgeModel;
+use crate::case::{Case, Sweep};
+use crate::report::sweep::{RowLabel, SweepFile};
+use crate::study::sweep::{self, Group, Settings, Shard};
+use clap::{Args, ValueHint};
+use serde_json::json;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::Instant;
+
+/// Solves many cases: a grid or lists of parameters.
+///
+/// Writes one CSV file with one row a case, in the order of the input: pressures at the centre and
+/// towards the end, the critical stress and its place, approach; a case that cannot be solved is a
+/// row whose `err` says why. Run again, it goes on where it was stopped. Cases that differ in scale
+/// only are solved once. Takes some ten milliseconds a case and processor at a tolerance of 1e-2.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A case file in which numbers may be lists or ranges (TOML), or a table with a column for each
+    /// parameter (CSV)
+    #[arg(value_hint = ValueHint::FilePath)]
+    file: PathBuf,
+    /// The CSV file of the results; rows that it holds already are kept
+    #[arg(long, value_name = "CSV", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
+    out: PathBuf,
+    /// A case file or built-in case that gives a table what its columns do not
+    #[arg(long, value_name = "CASE", value_hint = ValueHint::FilePath)]
+    base: Option<PathBuf>,
+    /// How the free ends of the bodies are modelled
+    #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
+    method: EdgeModel,
+    /// Requested accuracy of all cases as a fraction of p0, in place of their own
+    #[arg(long, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// Cases solved at a time; as many as there are processors by default
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
+    /// Only the i-th of n parts, for job arrays; give each part its own --out
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Print the summary as one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+    let began = Instant::now();
+    let base = arguments.base.as_deref().map(Case::find).transpose()?;
+    let sweep = Sweep::read(&arguments.file, base.as_ref())?;
+    let settings = Settings {
+        method: arguments.method,
+        tolerance: arguments.tolerance.map(checked_tolerance).transpose()?,
+    };
+    let jobs = arguments
+        .jobs
+        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
+    let groups = sweep::groups(&sweep, &settings, arguments.shard);
+    let mut order: Vec<usize> = groups.iter().flat_map(|g| g.rows.iter().copied()).collect();
+    order.sort_unstable();
+    let rows = order.len();
+
+    if let Some(folder) = arguments.out.parent().filter(|p| *p != Path::new("")) {
+        prepare_folder(folder)?;
+    }
+    let label = |row: usize| RowLabel {
+        cells: sweep.cells(row),
+        method: settings.method.name(),
+        tolerance: settings.tolerance,
+    };
+    let file = SweepFile::open(&arguments.out, sweep.columns(), order, label)?;
+    let kept = file.kept();
+    let todo: Vec<Group> = groups
+        .into_iter()
+        .map(|g| Group { rows: g.rows.into_iter().filter(|&r| file.wants(r)).collect() })
+        .filter(|g| !g.rows.is_empty())
+        .collect();
+
+    let bar = progress_bar();
+    bar.set_length(rows as u64);
+    bar.set_position(kept as u64);
+    let file = Mutex::new(file);
+    let solving = Instant::now();
+    let done = sweep::run(&sweep, &settings, &todo, jobs, &|row, outcome| {
+        file.lock().unwrap_or_else(|e| e.into_inner()).add(row, &label(row), &outcome)?;
+        bar.inc(1);
+        Ok(())
+    });
+    bar.finish_and_clear();
+    done?;
+    let failed = file.into_inner().unwrap_or_else(|e| e.into_inner()).failed();
+
+    let solving = solving.elapsed().as_secs_f64();
+    let rate = if rows > kept { (rows - kept) as f64 / solving } else { 0.0 };
+    if arguments.json {
+        print_json(&json!({
+            "file": arguments.file,
+            "out": arguments.out,
+            "method": settings.method.name(),
+            "rows_of_sweep": sweep.len(),
+            "rows": rows,
+            "rows_kept": kept,
+            "rows_failed": failed,
+            "problems_solved": todo.len(),
+            "jobs": jobs,
+            "seconds": began.elapsed().as_secs_f64(),
+            "rows_per_second": rate,
+        }))?;
+    } else {
+        let before = if kept > 0 { format!(", {kept} of them before") } else { String::new() };
+        let failures = if failed > 0 { format!(", {failed} with an err") } else { String::new() };
+        print(&format!(
+            "{rows} rows{before}{failures}; {} problems solved by {} in {solving:.1} s, {rate:.0} \
+             rows a second\nwrote {}\n",
+            todo.len(),
+            settings.method,
+            arguments.out.display()
+        ))?;
+    }
+    Ok(Outcome::Done)
+}

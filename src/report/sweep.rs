@@ -1,0 +1,279 @@
+//! The CSV file of a sweep: one row a case in the order of the input, written as the rows come, so
+//! that a run that is stopped at any moment goes on where it was.
+
+use super::table::{number, optional};
+use crate::base::{Error, Result};
+use crate::solve::{END_DISTANCES, KeyResults};
+use crate::study::sweep::Outcome;
+use std::collections::BTreeMap;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::path::{Path, PathBuf};
+
+/// What a row says besides its number, its parameters and its results.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RowLabel {
+    /// The cells of the sweep's own columns.
+    pub cells: Vec<String>,
+    /// The edge model.
+    pub method: &'static str,
+    /// The tolerance asked for on the command line.
+    pub tolerance: Option<f64>,
+}
+
+/// Columns of the results, after `row` and the sweep's own columns.
+fn result_columns() -> Vec<String> {
+    let mut columns: Vec<String> = [
+        "method",
+        "tolerance_p0",
+        "load_factor",
+        "slenderness",
+        "length_ratio",
+        "load_n",
+        "c_m",
+        "p0_pa",
+        "approach_m",
+        "p_centre_pa",
+        "p_centre_p0",
+        "p_max_pa",
+        "p_max_x_m",
+        "p_max_y_m",
+    ]
+    .map(str::to_string)
+    .to_vec();
+    columns.extend(END_DISTANCES.map(|s| format!("p_{s}C_p0")));
+    columns.extend(
+        [
+            "end_to_centre",
+            "critical_body",
+            "critical_von_mises_pa",
+            "critical_von_mises_p0",
+            "critical_x_m",
+            "critical_y_m",
+            "critical_z_m",
+            "err",
+        ]
+        .map(str::to_string),
+    );
+    columns
+}
+
+/// The cells of the results.
+fn result_cells(outcome: &Outcome) -> Vec<String> {
+    let (case, results) = match outcome {
+        Ok((case, results)) => (case, results),
+        Err(message) => {
+            let mut cells = vec![String::new(); result_columns().len() - 2];
+            cells.push(one_line(message));
+            return cells;
+        }
+    };
+    let KeyResults { hertz, p_at_pa, critical, .. } = results;
+    let (factors, p0) = (case.factors(), hertz.p0_pa);
+    let mut cells = vec![number(case.tolerance)];
+    cells.extend(
+        [
+            factors.load,
+            factors.slenderness,
+            factors.length_ratio,
+            results.load_n,
+            hertz.c_m,
+            p0,
+            results.approach_m,
+            results.p_centre_pa,
+            results.p_centre_pa / p0,
+            results.p_max_pa,
+            results.p_max_at_m[0],
+            results.p_max_at_m[1],
+        ]
+        .map(number),
+    );
+    cells.extend(p_at_pa.map(|p| optional(p.map(|p| p / p0))));
+    cells.push(optional(p_at_pa[0].map(|p| p / results.p_centre_pa)));
+    cells.push(critical.body.name().to_string());
+    cells.extend([critical.value_pa, critical.value_pa / p0].map(number));
+    cells.extend(critical.at_m.map(number));
+    cells.push(String::new());
+    cells
+}
+
+/// A text that takes no second line, so that a line of the file is a row.
+fn one_line(text: &str) -> String {
+    text.split_whitespace().collect::<Vec<_>>().join(" ")
+}
+
+/// One line of CSV with its end.
+fn line(cells: &[String]) -> String {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(cells).expect("a vector takes a record");
+    let bytes = writer.into_inner().expect("a vector takes all bytes");
+    String::from_utf8(bytes).expect("text in, text out")
+}
+
+/// The file of a running sweep, locked for other processes.
+#[derive(Debug)]
+pub struct SweepFile {
+    path: PathBuf,
+    file: File,
+    /// The rows that are to be written, in order, and which is next.
+    order: Vec<usize>,
+    next: usize,
+    /// Rows that came before one that is written before them.
+    waiting: BTreeMap<usize, String>,
+    /// Rows that were there already.
+    kept: usize,
+    /// Rows with an `err`, those that were there already included.
+    failed: usize,
+}
+
+impl SweepFile {
+    /// Makes the file or goes on with one that is there. `columns` are the sweep's own; `order` holds
+    /// the indices of the rows that belong into the file, ascending; `label` tells what a row is called, so
+    /// that the file of another sweep is not gone on with.
+    ///
+    /// A last line without its end, as a killed run leaves it, is dropped.
+    ///
+    /// # Errors
+    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it holds something
+    /// else than the beginning of this sweep, and [`Error::Io`].
+    pub fn open(
+        path: &Path,
+        columns: &[String],
+        order: Vec<usize>,
+        label: impl Fn(usize) -> RowLabel,
+    ) -> Result<Self> {
+        let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
+        let mut file = OpenOptions::new()
+            .read(true)
+            .write(true)
+            .create(true)
+            .truncate(false)
+            .open(path)
+            .map_err(io("open"))?;
+        match file.try_lock() {
+            Ok(()) => {}
+            Err(TryLockError::WouldBlock) => {
+                return Err(Error::Busy { path: path.to_path_buf(), pid: None });
+            }
+            // A file system without locks: two runs into one file are then the user's own care.
+            Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {}
+            Err(TryLockError::Error(e)) => return Err(io("lock")(e)),
+        }
+        let header: Vec<String> = std::iter::once("row".to_string())
+            .chain(columns.iter().map(|c| one_line(c)))
+            .chain(result_columns())
+            .collect();
+        let header = line(&header);
+        let mut text = String::new();
+        file.read_to_string(&mut text).map_err(io("read"))?;
+        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        let mut own = Self {
+            path: path.to_path_buf(),
+            file,
+            order,
+            next: 0,
+            waiting: BTreeMap::new(),
+            kept: 0,
+            failed: 0,
+        };
+        if whole == 0 {
+            if !header.starts_with(&text) {
+                return Err(own.refuse(1, "holds something else than a sweep's rows".into()));
+            }
+            own.file.set_len(0).map_err(io("write"))?;
+            own.append(&header, 0)?;
+            return Ok(own);
+        }
+        if !text.starts_with(&header) {
+            return Err(own.refuse(1, "has the columns of something else".into()));
+        }
+        own.recognise(&text[..whole], &label)?;
+        own.file.set_len(whole as u64).map_err(io("write"))?;
+        own.file.seek(SeekFrom::Start(whole as u64)).map_err(io("write"))?;
+        Ok(own)
+    }
+
+    /// Checks the rows that are there.
+    fn recognise(&mut self, text: &str, label: &impl Fn(usize) -> RowLabel) -> Result<()> {
+        let mut reader = csv::Reader::from_reader(text.as_bytes());
+        for (i, record) in reader.records().enumerate() {
+            let place = i + 2;
+            let record = record.map_err(|e| self.refuse(place, e.to_string()))?;
+            let Some(&row) = self.order.get(i) else {
+                return Err(self.refuse(place, "has more rows than this sweep".into()));
+            };
+            let label = label(row);
+            let start: Vec<String> = std::iter::once((row + 1).to_string())
+                .chain(label.cells.iter().map(|c| one_line(c)))
+                .chain([label.method.to_string()])
+                .collect();
+            let solved = record.get(start.len()).unwrap_or_default();
+            let same = record.iter().zip(&start).all(|(a, b)| a == b)
+                && label.tolerance.is_none_or(|t| solved.is_empty() || solved == number(t));
+            if !same {
+                let message = format!("is not row {} of this sweep by this method", row + 1);
+                return Err(self.refuse(place, message));
+            }
+            self.failed += usize::from(record.iter().next_back().is_some_and(|e| !e.is_empty()));
+            self.next = i + 1;
+        }
+        self.kept = self.next;
+        Ok(())
+    }
+
+    fn refuse(&self, line: usize, message: String) -> Error {
+        Error::File {
+            path: self.path.clone(),
+            line: Some(line),
+            message,
+            remedy: "give another --out, or remove the file".into(),
+        }
+    }
+
+    /// Rows that were there already.
+    pub fn kept(&self) -> usize {
+        self.kept
+    }
+
+    /// Rows with an `err`.
+    pub fn failed(&self) -> usize {
+        self.failed
+    }
+
+    /// Whether a row is still to be written.
+    pub fn wants(&self, row: usize) -> bool {
+        self.order[self.next..].binary_search(&row).is_ok()
+    }
+
+    /// Takes a row; it is written, whole, as soon as all rows before it are.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the file cannot be written.
+    pub fn add(&mut self, row: usize, label: &RowLabel, outcome: &Outcome) -> Result<()> {
+        let mut cells = vec![(row + 1).to_string()];
+        cells.extend(label.cells.iter().map(|c| one_line(c)));
+        cells.push(label.method.to_string());
+        cells.extend(result_cells(outcome));
+        self.failed += usize::from(outcome.is_err());
+        self.waiting.insert(row, line(&cells));
+        let mut ready = String::new();
+        let mut rows = 0;
+        while let Some(text) =
+            self.order.get(self.next + rows).and_then(|row| self.waiting.remove(row))
+        {
+            ready.push_str(&text);
+            rows += 1;
+        }
+        if rows == 0 { Ok(()) } else { self.append(&ready, rows) }
+    }
+
+    fn append(&mut self, text: &str, rows: usize) -> Result<()> {
+        self.file.write_all(text.as_bytes()).map_err(|source| Error::Io {
+            action: "write",
+            path: self.path.clone(),
+            source,
+        })?;
+        self.next += rows;
+        Ok(())
+    }
+}

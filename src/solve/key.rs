@@ -1,0 +1,216 @@
+//! The key results of many cases that are one problem in units of C and p0, without the curves and
+//! cells of a whole solution.
+
+use super::scene::{Scene, SolvedScene, diametral_tension};
+use super::{Critical, pressure_cells};
+use crate::base::{HertzScales, Result, StressTensor};
+use crate::body::EdgeModel;
+use crate::case::Case;
+use crate::stress::{BodyKind, curves};
+
+/// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
+pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
+
+/// What one wants to know of a case among thousands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct KeyResults {
+    /// The scales.
+    pub hertz: HertzScales,
+    /// Load (N).
+    pub load_n: f64,
+    /// Approach of the bodies' far points (m).
+    pub approach_m: f64,
+    /// Pressure at the contact's centre (Pa).
+    pub p_centre_pa: f64,
+    /// Largest pressure of the cells (Pa).
+    pub p_max_pa: f64,
+    /// Its place x, y (m).
+    pub p_max_at_m: [f64; 2],
+    /// Pressure (Pa) at x = 0 and the [`END_DISTANCES`] from the roller's end; none where that is
+    /// beyond the centre.
+    pub p_at_pa: [Option<f64>; END_DISTANCES.len()],
+    /// The most stressed place of both bodies outside 0.1 C of the roller's edge.
+    pub critical: Critical,
+}
+
+/// A stress at a place, in units of C and p0, before what the roller's shape adds.
+type Sample = (BodyKind, [f64; 3], StressTensor);
+
+/// Key results of `cases`, which are all of one [`Scene`] by `method`; `each` gets them one after the
+/// other. The contact is solved once, and only the stresses that the critical one needs are
+/// evaluated: on all standard curves for tolerances below 5e-3, and by a search along them
+/// otherwise, which finds the largest within 2e-3 p0 (`tests/sweep.rs` holds it to that).
+///
+/// # Errors
+/// [`crate::base::Error::NotConverged`] when the contact does not settle.
+pub fn key_results(
+    cases: &[Case],
+    method: EdgeModel,
+    mut each: impl FnMut(usize, KeyResults),
+) -> Result<()> {
+    let Some(first) = cases.first() else { return Ok(()) };
+    let scene = Scene::new(first, method, None);
+    debug_assert!(cases.iter().all(|c| Scene::new(c, method, None) == scene));
+    let solved = SolvedScene::new(&scene)?;
+    let samples = samples(&solved);
+    let cells = pressure_cells(&solved);
+    let top = cells.iter().max_by(|a, b| a.p_pa.total_cmp(&b.p_pa)).expect("cells");
+    let along = |s: f64| {
+        let y = scene.half_length - s;
+        (y >= 0.0).then(|| solved.pressure.at(0.0, y))
+    };
+    let at_end = END_DISTANCES.map(along);
+    let centre = solved.pressure.at(0.0, 0.0);
+    for (i, case) in cases.iter().enumerate() {
+        let hertz = case.hertz();
+        let (c, p0, radius) = (hertz.c_m, hertz.p0_pa, case.roller.radius_m);
+        each(
+            i,
+            KeyResults {
+                hertz,
+                load_n: case.force_n,
+                approach_m: solved.approach(radius / c) * c * c / (2.0 * radius),
+                p_centre_pa: centre * p0,
+                p_max_pa: top.p_pa * p0,
+                p_max_at_m: [top.x_m.abs() * c, top.y_m.abs() * c],
+                p_at_pa: at_end.map(|p| p.map(|p| p * p0)),
+                critical: critical(&samples, &diametral_tension(&hertz, radius), c, p0),
+            },
+        );
+    }
+    Ok(())
+}
+
+/// The largest von Mises stress of the samples.
+fn critical(samples: &[Sample], tension: &StressTensor, c: f64, p0: f64) -> Critical {
+    let mut best = (BodyKind::Block, [0.0; 3], f64::NEG_INFINITY);
+    for (kind, at, stress) in samples {
+        let value = match kind {
+            BodyKind::Block => stress.von_mises(),
+            BodyKind::Roller => (*stress + *tension).von_mises(),
+        };
+        if value > best.2 {
+            best = (*kind, *at, value);
+        }
+    }
+    Critical {
+        body: best.0,
+        measure: "von_mises",
+        value_pa: best.2 * p0,
+        at_m: best.1.map(|v| v * c),
+    }
+}
+
+/// Depths (C) of the search's first pass.
+const DEPTHS: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5];
+/// Distances from the roller's edge along y (C) of the search's first pass, and depths there.
+const ALONG: [f64; 3] = [0.3, 1.0, 2.5];
+/// Depths of the curves along y (C).
+const ALONG_DEPTHS: [f64; 3] = [0.0, 0.5, 0.78];
+/// Nearest distance from the roller's edge that counts (C).
+const FROM_EDGE: f64 = 0.1;
+
+/// The stresses among which the critical one is sought.
+fn samples(solved: &SolvedScene) -> Vec<Sample> {
+    let shared = solved.bodies_shared();
+    let mut all = Vec::new();
+    for (kind, body) in BodyKind::ALL.into_iter().zip(solved.scene.bodies) {
+        if shared && kind == BodyKind::Roller {
+            // What both bodies share in the computation they share in the result.
+            let again: Vec<Sample> =
+                all.iter().map(|&(_, at, s): &Sample| (BodyKind::Roller, at, s)).collect();
+            all.extend(again);
+            break;
+        }
+        if solved.scene.tolerance < 5e-3 {
+            every_point(solved, kind, body.half, &mut all);
+        } else {
+            search(solved, kind, body.half, &mut all);
+        }
+    }
+    all
+}
+
+/// Whether a point is far enough from the roller's edge to count.
+fn counts(y: f64, z: f64, half_length: f64) -> bool {
+    (y - half_length).hypot(z) >= 0.999 * FROM_EDGE
+}
+
+/// All points of the standard curves.
+fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>) {
+    let field = solved.field(kind);
+    let half_length = solved.scene.half_length;
+    let mut columns: Vec<([f64; 2], Vec<f64>)> = Vec::new();
+    let mut index = std::collections::HashMap::new();
+    for curve in curves::standard_curves(kind, half_length, half) {
+        for [x, y, z] in curve.points {
+            if !counts(y, z, half_length) {
+                continue;
+            }
+            let column = *index.entry((y.to_bits(), z.to_bits())).or_insert_with(|| {
+                columns.push(([y, z], Vec::new()));
+                columns.len() - 1
+            });
+            columns[column].1.push(x);
+        }
+    }
+    for ([y, z], xs) in columns {
+        let stresses = field.at(y, z, &xs);
+        all.extend(xs.iter().zip(stresses).map(|(&x, s)| (kind, [x, y, z], s)));
+    }
+}
+
+/// A first pass over all standard curves, and then closer points around the largest stress.
+fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>) {
+    let field = solved.field(kind);
+    let half_length = solved.scene.half_length;
+    let start = all.len();
+    let mut seen = Vec::new();
+    let mut add = |y: f64, z: f64, all: &mut Vec<Sample>| -> f64 {
+        let inside = (0.0..=half * (1.0 + 1e-12)).contains(&y) && z >= 0.0;
+        if !inside || !counts(y, z, half_length) || seen.contains(&(y.to_bits(), z.to_bits())) {
+            return 0.0;
+        }
+        seen.push((y.to_bits(), z.to_bits()));
+        let stress = field.at(y, z, &[0.0])[0];
+        all.push((kind, [0.0, y, z], stress));
+        stress.von_mises()
+    };
+    for y in [0.0, 0.9 * half_length, half_length] {
+        for z in DEPTHS {
+            add(y, z, all);
+        }
+    }
+    // At the end the stress may be largest just outside what does not count.
+    add(half_length, FROM_EDGE, all);
+    for z in ALONG_DEPTHS {
+        for s in ALONG.into_iter().chain((z == 0.0).then_some(FROM_EDGE)) {
+            add(half_length - s, z, all);
+        }
+        add((half_length + FROM_EDGE).min(half), z, all);
+    }
+    // The surface across the contact, where it is largest for small Poisson's ratios.
+    let xs = [0.25, 0.5, 0.75, 1.0, 1.25];
+    for (x, s) in xs.into_iter().zip(field.at(0.0, 0.0, &xs)) {
+        all.push((kind, [x, 0.0, 0.0], s));
+    }
+    // A step to either side of the best, halved twice; at the end of a curve one side is enough.
+    let best = |all: &[Sample]| {
+        let own = all[start..].iter().filter(|s| s.1[0] == 0.0);
+        own.map(|s| (s.2.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))
+    };
+    let mut step = 0.125;
+    for _ in 0..3 {
+        let Some((_, [_, y, z])) = best(all) else { return };
+        let on_depth = [0.0, 0.9 * half_length, half_length].contains(&y);
+        if on_depth {
+            add(y, z + step, all);
+            add(y, z - step, all);
+        }
+        if ALONG_DEPTHS.contains(&z) && y > 0.5 * half_length {
+            add(y + 2.0 * step, z, all);
+            add(y - 2.0 * step, z, all);
+        }
+        step *= 0.5;
+    }
+}
