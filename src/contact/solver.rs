@@ -34,7 +34,7 @@ pub struct ContactSolution {
     /// Coefficients of the modes at each node.
     pub coefficients: Vec<Vec<f64>>,
     /// Approach in units of C^2 / (2 R), relative to points at a distance that the smallest
-    /// wavenumber sets: subtract [`reference`] for a depth of one's own.
+    /// wavenumber sets: subtract [`reference()`] for a depth of one's own.
     pub approach: f64,
     /// Iterations done.
     pub iterations: usize,

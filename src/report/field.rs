@@ -42,7 +42,7 @@ fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     [x, y, z]
 }
 
-/// The points at which [`write`] needs stresses, for [`crate::solve::Options::points`].
+/// The points at which [`write()`] needs stresses, for [`crate::solve::Options::points`].
 pub fn points(case: &Case, counts: [usize; 3]) -> Vec<Point> {
     let c_m = case.hertz().c_m;
     let mut all = Vec::new();
