@@ -196,7 +196,11 @@ class Run:
 def _stage(stage, run, request, folder, log):
     """Run one stage as a process of its own, so that its memory is its own; raise if it fails."""
     command = [*run.command(stage), str(request), str(folder)]
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False)
+    # The child imports this package from where it was imported here.
+    here = str(Path(__file__).resolve().parent.parent)
+    paths = [here, *filter(None, [os.environ.get("PYTHONPATH")])]
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=environment)
     if done.returncode != 0:
         tail = "\n".join(done.stderr.strip().splitlines()[-10:])
         raise FemError(f"{request}: stage {stage} failed with exit code {done.returncode}:\n{tail}")

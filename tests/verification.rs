@@ -1,0 +1,660 @@
+//! The solver against known solutions, an independent one, its own refinement and the laws that any
+//! solution keeps. Lengths are in units of C, stresses in units of p0.
+
+use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+use edgeline::base::{Material, Panels, StressTensor};
+use edgeline::body::{Body, EdgeModel, Resolution};
+use edgeline::case::{Case, Factors};
+use edgeline::contact::ContactSolution;
+use edgeline::kernels::{deflection, hertz, love, strip};
+use edgeline::solve::{
+    Options, Point, Scene, SceneBody, SolvedScene, diametral_tension, guilbault_psi, solve,
+};
+use edgeline::stress::curves::standard_curves;
+use edgeline::stress::{BodyKind, Field, Pressure};
+use nalgebra::{DMatrix, DVector};
+
+/// Distance from the roller's corner within which nothing is compared (C).
+const CORNER: f64 = 0.1;
+
+/// A contact of equal bodies: slenderness, length ratio, Poisson's ratio.
+fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
+    let body = |half| SceneBody { half, nu, share: 0.5 };
+    Scene {
+        half_length: slenderness,
+        bodies: [body(slenderness / length_ratio), body(slenderness)],
+        model,
+        psi: None,
+        tolerance: 1e-3,
+    }
+}
+
+fn solved(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> SolvedScene {
+    SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap()
+}
+
+/// The two scenes that many tests look at, solved once: S_l = 5, nu = 0.3, quarter-space.
+fn flush() -> &'static SolvedScene {
+    static SOLVED: OnceLock<SolvedScene> = OnceLock::new();
+    SOLVED.get_or_init(|| solved(5.0, 1.0, 0.3, EdgeModel::QuarterSpace))
+}
+
+fn half() -> &'static SolvedScene {
+    static SOLVED: OnceLock<SolvedScene> = OnceLock::new();
+    SOLVED.get_or_init(|| solved(5.0, 0.5, 0.3, EdgeModel::QuarterSpace))
+}
+
+/// Half-length of a body of a scene.
+fn half_of(scene: &Scene, kind: BodyKind) -> f64 {
+    match kind {
+        BodyKind::Block => scene.bodies[0].half,
+        BodyKind::Roller => scene.bodies[1].half,
+    }
+}
+
+/// Points of the standard curves of a body, each outside [`CORNER`], named.
+fn curve_points(scene: &Scene, kind: BodyKind) -> Vec<(&'static str, [f64; 3])> {
+    let curves = standard_curves(kind, scene.half_length, half_of(scene, kind));
+    let away = |at: &[f64; 3]| (at[1] - scene.half_length).hypot(at[2]) > CORNER * 0.999;
+    let points = curves.into_iter().flat_map(|c| c.points.into_iter().map(move |p| (c.name, p)));
+    points.filter(|(_, at)| away(at)).collect()
+}
+
+fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {
+    field.at(y, z, &[x])[0]
+}
+
+/// Largest difference of two stresses' components.
+fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
+    let pairs = a.components().into_iter().zip(b.components());
+    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+}
+
+/// The larger one; a NaN wins, so that it cannot pass as small.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+/// Asserts |got - want| <= tolerance and says what was got.
+fn near(what: &str, got: f64, want: f64, tolerance: f64) {
+    println!("{what}: {got:.5}, expected {want:.5} +- {tolerance}");
+    assert!((got - want).abs() <= tolerance, "{what}: got {got}, expected {want} +- {tolerance}");
+}
+
+/// Asserts value <= tolerance and says what was got.
+fn small(what: &str, value: f64, tolerance: f64) {
+    println!("{what}: {value:.2e} of at most {tolerance:.0e}");
+    assert!(value <= tolerance, "{what}: {value:e} > {tolerance:e}");
+}
+
+// --- Known pressures ---------------------------------------------------------------------------
+
+/// Pressure on x = 0 by an independent calculation of another kind: cells of uniform pressure,
+/// 0.04 long at the end and growing by 1.25, with 128 wavenumbers of a periodic transform.
+#[test]
+fn pressures_of_an_independent_calculation() {
+    use EdgeModel::*;
+    const DISTANCES: [f64; 6] = [0.1, 0.3, 0.6, 1.0, 2.0, 3.0];
+    let rows: [(f64, f64, EdgeModel, [f64; 7]); 7] = [
+        (5.0, 1.0, HalfSpace, [2.11, 1.36, 1.127, 1.025, 0.946, 0.919, 0.905]),
+        (5.0, 1.0, Mirror, [1.025, 1.016, 1.010, 1.006, 1.000, 0.997, 0.995]),
+        (5.0, 1.0, Guilbault, [0.747, 0.904, 0.963, 0.991, 1.011, 1.016, 1.019]),
+        (5.0, 1.0, QuarterSpace, [0.735, 0.858, 0.933, 0.9735, 1.008, 1.018, 1.023]),
+        (5.0, 0.5, QuarterSpace, [1.211, 1.076, 1.031, 1.009, 0.990, 0.983, 0.9785]),
+        (20.0, 1.0, QuarterSpace, [0.690, 0.812, 0.886, 0.928, 0.968, 0.9835, 1.0165]),
+        (20.0, 0.5, QuarterSpace, [1.255, 1.113, 1.065, 1.042, 1.021, 1.011, 0.986]),
+    ];
+    for (slenderness, length_ratio, model, row) in rows {
+        let solved = solved(slenderness, length_ratio, 0.3, model);
+        let tolerance = if model == QuarterSpace { 0.004 } else { 0.01 };
+        for (distance, want) in DISTANCES.into_iter().zip(row) {
+            // Where p has no limit at the end, that calculation's cells are too long next to it:
+            // halving them moves its half-space value at 0.1 from 2.06 to 2.03 and on. There the
+            // value is our own of twice the resolution and the extent (and so of four times, to
+            // the last digit), and the half-space's is left to `pressures_of_cells`.
+            let want = match (model, length_ratio, distance) {
+                (HalfSpace, _, d) if d < 1.0 => continue,
+                (QuarterSpace, 0.5, 0.1) => [1.2061, 1.2503][usize::from(slenderness > 10.0)],
+                _ => want,
+            };
+            let got = solved.pressure.at(0.0, slenderness - distance);
+            near(&format!("{model} {slenderness} {length_ratio} {distance}"), got, want, tolerance);
+        }
+        near(&format!("{model} centre"), solved.pressure.at(0.0, 0.0), row[6], tolerance);
+    }
+}
+
+/// Pressure on x = 0 at cells' centres, from the roller's end inwards, by cells of uniform
+/// pressure, collocation at their centres and dense elimination: nothing shared with the solver
+/// but the closed influence of a rectangle. `psi` weighs one image in each end.
+fn cells(half_length: f64, psi: f64, dx: f64, first: f64, ratio: f64) -> Vec<(f64, f64)> {
+    let mut ends = vec![0.0, first];
+    let mut length = first;
+    while ends[ends.len() - 1] + 0.7 * length < half_length {
+        length = (length * ratio).min(0.4);
+        ends.push((ends[ends.len() - 1] + length).min(half_length));
+    }
+    *ends.last_mut().unwrap() = half_length;
+    let across = (1.5 / dx).round() as usize;
+    let cells: Vec<[f64; 3]> = (0..across)
+        .flat_map(|i| {
+            let x = (i as f64 + 0.5) * dx;
+            ends.windows(2)
+                .map(move |e| [x, half_length - 0.5 * (e[0] + e[1]), 0.5 * (e[1] - e[0])])
+        })
+        .collect();
+    let mut images = vec![(1.0, 0.0, 1.0), (-1.0, 0.0, 1.0)];
+    for shift in [-2.0 * half_length, 2.0 * half_length] {
+        images.extend([(1.0, shift, psi), (-1.0, shift, psi)]);
+    }
+    // u in units of C^2 / (2 R): f p0 / (pi E*) with p0 = E* C / (2 R).
+    let influence = DMatrix::from_fn(cells.len(), cells.len(), |i, j| {
+        let ([x, y, _], [u, v, b]) = (cells[i], cells[j]);
+        let mut sum = 0.0;
+        for &(sign, shift, weight) in &images {
+            for u in [u, -u] {
+                let f = deflection::rectangle(x - u, y - sign * v - shift, 0.5 * dx, b);
+                sum += weight * f / PI;
+            }
+        }
+        sum
+    });
+    let mut active: Vec<usize> = (0..cells.len()).filter(|&i| cells[i][0] < 1.0).collect();
+    let load = 0.25 * PI * 2.0 * half_length;
+    for _ in 0..30 {
+        let n = active.len();
+        let mut matrix = DMatrix::zeros(n + 1, n + 1);
+        let mut right = DVector::zeros(n + 1);
+        for (i, &a) in active.iter().enumerate() {
+            for (j, &b) in active.iter().enumerate() {
+                matrix[(i, j)] = influence[(a, b)];
+            }
+            matrix[(i, n)] = -1.0;
+            matrix[(n, i)] = 2.0 * dx * cells[a][2];
+            right[i] = -cells[a][0].powi(2);
+        }
+        right[n] = load;
+        let answer = matrix.lu().solve(&right).unwrap();
+        let mut p = DVector::zeros(cells.len());
+        for (i, &a) in active.iter().enumerate() {
+            p[a] = answer[i];
+        }
+        let u = &influence * &p;
+        let next: Vec<usize> = (0..cells.len())
+            .filter(|&i| p[i] > 0.0 || u[i] + cells[i][0].powi(2) < answer[n] - 1e-9)
+            .collect();
+        if next == active {
+            // A parabola through the two innermost cells, even in x, has its top at x = 0.
+            let columns = ends.len() - 1;
+            let top = |j: usize| (9.0 * p[j] - p[columns + j]) / 8.0;
+            return (0..columns).map(|j| (half_length - cells[j][1], top(j))).collect();
+        }
+        active = next;
+    }
+    panic!("the cells' contact does not settle");
+}
+
+#[test]
+fn pressures_of_cells() {
+    for (model, psi) in [(EdgeModel::Mirror, 1.0), (EdgeModel::Guilbault, guilbault_psi(0.3))] {
+        let solved = solved(5.0, 1.0, 0.3, model);
+        for (s, p) in cells(5.0, psi, 0.1, 0.02, 1.25) {
+            if s > CORNER {
+                near(&format!("{model} at {s:.3}"), solved.pressure.at(0.0, 5.0 - s), p, 0.003);
+            }
+        }
+    }
+    // A half-space's pressure grows like s^-1/2: cells converge in first order, from above.
+    let solved = solved(5.0, 1.0, 0.3, EdgeModel::HalfSpace);
+    let [coarse, fine] = [(0.04, 1.25f64), (0.02, 1.25f64.sqrt())]
+        .map(|(first, ratio)| cells(5.0, 0.0, 0.1, first, ratio));
+    let value = |cells: &[(f64, f64)], s: f64| -> f64 {
+        let i = cells.partition_point(|c| c.0 < s);
+        let ([a, b], t) = ([cells[i - 1], cells[i]].map(|(s, p)| (s.ln(), p.ln())), s.ln());
+        let (a, b): ((f64, f64), (f64, f64)) = (a, b);
+        (a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0)).exp()
+    };
+    for s in [0.1, 0.2, 0.3, 0.6, 1.0, 2.0, 3.0] {
+        let (a, b) = (value(&coarse, s), value(&fine, s));
+        let got = solved.pressure.at(0.0, 5.0 - s);
+        println!("cells {a:.4} {b:.4}");
+        near(&format!("half-space at {s}"), got, 2.0 * b - a, 0.01);
+    }
+}
+
+// --- Closed solutions --------------------------------------------------------------------------
+
+#[test]
+fn long_contact_is_plane_strain() {
+    let solved = solved(200.0, 1.0, 0.3, EdgeModel::QuarterSpace);
+    for i in 0..=22 {
+        let x = 0.05 * f64::from(i);
+        near(&format!("p at {x}"), solved.pressure.at(x, 0.0), hertz::line_pressure(x), 2e-3);
+    }
+    let field = solved.field(BodyKind::Block);
+    for z in [0.0, 0.1, 0.3, 0.5, 0.7861, 1.0, 1.5, 2.0, 3.0, 5.0] {
+        for x in [0.0, 0.5] {
+            let got = at(&field, [x, 0.0, z]);
+            let want = hertz::line_stress(x, z, 0.3);
+            small(&format!("stress at {x} {z}"), apart(&got, &want), 5e-3);
+            near(&format!("tau_max at {x} {z}"), got.tau_max(), want.tau_max(), 5e-3);
+        }
+    }
+}
+
+/// Without Poisson's effect plane strain pulls at no end face: flush ends are not felt at all.
+#[test]
+fn flush_ends_without_lateral_strain_are_not_felt() {
+    let solved = solved(5.0, 1.0, 0.0, EdgeModel::QuarterSpace);
+    let mut worst: f64 = 0.0;
+    for i in 0..=50 {
+        for x in [0.0, 0.5, 0.9, 1.1] {
+            let p = solved.pressure.at(x, 0.1 * f64::from(i));
+            worst = worse(worst, (p - hertz::line_pressure(x)).abs());
+        }
+    }
+    small("pressure", worst, 2e-4);
+    let field = solved.field(BodyKind::Block);
+    let off = |(_, p): (_, [f64; 3])| apart(&at(&field, p), &hertz::line_stress(p[0], p[2], 0.0));
+    let points = curve_points(&solved.scene, BodyKind::Block);
+    small("stresses", points.into_iter().map(off).fold(0.0, worse), 1e-3);
+}
+
+/// A block whose end is 50 C away, pressed by a rigid roller, is a half-space to the contact.
+#[test]
+fn a_far_end_is_no_end() {
+    let rigid = |model, half| {
+        let mut scene = scene(5.0, 5.0 / half, 0.3, model);
+        (scene.bodies[0].share, scene.bodies[1].share) = (1.0, 0.0);
+        SolvedScene::new(&scene).unwrap()
+    };
+    let endless = rigid(EdgeModel::HalfSpace, 55.0);
+    let ends = rigid(EdgeModel::QuarterSpace, 55.0);
+    let worst = (0..=98).flat_map(|i| [0.0, 0.5, 0.8].map(|x| (x, 0.05 * f64::from(i))));
+    let off = |(x, y)| (endless.pressure.at(x, y) - ends.pressure.at(x, y)).abs();
+    small("pressure", worst.map(off).fold(0.0, worse), 2e-3);
+    let fields = [endless.field(BodyKind::Block), ends.field(BodyKind::Block)];
+    let points = curve_points(&endless.scene, BodyKind::Block);
+    let off = |(_, p): (_, [f64; 3])| apart(&at(&fields[0], p), &at(&fields[1], p));
+    small("stresses", points.into_iter().map(off).fold(0.0, worse), 5e-3);
+}
+
+/// Half-space stresses as `solve` gives them at extra points, against Love's stresses summed over
+/// fine cells of the same pressure.
+#[test]
+fn stresses_of_cells() {
+    let case = case(5e-4, 5.0, 0.5);
+    let hertz = case.hertz();
+    let places = [
+        [0.0, 0.0, 0.3],
+        [0.4, 1.0, 0.7],
+        [0.0, 4.5, 0.5],
+        [0.6, 5.0, 0.4],
+        [0.3, 5.6, 0.3],
+        [2.0, 3.0, 1.0],
+        [1.5, 7.0, 3.0],
+        [0.2, 4.0, 8.0],
+    ];
+    for model in [EdgeModel::HalfSpace, EdgeModel::Mirror] {
+        let scene = Scene::new(&case, model, None);
+        let solved = SolvedScene::new(&scene).unwrap();
+        // Cells of the pressure: 0.05 wide, graded towards the end of the line.
+        let mut ends = vec![0.0f64, 0.002];
+        while ends[ends.len() - 1] < 5.0 {
+            let last = ends[ends.len() - 1];
+            ends.push((last + (0.2 * last).clamp(0.002, 0.1)).min(5.0));
+        }
+        let mut cells = Vec::new();
+        for pair in ends.windows(2) {
+            let along = Panels::new(vec![5.0 - pair[1], 5.0 - pair[0]], 4);
+            for i in 0..26 {
+                let [low, high] = [f64::from(i), f64::from(i + 1)].map(|i| -1.3 + 0.1 * i);
+                let force: f64 = along
+                    .nodes()
+                    .iter()
+                    .zip(along.weights())
+                    .map(|(&y, w)| {
+                        let (a, c) = solved.pressure.modes(y).unwrap();
+                        w * (strip::cumulative(a, &c, high) - strip::cumulative(a, &c, low))
+                    })
+                    .sum();
+                let (b, a) = (0.5 * (pair[1] - pair[0]), 0.05);
+                cells.push((0.5 * (low + high), 5.0 - 0.5 * (pair[0] + pair[1]), a, b, force));
+            }
+        }
+        for body in BodyKind::ALL {
+            let half = half_of(&scene, body);
+            let shifts: &[f64] =
+                if model == EdgeModel::Mirror { &[0.0, -2.0, 2.0] } else { &[0.0] };
+            let inside = places.iter().filter(|at| at[1] <= half);
+            let points: Vec<Point> =
+                inside.map(|at| Point { body, at_m: at.map(|v| v * hertz.c_m) }).collect();
+            let mut options = Options::new(model);
+            options.curves.clear();
+            options.points.clone_from(&points);
+            let solution = solve(&case, &options).unwrap();
+            let tension = match body {
+                BodyKind::Roller => diametral_tension(&hertz, case.roller.radius_m),
+                BodyKind::Block => StressTensor::default(),
+            };
+            for (point, got) in points.iter().zip(&solution.points) {
+                let [x, y, z] = point.at_m.map(|v| v / hertz.c_m);
+                let mut want = tension;
+                for &(u, v, a, b, force) in &cells {
+                    for shift in shifts {
+                        for sign in [1.0, -1.0] {
+                            let source = sign * v + shift * half;
+                            let unit = love::stress(x - u, y - source, z, a, b, 0.3);
+                            want += unit * (force / (4.0 * a * b));
+                        }
+                    }
+                }
+                let got = *got * (1.0 / hertz.p0_pa);
+                small(&format!("{model} {} {x} {y} {z}", body.name()), apart(&got, &want), 5e-4);
+            }
+        }
+    }
+}
+
+// --- Laws of any solution ----------------------------------------------------------------------
+
+/// Both end faces are free of traction, approached from inside: 40 x 40 points.
+#[test]
+fn end_faces_are_free() {
+    let xs: Vec<f64> = (0..40).map(|i| -4.0 + 8.0 * f64::from(i) / 39.0).collect();
+    for (solved, name) in [(flush(), "flush"), (half(), "half")] {
+        for kind in BodyKind::ALL {
+            if solved.bodies_shared() && kind == BodyKind::Roller {
+                continue;
+            }
+            let field = solved.field(kind);
+            let end = half_of(&solved.scene, kind);
+            for distance in [1e-6, 1e-8] {
+                let mut worst = [0.0; 3];
+                for i in 0..40 {
+                    let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
+                    for s in field.at(end - distance, z, &xs) {
+                        for (w, t) in worst.iter_mut().zip([s.yy, s.xy, s.yz]) {
+                            *w = worse(*w, t.abs());
+                        }
+                    }
+                }
+                for (w, part) in worst.into_iter().zip(["yy", "xy", "yz"]) {
+                    let what = format!("{name} {} {part} {distance:e} inside", kind.name());
+                    small(&what, w, 5e-3);
+                }
+            }
+        }
+    }
+}
+
+/// Force through the plane at the depth `z` over the load on the contact.
+fn force_through(solved: &SolvedScene, kind: BodyKind, z: f64) -> f64 {
+    let (end, half) = (solved.scene.half_length, half_of(&solved.scene, kind));
+    let mut breaks = vec![0.0, 0.5 * end, 0.8 * end];
+    breaks.extend([0.4, 0.1].map(|s| end - s));
+    if half > end {
+        breaks.extend([end, end + 0.1, end + 0.4, 0.5 * (end + half), half - 0.3]);
+    }
+    breaks.push(half);
+    let along = Panels::new(breaks, 5);
+    let across =
+        Panels::new(vec![0.0, 0.5, 1.0, 1.5, 2.0, 3.0, 5.0, 8.0, 13.0, 22.0, 40.0, 80.0], 6);
+    let field = solved.field(kind);
+    let mut sum = 0.0;
+    for (&y, w) in along.nodes().iter().zip(along.weights()) {
+        for (s, v) in field.at(y, z, across.nodes()).iter().zip(across.weights()) {
+            sum -= w * v * s.zz;
+        }
+    }
+    // Half of x and half of y; pi/2 is the load per length.
+    2.0 * sum / (0.5 * PI * end)
+}
+
+#[test]
+fn planes_carry_the_load() {
+    for (solved, name) in [(flush(), "flush"), (half(), "half")] {
+        for kind in BodyKind::ALL {
+            if solved.bodies_shared() && kind == BodyKind::Roller {
+                continue;
+            }
+            for z in [0.5, 1.0, 2.0, 5.0] {
+                let what = format!("{name} {} force at {z}", kind.name());
+                near(&what, force_through(solved, kind, z), 1.0, 2e-3);
+            }
+        }
+    }
+    // A half-space lets the load out through the end faces that it does not have.
+    let endless = solved(5.0, 1.0, 0.3, EdgeModel::HalfSpace);
+    for (z, at_most) in [(0.5, 0.99), (1.0, 0.96), (2.0, 0.92), (5.0, 0.8)] {
+        let force = force_through(&endless, BodyKind::Block, z);
+        println!("half-space force at {z}: {force:.4}");
+        assert!(force < at_most, "a half-space keeps {force} of the load at {z}");
+    }
+}
+
+/// Betti: the work of one pressure on another's displacement is the same both ways.
+#[test]
+fn compliance_is_reciprocal() {
+    let resolution = Resolution::for_tolerance(1e-3);
+    for (half, model) in [
+        (5.0, EdgeModel::HalfSpace),
+        (5.0, EdgeModel::Mirror),
+        (5.0, EdgeModel::QuarterSpace),
+        (5.5, EdgeModel::QuarterSpace),
+        (10.0, EdgeModel::QuarterSpace),
+    ] {
+        let body = Body::new(5.0, half, 0.3, model, 1.39, &resolution);
+        let axis = resolution.contact_axis(5.0);
+        let (nodes, weights) = (axis.nodes(), axis.weights());
+        let shapes: [&dyn Fn(f64) -> f64; 4] =
+            [&|_| 1.0, &|y| (y / 5.0).powi(8), &|y| (0.3 * PI * y).cos(), &|y| {
+                (-2.0 * (5.0 - y)).exp() * (5.0 - y)
+            }];
+        for k in [0.01, 0.1, 1.0, 5.0, 30.0] {
+            let compliance = body.layer(k).compliance;
+            let work = |f: &dyn Fn(f64) -> f64, g: &dyn Fn(f64) -> f64| -> f64 {
+                let g = DVector::from_fn(nodes.len(), |i, _| g(nodes[i]));
+                let u = &compliance * g;
+                (0..nodes.len()).map(|i| weights[i] * f(nodes[i]) * u[i]).sum()
+            };
+            for (i, f) in shapes.iter().enumerate() {
+                for g in &shapes[..i] {
+                    let scale = (work(f, f) * work(g, g)).sqrt();
+                    let off = (work(f, g) - work(g, f)).abs() / scale;
+                    small(&format!("{model} to {half} at k = {k}, shape {i}"), off, 1e-4);
+                }
+            }
+        }
+    }
+}
+
+/// The field of a body under a pressure of half-width 1 and one mode, given by its amplitude
+/// along y.
+fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
+    let resolution = Resolution::for_tolerance(1e-3);
+    let body = Body::new(3.0, 4.0, 0.3, EdgeModel::QuarterSpace, 1.0, &resolution);
+    let wavenumbers = resolution.wavenumbers();
+    let layers: Vec<_> = wavenumbers.nodes().iter().map(|&k| body.layer(k)).collect();
+    let axis = resolution.contact_axis(3.0);
+    let solution = ContactSolution {
+        half_widths: vec![1.0; axis.len()],
+        coefficients: axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect(),
+        approach: 0.0,
+        iterations: 0,
+        end_zone: 0.0,
+        residual: 0.0,
+        load_error: 0.0,
+    };
+    let pressure = Pressure::new(&axis, &solution);
+    move |place| at(&Field::new(&body, &wavenumbers, &layers, &pressure, 1.0, 1e-3), place)
+}
+
+#[test]
+fn stresses_superpose_and_mirror() {
+    let end = |y: f64| (y / 3.0).powi(4);
+    let (one, other, both) = (field_of(end), field_of(|y| 2.0 - end(y)), field_of(|_| 2.0));
+    for place in
+        [[0.0, 0.0, 0.5], [0.7, 2.9, 0.2], [0.3, 3.5, 0.0], [1.0, 4.0, 1.0], [0.5, 3.9, 3.0]]
+    {
+        let (sum, whole) = (one(place) + other(place), both(place));
+        small(&format!("superposition at {place:?}"), apart(&sum, &whole), 1e-4);
+        // Even in x but for xy and xz, even in y but for xy and yz.
+        let [x, y, z] = place;
+        let s = both([-x, y, z]);
+        let turned = StressTensor { xy: -s.xy, xz: -s.xz, ..s };
+        small("mirrored in x", apart(&turned, &whole), 1e-12);
+        let s = both([x, -y, z]);
+        let turned = StressTensor { xy: -s.xy, yz: -s.yz, ..s };
+        small("mirrored in y", apart(&turned, &whole), 1e-12);
+    }
+    // What is odd in y vanishes in the middle plane, where nothing makes it do so but the loads.
+    for x in [0.2, 1.0] {
+        let s = both([x, 0.0, 0.4]);
+        small("xy in the middle plane", s.xy.abs(), 1e-9);
+        small("yz in the middle plane", s.yz.abs(), 1e-9);
+    }
+}
+
+/// The contact presses and never pulls, as the modes have it before anything is cut off.
+#[test]
+fn pressure_never_pulls() {
+    for (slenderness, length_ratio) in
+        [(5.0, 1.0), (5.0, 0.5), (1.0, 1.0), (1.0, 0.95), (20.0, 0.1)]
+    {
+        for model in EdgeModel::ALL {
+            let solved = solved(slenderness, length_ratio, 0.3, model);
+            let mut least = f64::INFINITY;
+            let mut force = 0.0;
+            let axis = Panels::new(solved.pressure.axis().breaks().to_vec(), 12);
+            for (&y, w) in axis.nodes().iter().zip(axis.weights()) {
+                let (a, c) = solved.pressure.modes(y).unwrap();
+                force += w * strip::cumulative(a, &c, a);
+                for i in 0..100 {
+                    let x = a * f64::from(i) / 100.0;
+                    least = least.min(strip::pressure(a, &c, x));
+                }
+            }
+            let what = format!("{model} {slenderness} {length_ratio}");
+            println!("{what}: least pressure {least:.2e}");
+            assert!(least >= -1e-3, "{what} pulls with {least}");
+            near(&format!("{what} load"), force / (0.5 * PI * slenderness), 1.0, 1e-3);
+        }
+    }
+}
+
+// --- Scales and threads ------------------------------------------------------------------------
+
+fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load, slenderness, length_ratio };
+    Case::from_factors("case", 0.01, steel, steel, factors)
+}
+
+/// All numbers of a solution in units of C and p0, the roller's tension taken out.
+fn numbers(case: &Case) -> Vec<f64> {
+    let solution = solve(case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+    let (c, p0) = (solution.hertz.c_m, solution.hertz.p0_pa);
+    let tension = diametral_tension(&solution.hertz, case.roller.radius_m).xx;
+    let mut all = vec![solution.load_n / (p0 * c * case.roller.length_m)];
+    for line in &solution.lines {
+        all.extend(line.p_pa.iter().map(|p| p / p0));
+    }
+    for curve in &solution.curves {
+        for s in &curve.stress_pa {
+            let mut s = s.components().map(|s| s / p0);
+            if curve.body == BodyKind::Roller {
+                s[0] -= tension;
+            }
+            all.extend(s);
+        }
+    }
+    all
+}
+
+fn furthest(a: &[f64], b: &[f64]) -> f64 {
+    assert_eq!(a.len(), b.len());
+    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+}
+
+#[test]
+fn load_is_no_factor_in_units_of_half_width_and_pressure() {
+    let reference = numbers(&case(1e-4, 5.0, 0.5));
+    assert!(reference.iter().all(|n| n.is_finite()));
+    for load in [1e-3, 1e-10] {
+        let other = numbers(&case(load, 5.0, 0.5));
+        small(&format!("W = {load:e}"), furthest(&reference, &other), 1e-9);
+    }
+}
+
+#[test]
+fn threads_change_nothing() {
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| numbers(&case(1e-3, 5.0, 1.0)))
+    };
+    small("one thread or two", furthest(&on(1), &on(2)), 1e-12);
+}
+
+// --- Refinement --------------------------------------------------------------------------------
+
+/// What a resolution changes against a finer one: pressure and stresses outside [`CORNER`].
+fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
+    let length = coarse.scene.half_length;
+    let mut pressure: f64 = 0.0;
+    for i in 0..=200 {
+        // Denser towards the end.
+        let s = CORNER * (length / CORNER).powf(f64::from(i) / 200.0);
+        for x in [0.0, 0.4, 0.8] {
+            let p = [coarse, fine].map(|s3| s3.pressure.at(x, length - s));
+            pressure = worse(pressure, (p[0] - p[1]).abs());
+        }
+    }
+    let mut stress: f64 = 0.0;
+    for kind in BodyKind::ALL {
+        if coarse.bodies_shared() && kind == BodyKind::Roller {
+            continue;
+        }
+        let fields = [coarse.field(kind), fine.field(kind)];
+        for (_, place) in curve_points(&coarse.scene, kind) {
+            let [a, b] = [0, 1].map(|i| at(&fields[i], place));
+            stress = worse(stress, apart(&a, &b));
+        }
+    }
+    (pressure, stress)
+}
+
+/// Every panel halved and every extent doubled.
+fn assert_converged(scenes: &[(f64, f64, f64)]) {
+    let base = Resolution::for_tolerance(1e-3);
+    for &(slenderness, length_ratio, nu) in scenes {
+        let scene = scene(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
+        let coarse = SolvedScene::with_resolution(&scene, &base).unwrap();
+        let fine = SolvedScene::with_resolution(&scene, &base.refined()).unwrap();
+        let (pressure, stress) = changes(&coarse, &fine);
+        let what = format!("S_l = {slenderness}, L_r = {length_ratio}, nu = {nu}");
+        small(&format!("{what}: pressure"), pressure, 2e-3);
+        small(&format!("{what}: stresses"), stress, 5e-3);
+    }
+}
+
+#[test]
+fn refinement_changes_little() {
+    assert_converged(&[(5.0, 1.0, 0.3), (5.0, 0.5, 0.3), (20.0, 1.0, 0.3), (20.0, 0.5, 0.3)]);
+}
+
+#[test]
+fn refinement_changes_little_short_and_long() {
+    assert_converged(&[(1.0, 1.0, 0.3), (1.0, 0.5, 0.3), (2.0, 1.0, 0.3), (2.0, 0.5, 0.3)]);
+    assert_converged(&[(100.0, 1.0, 0.3), (100.0, 0.5, 0.3)]);
+}
+
+#[test]
+fn refinement_changes_little_at_other_ledges_and_materials() {
+    assert_converged(&[(5.0, 0.1, 0.3), (5.0, 0.95, 0.3), (5.0, 0.99, 0.3), (20.0, 0.99, 0.3)]);
+    for nu in [0.0, 0.25, 0.45] {
+        assert_converged(&[(5.0, 1.0, nu), (5.0, 0.5, nu)]);
+    }
+}
