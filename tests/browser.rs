@@ -104,7 +104,7 @@ impl Page {
         page.resize(1280, 900);
         let url = format!("file://{}", file.canonicalize().unwrap().display());
         page.call("Page.navigate", json!({ "url": url }));
-        page.wait("document.documentElement.dataset.ready === 'yes'");
+        page.wait("document.documentElement?.dataset.ready === 'yes'");
         page
     }
 

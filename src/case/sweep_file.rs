@@ -488,7 +488,9 @@ fn levels(entry: &Entry) -> Result<Levels> {
         } else if i as f64 == last {
             high
         } else if logarithmic {
-            (low.ln() + t * (high / low).ln()).exp()
+            // Thirteen digits: a decade's middle is to be a round number.
+            let value = (low.ln() + t * (high / low).ln()).exp();
+            format!("{value:.12e}").parse().expect("a formatted number")
         } else {
             low + t * (high - low)
         }

@@ -233,7 +233,7 @@ mod tests {
         let of = |i: usize| &found[i].1.as_ref().unwrap().1;
         // p0 grows with the root of W, and so does everything that is proportional to it.
         assert!((of(1).p_centre_pa / of(0).p_centre_pa - 2.0).abs() < 1e-9);
-        assert!((of(1).critical.at_m[2] / of(0).critical.at_m[2] - 2.0).abs() < 1e-9);
+        assert!((of(1).critical.at_m[1] / of(0).critical.at_m[1] - 2.0).abs() < 1e-9);
         assert!(found[2].1.as_ref().unwrap_err().contains("dimensionless.W = 9e0"));
     }
 
