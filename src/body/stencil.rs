@@ -137,6 +137,9 @@ pub struct Stencil {
 /// Off the line the depth bounds the pieces by itself.
 const SMALLEST_PIECE: f64 = 1.0 / 512.0;
 
+/// Nor in a long panel below this length (C), a tenth of the shortest wave at least.
+const SHORTEST_PIECE: f64 = 0.004;
+
 impl Stencil {
     /// Stencil for a `target` coordinate on the axis's line, at `depth` >= 0 from it.
     pub fn new(sources: &Sources, images: &[Image], target: f64, depth: f64) -> Self {
@@ -191,7 +194,8 @@ impl Stencil {
         basis: &mut [f64],
     ) {
         let [a, b] = axis.panel(panel);
-        let smallest = if depth > 0.0 { 0.0 } else { SMALLEST_PIECE * (b - a) };
+        let smallest =
+            if depth > 0.0 { 0.0 } else { (SMALLEST_PIECE * (b - a)).min(SHORTEST_PIECE) };
         // Cut at the target first, so that pieces end there.
         let mut pieces = if a < own && own < b { vec![[a, own], [own, b]] } else { vec![[a, b]] };
         while let Some([c, d]) = pieces.pop() {
