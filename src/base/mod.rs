@@ -1,4 +1,4 @@
-//! Materials, Hertz scales, the stress tensor, graded axes, quadrature, whole files and the error type.
+//! Materials, Hertz scales, the stress tensor, graded axes, wavenumbers, quadrature, whole files and the error type.
 
 mod error;
 mod files;
@@ -7,6 +7,7 @@ mod panels;
 mod quadrature;
 mod scales;
 mod tensor;
+mod wavenumbers;
 
 pub use error::{Error, Result};
 pub use files::{prepare_folder, write_whole};
@@ -15,3 +16,4 @@ pub use panels::Panels;
 pub use quadrature::gauss_legendre;
 pub use scales::HertzScales;
 pub use tensor::StressTensor;
+pub use wavenumbers::Wavenumbers;

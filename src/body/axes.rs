@@ -1,7 +1,10 @@
 //! Axes chosen from a requested accuracy.
 
-use crate::base::Panels;
+use crate::base::{Panels, Wavenumbers};
 use serde::Serialize;
+
+/// Wavenumber below which nothing varies with the contact's width.
+const SLOW: f64 = 0.5;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
@@ -24,11 +27,11 @@ pub struct Resolution {
     pub k_max: f64,
     /// Gauss nodes per panel of wavenumbers.
     pub k_order: usize,
-    /// Width of the wavenumber panels above 2.
+    /// Largest width of the panels on which the pressure's transform is resolved.
     pub k_step: f64,
-    /// Growth of the wavenumber panels up to 0.5.
+    /// Growth of the wavenumber panels above 0.5; below it panels grow four times as fast.
     pub k_ratio: f64,
-    /// Smallest wavenumber panel's end: 1 / the extent in x and z that is resolved.
+    /// Largest end of the first wavenumber panel.
     pub k_min: f64,
     /// Images of the corrected pressure in the end faces on either side, in lengths of the body;
     /// beyond them its mean is carried by uniform strips.
@@ -50,10 +53,10 @@ impl Resolution {
                 ratio: 2.5,
                 modes: 3,
                 k_max: 20.0,
-                k_order: 4,
-                k_step: 4.0,
-                k_min: 2e-3,
-                k_ratio: 6.0,
+                k_order: 3,
+                k_step: 3.0,
+                k_min: 0.05,
+                k_ratio: 2.6,
                 images: 1,
                 face_reach: 10.0,
                 reach: 10.0,
@@ -64,11 +67,11 @@ impl Resolution {
                 corner: 0.015,
                 ratio: 2.5,
                 modes: 3,
-                k_max: 40.0,
-                k_order: 6,
-                k_step: 5.0,
-                k_min: 4e-4,
-                k_ratio: 4.0,
+                k_max: 50.0,
+                k_order: 4,
+                k_step: 4.0,
+                k_min: 0.01,
+                k_ratio: 2.6,
                 images: 1,
                 face_reach: 14.0,
                 reach: 14.0,
@@ -140,8 +143,8 @@ impl Resolution {
 
     /// Panels of the depth along an end face, graded towards the edge, deep enough for the
     /// smallest wavenumber.
-    pub fn face_axis(&self, ledge: f64) -> Panels {
-        let deepest = self.face_reach / self.k_min;
+    pub fn face_axis(&self, ledge: f64, half: f64) -> Panels {
+        let deepest = self.face_reach / self.smallest_wavenumber(half);
         let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
         // Where the load only fades, panels may grow faster.
         let mut next = FACE_TAIL * self.ratio * self.ratio;
@@ -153,20 +156,25 @@ impl Resolution {
         Panels::new(s, self.order)
     }
 
-    /// Wavenumbers across the contact and their quadrature weights: panels growing from
-    /// `k_min`, then equal ones that resolve the transforms' oscillation.
-    pub fn wavenumbers(&self) -> Panels {
-        let mut breaks = vec![0.0];
-        let mut next = self.k_min;
-        while next * self.k_ratio.sqrt() < 0.5 {
-            breaks.push(next);
-            next *= self.k_ratio;
-        }
-        breaks.extend([0.5, 1.0, 2.0]);
-        let count = ((self.k_max - 2.0) / self.k_step).ceil().max(1.0);
-        let step = (self.k_max - 2.0) / count;
-        breaks.extend((1..=count as usize).map(|i| 2.0 + step * i as f64));
-        Panels::new(breaks, self.k_order)
+    /// Wavenumbers across the contact, for bodies of half-length up to `half`: coarse panels that
+    /// grow from [`Resolution::smallest_wavenumber`] to `k_max`, cut where they are wider than
+    /// `k_step` for the pressure's transform.
+    pub fn wavenumbers(&self, half: f64) -> Wavenumbers {
+        let smallest = self.smallest_wavenumber(half);
+        let mut breaks = vec![0.0, smallest];
+        let equal = |from: f64, to: f64, ratio: f64, breaks: &mut Vec<f64>| {
+            let count = ((to / from).ln() / ratio.ln()).ceil().max(1.0) as i32;
+            breaks.extend((1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))));
+        };
+        equal(smallest, SLOW, 4.0 * self.k_ratio, &mut breaks);
+        equal(SLOW, self.k_max, self.k_ratio, &mut breaks);
+        Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
+    }
+
+    /// End of the first panel of wavenumbers: waves longer than the body and than the contact's
+    /// width see little more than the load's total.
+    fn smallest_wavenumber(&self, half: f64) -> f64 {
+        self.k_min.min(0.25 / half)
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
@@ -175,7 +183,7 @@ impl Resolution {
     pub fn face_wavenumbers(&self, half: f64) -> Panels {
         let top = 8.0 / half;
         let mut breaks = vec![0.0];
-        let mut next = self.k_min;
+        let mut next = self.smallest_wavenumber(half);
         while next < 0.6 * top {
             breaks.push(next);
             next *= 2.0 * self.ratio.sqrt();

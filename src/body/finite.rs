@@ -79,7 +79,7 @@ impl Body {
         let contact = contact_axis.len();
         let surface = if complete { resolution.body_axis(half_length, half) } else { contact_axis };
         let ledge = half - half_length;
-        let face = Sources::new(resolution.face_axis(ledge));
+        let face = Sources::new(resolution.face_axis(ledge, half));
         let surface = Sources::new(surface);
         let image = |sign: f64, lengths: i32, weight: f64| Image {
             sign,
@@ -135,7 +135,8 @@ impl Body {
         let near = (2 * self.resolution.images + 1) as f64 * half;
         let mut breaks = vec![near];
         let mut last = near;
-        while last < near + self.reach / self.resolution.k_min {
+        let deepest = self.face.axis.breaks()[self.face.axis.panel_count()];
+        while last < near + deepest {
             last *= 2.5;
             breaks.push(last);
         }

@@ -301,7 +301,7 @@ impl SceneAnswer {
             details: json!({
                 "tolerance": case.tolerance,
                 "resolution": solved.resolution,
-                "wavenumbers": solved.wavenumbers.len(),
+                "wavenumbers": [solved.wavenumbers.coarse().len(), solved.wavenumbers.fine().len()],
                 "contact_nodes": solved.pressure.axis().len(),
                 "edge_residual": solved.contact.residual,
                 "bodies_shared": solved.bodies_shared(),

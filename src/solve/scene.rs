@@ -1,6 +1,6 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
-use crate::base::{HertzScales, Panels, Result, StressTensor};
+use crate::base::{HertzScales, Result, StressTensor, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer, Resolution};
 use crate::case::Case;
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
@@ -91,7 +91,7 @@ pub struct SolvedScene {
     /// How it was resolved.
     pub resolution: Resolution,
     /// Wavenumbers across the contact.
-    pub wavenumbers: Panels,
+    pub wavenumbers: Wavenumbers,
     /// The contact pressure.
     pub pressure: Pressure,
     /// What the contact solve said; its approach lacks the reference (see [`SolvedScene::approach`]).
@@ -117,7 +117,9 @@ impl SolvedScene {
     /// [`crate::base::Error::NotConverged`] when the contact does not settle.
     pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
         let start = Instant::now();
-        let wavenumbers = resolution.wavenumbers();
+        let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
+        let wavenumbers = resolution.wavenumbers(longest);
+        let coarse = wavenumbers.coarse();
         let axis = resolution.contact_axis(scene.half_length);
         let [block, roller] = scene.bodies;
         // Bodies that end alike, of the same Poisson's ratio, are one.
@@ -128,11 +130,11 @@ impl SolvedScene {
             .map(|b| {
                 let psi = scene.psi.unwrap_or_else(|| guilbault_psi(b.nu));
                 let body = Body::new(scene.half_length, b.half, b.nu, scene.model, psi, resolution);
-                let layers = wavenumbers.nodes().par_iter().map(|&k| body.layer(k)).collect();
+                let layers = coarse.nodes().par_iter().map(|&k| body.layer(k)).collect();
                 (body, layers)
             })
             .collect();
-        let compliances: Vec<_> = (0..wavenumbers.len())
+        let compliances: Vec<_> = (0..coarse.len())
             .map(|i| {
                 let of = |body: usize| &bodies[body.min(bodies.len() - 1)].1[i].compliance;
                 of(0) * block.share + of(1) * roller.share

@@ -7,7 +7,7 @@
 //! ([`crate::kernels::strip`]): what is left fades with k, so the pressure's steep edge across the
 //! contact costs no wavenumbers.
 
-use crate::base::{Panels, StressTensor};
+use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::stencil::{LineLoads, Stencil};
 use crate::body::{Body, EdgeModel, Layer};
 use crate::contact::ContactSolution;
@@ -15,6 +15,7 @@ use crate::kernels::strip;
 use crate::kernels::wave::{surface_spread, surface_spread_shear};
 use nalgebra::DVector;
 use std::f64::consts::PI;
+use std::sync::{Arc, Mutex};
 
 /// The contact pressure as a function of place.
 #[derive(Debug, Clone)]
@@ -73,13 +74,19 @@ impl Pressure {
         self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
     }
 
-    /// Fourier transform over x at every node.
-    pub fn transform(&self, k: f64) -> DVector<f64> {
+    /// Fourier transform over x at every node, into `out`.
+    fn transform(&self, k: f64, out: &mut [f64]) {
         let mut modes = vec![0.0; self.coefficients[0].len()];
-        DVector::from_fn(self.axis.len(), |j, _| {
-            strip::transforms(self.half_widths[j], k, &mut modes);
-            modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum()
-        })
+        for ((into, a), c) in out.iter_mut().zip(&self.half_widths).zip(&self.coefficients) {
+            strip::transforms(*a, k, &mut modes);
+            *into = modes.iter().zip(c).map(|(t, c)| t * c).sum();
+        }
+    }
+
+    /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
+    fn neighbours(&self, y: f64) -> Option<(usize, Vec<f64>)> {
+        let inside = y <= self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12);
+        inside.then(|| self.axis.interpolation(y))
     }
 }
 
@@ -87,8 +94,11 @@ impl Pressure {
 #[derive(Debug, Clone)]
 struct Loads {
     k: f64,
-    /// Quadrature weight of the wavenumber, over pi.
+    /// Factor of what they cause: the quadrature weight of the wavenumber, if the loads lack it,
+    /// over pi.
     weight: f64,
+    /// Contact pressure at the contact's nodes.
+    contact: Vec<f64>,
     /// P at the surface's nodes, and its charges.
     surface: Vec<f64>,
     surface_charges: Vec<f64>,
@@ -101,6 +111,47 @@ struct Loads {
     plate: Vec<f64>,
 }
 
+impl Loads {
+    /// The loads that go with the transform `contact` of the contact pressure, by the layers and
+    /// their weights.
+    fn new(
+        body: &Body,
+        k: f64,
+        weight: f64,
+        contact: Vec<f64>,
+        layers: &[Layer],
+        shares: &[f64],
+    ) -> Self {
+        let p = DVector::from_column_slice(&contact);
+        let (mut surface, mut face) = (Vec::new(), Vec::new());
+        let add = |sum: &mut Vec<f64>, part: &DVector<f64>, share: f64| {
+            sum.resize(sum.len().max(part.len()), 0.0);
+            sum.iter_mut().zip(part.iter()).for_each(|(s, p)| *s += share * p);
+        };
+        for (layer, &share) in layers.iter().zip(shares).filter(|(_, share)| **share != 0.0) {
+            match &layer.surface {
+                Some(matrix) => add(&mut surface, &(matrix * &p), share),
+                None => add(&mut surface, &p, share),
+            }
+            if let Some(matrix) = &layer.face {
+                add(&mut face, &(matrix * &p), share);
+            }
+        }
+        let total: f64 = surface.iter().zip(body.surface.axis.weights()).map(|(p, w)| p * w).sum();
+        Self {
+            k,
+            weight: weight / PI,
+            mean: total / body.half,
+            plate: body.plate_transform(k, &face),
+            surface_charges: body.surface.charges(&surface),
+            face_charges: body.face.charges(&face),
+            contact,
+            surface,
+            face,
+        }
+    }
+}
+
 /// Depth (C) from which [`Field::down`] interpolates, on panels that double.
 const SMOOTH_DEPTH: f64 = 0.15;
 
@@ -108,19 +159,26 @@ const SMOOTH_DEPTH: f64 = 0.15;
 const ON_SURFACE: f64 = 1e-9;
 
 /// The stress field of one body.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Field<'a> {
     body: &'a Body,
     pressure: &'a Pressure,
-    loads: Vec<Loads>,
+    wavenumbers: &'a Wavenumbers,
+    layers: &'a [Layer],
+    /// What acts on the plane x = 0, where every wave is at its crest: one item for each coarse
+    /// wavenumber, with the quadrature over the fine ones in its loads.
+    central: Vec<Loads>,
+    /// What acts elsewhere, one item for each fine wavenumber, made when it is asked for: with the
+    /// exponent of two of the distance from that plane up to which it serves.
+    all: Mutex<Vec<(i32, Arc<Vec<Loads>>)>>,
     /// Stress transition factor of [`EdgeModel::Guilbault`].
     gamma: f64,
     /// A wavenumber's share of a stress that is as good as none (p0).
     negligible: f64,
 }
 
-/// After so many negligible wavenumbers in a row, more than a period of the oscillation that the
-/// contact's width gives the amplitudes, the rest is left out.
+/// After so many negligible fine wavenumbers in a row, more than a period of the oscillation that the
+/// contact's width gives the amplitudes, the rest is left out; of the coarse ones, after a panel.
 const FADED: usize = 8;
 
 /// Amplitudes of xx, yy, zz, xy, xz, yz.
@@ -131,37 +189,51 @@ impl<'a> Field<'a> {
     /// left out that change no stress by more than about a tenth of `tolerance` (p0).
     pub fn new(
         body: &'a Body,
-        wavenumbers: &Panels,
-        layers: &[Layer],
+        wavenumbers: &'a Wavenumbers,
+        layers: &'a [Layer],
         pressure: &'a Pressure,
         gamma: f64,
         tolerance: f64,
     ) -> Self {
-        let loads = wavenumbers
+        let (fine, n) = (wavenumbers.fine(), pressure.axis().len());
+        let mut transforms = vec![0.0; n * fine.len()];
+        for (&k, out) in fine.nodes().iter().zip(transforms.chunks_exact_mut(n)) {
+            pressure.transform(k, out);
+        }
+        let moments = wavenumbers.moments(&transforms, n);
+        let central = wavenumbers
+            .coarse()
             .nodes()
             .iter()
-            .zip(wavenumbers.weights())
+            .zip(moments.chunks_exact(n))
             .zip(layers)
-            .map(|((&k, w), layer)| {
-                let p = pressure.transform(k);
-                let times = |m: &nalgebra::DMatrix<f64>| -> Vec<f64> { (m * &p).data.into() };
-                let surface = layer.surface.as_ref().map_or_else(|| p.as_slice().to_vec(), times);
-                let face = layer.face.as_ref().map(times).unwrap_or_default();
-                let total: f64 =
-                    surface.iter().zip(body.surface.axis.weights()).map(|(p, w)| p * w).sum();
-                Loads {
-                    k,
-                    weight: w / PI,
-                    mean: total / body.half,
-                    plate: body.plate_transform(k, &face),
-                    surface_charges: body.surface.charges(&surface),
-                    face_charges: body.face.charges(&face),
-                    surface,
-                    face,
-                }
+            .map(|((&k, p), layer)| {
+                Loads::new(body, k, 1.0, p.to_vec(), std::slice::from_ref(layer), &[1.0])
             })
             .collect();
-        Self { body, pressure, loads, gamma, negligible: 0.005 * tolerance }
+        let negligible = 0.005 * tolerance;
+        let all = Mutex::default();
+        Self { body, pressure, wavenumbers, layers, central, all, gamma, negligible }
+    }
+
+    /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
+    fn all(&self, farthest: f64) -> Arc<Vec<Loads>> {
+        let level = farthest.max(1.0).log2().ceil() as i32;
+        let mut made = self.all.lock().unwrap_or_else(|e| e.into_inner());
+        if let Some((_, loads)) = made.iter().find(|(l, _)| *l == level) {
+            return loads.clone();
+        }
+        let numbers = self.wavenumbers.resolving(2f64.powi(level));
+        let terms = numbers.fine().nodes().iter().zip(numbers.fine().weights()).enumerate();
+        let loads = terms.map(|(node, (&k, &weight))| {
+            let (first, shares) = numbers.interpolation(node);
+            let mut p = vec![0.0; self.pressure.axis().len()];
+            self.pressure.transform(k, &mut p);
+            Loads::new(self.body, k, weight, p, &self.layers[first..], shares)
+        });
+        let loads = Arc::new(loads.collect::<Vec<_>>());
+        made.push((level, loads.clone()));
+        loads
     }
 
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
@@ -213,8 +285,9 @@ impl<'a> Field<'a> {
     /// The stress whose part beyond the endless contact of the local pressure is `remainder`.
     fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
-        if let Some((a, c)) = self.pressure.modes(y) {
-            let [xx, zz, xz] = strip::stress(a, &c, x, z);
+        for (j, weight) in self.pressure.neighbours(y.abs()).into_iter().flat_map(numbered) {
+            let (a, c) = self.pressure.at_node(j);
+            let [xx, zz, xz] = strip::stress(a, c, x, z).map(|s| weight * s);
             s.xx += xx;
             s.zz += zz;
             s.xz += xz;
@@ -245,39 +318,44 @@ impl<'a> Field<'a> {
             let end = Stencil::new(&body.surface, &body.stress_images, body.half, z);
             (end, [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma)))
         });
-        let local = self.pressure.modes(y);
-        let mut local_modes = vec![0.0; local.as_ref().map_or(0, |l| l.1.len())];
+        let local: Vec<(usize, f64)> =
+            self.pressure.neighbours(y).into_iter().flat_map(numbered).collect();
+        let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        let central = farthest == 0.0;
+        let all = if central { Arc::default() } else { self.all(farthest) };
+        let (items, faded) = if central {
+            (&self.central[..], self.wavenumbers.coarse().order())
+        } else {
+            (&all[..], FADED * all.len() / self.wavenumbers.fine().len())
+        };
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
         let mut scratch = LineLoads::default();
-        for loads in &self.loads {
+        for loads in items {
             let k = loads.k;
-            if fading >= FADED {
+            if fading >= faded {
                 break;
             }
-            let mut amplitudes = self.surface_part(&surface, loads, y, z, &mut scratch);
+            let mut amplitudes = self.surface_part(&surface, loads, y, z, central, &mut scratch);
             if let Some((end, shares)) = &correction {
-                let on_end = self.surface_part(end, loads, body.half, z, &mut scratch)[1];
+                let on_end = self.surface_part(end, loads, body.half, z, true, &mut scratch)[1];
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
                 let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    let face = self.face_part(stencil, loads, z, depth, into, &mut scratch);
+                    let face = self.face_part(stencil, loads, z, depth, into, central, &mut scratch);
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                 }
                 let plate = body.plate_stress(k, &loads.plate, y, z);
                 amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
             }
-            if let Some((a, c)) = &local {
-                strip::transforms(*a, k, &mut local_modes);
-                let p: f64 = local_modes.iter().zip(c).map(|(t, c)| t * c).sum();
-                let e = (-k * z).exp() * p;
-                amplitudes[0] += (1.0 - k * z) * e;
-                amplitudes[1] += 2.0 * body.nu * e;
-                amplitudes[2] += (1.0 + k * z) * e;
-                amplitudes[4] += k * z * e;
-            }
+            let p: f64 = local.iter().map(|(j, w)| w * loads.contact[*j]).sum();
+            let e = (-k * z).exp() * p;
+            amplitudes[0] += (1.0 - k * z) * e;
+            amplitudes[1] += 2.0 * body.nu * e;
+            amplitudes[2] += (1.0 + k * z) * e;
+            amplitudes[4] += k * z * e;
             let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
             // Only once oscillations across the contact are resolved does a small amplitude last.
             let small = k > 1.0 && loads.weight * largest < self.negligible;
@@ -299,6 +377,7 @@ impl<'a> Field<'a> {
         loads: &Loads,
         y: f64,
         z: f64,
+        central: bool,
         scratch: &mut LineLoads,
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
@@ -313,7 +392,19 @@ impl<'a> Field<'a> {
             let p = value_at(&body.surface.axis, &loads.surface, y);
             return surface_limit(body.nu, k, p, scratch);
         }
-        body.kernel.sum(k, z, &scratch.offsets, &scratch.loads)
+        let [xx, yy, zz, yz, xy, xz] = self.line_loads(k, z, central, scratch);
+        [xx, yy, zz, xy, xz, yz]
+    }
+
+    /// Amplitudes xx, ww, dd, wd, xw, xd of line loads at a depth > 0; on the plane x = 0 the shears
+    /// xw and xd are none.
+    fn line_loads(&self, k: f64, depth: f64, central: bool, loads: &LineLoads) -> Amplitudes {
+        let kernel = &self.body.kernel;
+        if central {
+            let [xx, ww, dd, wd] = kernel.sum_even(k, depth, &loads.offsets, &loads.loads);
+            return [xx, ww, dd, wd, 0.0, 0.0];
+        }
+        kernel.sum(k, depth, &loads.offsets, &loads.loads)
     }
 
     /// Amplitudes from q on one end face, `depth` from it, at the depth `z` in the body; `into` is
@@ -325,6 +416,7 @@ impl<'a> Field<'a> {
         z: f64,
         depth: f64,
         into: f64,
+        central: bool,
         scratch: &mut LineLoads,
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
@@ -334,14 +426,20 @@ impl<'a> Field<'a> {
         }
         scratch.clear();
         stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
-        let [xx, ww, dd, xw, xd, wd] = if depth == 0.0 {
+        let [xx, ww, dd, wd, xw, xd] = if depth == 0.0 {
             let q = value_at(&body.face.axis, &loads.face, z);
-            surface_limit(body.nu, k, q, scratch)
+            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, scratch);
+            [xx, ww, dd, wd, xw, xd]
         } else {
-            body.kernel.sum(k, depth, &scratch.offsets, &scratch.loads)
+            self.line_loads(k, depth, central, scratch)
         };
         [xx, dd, ww, into * xd, xw, into * wd]
     }
+}
+
+/// A run of numbers from the first on, each with its weight.
+fn numbered((first, weights): (usize, Vec<f64>)) -> impl Iterator<Item = (usize, f64)> {
+    (first..).zip(weights)
 }
 
 /// Value at `at` of a function given at the first nodes of `axis`; zero beyond them.
