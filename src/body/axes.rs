@@ -97,9 +97,9 @@ impl Resolution {
         }
     }
 
-    /// Distance from the line's end within which the largest wavenumber does not see a half-width.
-    pub fn end_zone(&self) -> f64 {
-        2.0 / self.k_max
+    /// Smallest distance of nodes that the largest wavenumber tells apart.
+    pub fn spacing(&self) -> f64 {
+        std::env::var("SPACING").map(|v| v.parse::<f64>().unwrap()).unwrap_or(1.0) / self.k_max
     }
 
     /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).

@@ -1,15 +1,17 @@
-use crate::base::{Error, Panels, Result};
+use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::kernels::strip;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
+use std::ops::Range;
+static EXTRA: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("EXTRA").map(|v| v.parse().unwrap()).unwrap_or(1.0));
 
 /// The compliance of both bodies together, one matrix per wavenumber.
 #[derive(Debug, Clone)]
 pub struct Compliance<'a> {
-    /// Wavenumbers > 0, ascending, and the weights of their quadrature over (0, infinity).
-    pub wavenumbers: &'a Panels,
-    /// C(k): displacement at the axis's nodes per pressure at the nodes; it tends to 2 pi / k
-    /// times the identity for large k.
+    /// Wavenumbers > 0 and their quadrature over (0, infinity).
+    pub wavenumbers: &'a Wavenumbers,
+    /// C(k) at the coarse wavenumbers: displacement at the axis's nodes per pressure at the nodes; it
+    /// tends to 2 pi / k times the identity for large k.
     pub matrices: &'a [DMatrix<f64>],
 }
 
@@ -18,8 +20,9 @@ pub struct Compliance<'a> {
 pub struct ContactSettings {
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// Distance from the line's end within which the half-width is not an unknown of its own.
-    pub end_zone: f64,
+    /// Smallest distance along the line, of each other and from its end, of nodes whose half-width is
+    /// an unknown of its own.
+    pub spacing: f64,
     /// Largest amplitude of the pressure's edge singularity that counts as none (p0).
     pub tolerance: f64,
     /// Iterations after which it gives up.
@@ -38,8 +41,8 @@ pub struct ContactSolution {
     pub approach: f64,
     /// Iterations done.
     pub iterations: usize,
-    /// Distance from the line's end within which the half-width was not an unknown of its own.
-    pub end_zone: f64,
+    /// [`ContactSettings::spacing`] with which it converged.
+    pub spacing: f64,
     /// Amplitude of the edge singularity that was left (p0).
     pub residual: f64,
     /// |load - prescribed| / prescribed.
@@ -50,19 +53,20 @@ pub struct ContactSolution {
 /// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
 const SCREEN: f64 = 2.0;
 
-/// Entries of the collocation matrix per wavenumber that are as good as none.
-const NEGLIGIBLE: f64 = 1e-9;
+/// Entries of the collocation matrix per wavenumber that are as good as none, relative to the
+/// tolerance of the singularity.
+const NEGLIGIBLE: f64 = 0.03;
 
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
 const SCREEN_POINTS: usize = 12;
 
 /// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
 ///
-/// For half-widths that are held the problem is linear: at every node the modes and the amplitude
-/// b of the singular mode 1/sqrt(1 - t^2) are found by collocation at M + 1 points, with the
-/// approach from the load. A boundary that lies right leaves b = 0. To first order
-/// b / sqrt(1 - t^2) is what moving the boundary of S sqrt(1 - t^2) to a sqrt(1 + 2 b / S) does, so
-/// the update is Newton's and converges quadratically.
+/// For half-widths that are held the problem is linear: at every node the modes are found by
+/// collocation, with the approach from the load. Nodes whose half-width is an unknown also have the
+/// amplitude b of the singular mode 1/sqrt(1 - t^2); a boundary that lies right leaves b = 0. To
+/// first order b / sqrt(1 - t^2) is what moving the boundary of S sqrt(1 - t^2) to
+/// a sqrt(1 + 2 b / S) does, so the update is Newton's and converges quadratically.
 ///
 /// # Errors
 /// [`Error::NotConverged`] when the boundary does not settle.
@@ -71,22 +75,24 @@ pub fn solve(
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
-    // A pressure that is singular at the end (a half-space's) may want a longer end zone.
+    let remainders = remainders(compliance, axis.len());
+    // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
     let mut settings = *settings;
-    let mut answer = solve_once(compliance, axis, &settings);
+    let mut answer = solve_once(compliance, &remainders, axis, &settings);
     for _ in 0..3 {
         if answer.is_ok() {
             break;
         }
-        settings.end_zone *= 2.0;
-        answer = solve_once(compliance, axis, &settings);
+        settings.spacing *= 2.0;
+        answer = solve_once(compliance, &remainders, axis, &settings);
     }
     answer
 }
 
-/// [`solve`] with the end zone as it is given.
+/// [`solve`] with the spacing as it is given.
 fn solve_once(
     compliance: &Compliance,
+    remainders: &[DMatrix<f64>],
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
@@ -94,44 +100,43 @@ fn solve_once(
     let length: f64 = axis.weights().iter().sum();
     let load = 0.5 * PI * length;
     let mut layout = Layout::new(axis, settings);
-    let remainders = remainders(compliance, n);
     let mut half_widths = vec![1.0; n];
-    // Edge slopes S of the end zone relative to the outermost free node's.
-    let mut zone = vec![1.0; n - layout.free];
+    // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
+    let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
-        let unknowns =
-            linear_solve(compliance, &remainders, axis, &layout, &half_widths, &zone, load)?;
+        let problem = Linear {
+            compliance,
+            remainders,
+            axis,
+            layout: &layout,
+            half_widths: &half_widths,
+            slopes: &slopes,
+            negligible: NEGLIGIBLE * settings.tolerance,
+        };
+        let unknowns = problem.solve(load)?;
+        for (j, slope) in slopes.iter_mut().enumerate() {
+            let own = &unknowns.as_slice()[layout.modes(j)];
+            *slope = own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
+        }
         let mut worst: f64 = 0.0;
-        let mut next = half_widths.clone();
-        let slopes: Vec<f64> = (0..n)
-            .map(|j| {
-                let own = &unknowns.as_slice()[layout.unknowns(j)][..layout.modes[j]];
-                own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum()
+        // Relative changes of the squared half-widths.
+        let moves: Vec<f64> = layout
+            .free
+            .iter()
+            .map(|&j| {
+                let singular = unknowns[layout.singular(j)];
+                worst = worst.max(singular.abs());
+                // A step beyond a factor of two would leave the region where the linearisation holds.
+                let grow =
+                    if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
+                half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
             })
             .collect();
-        for j in 0..layout.free {
-            let singular = unknowns[layout.unknowns(j).end - 1];
-            let slope = slopes[j];
-            worst = worst.max(singular.abs());
-            // A step beyond a factor of two would leave the region where the linearisation holds.
-            let grow = if slope > 0.0 { 1.0 + 2.0 * singular / slope } else { 0.25 };
-            next[j] *= grow.clamp(0.25, 4.0).sqrt();
-        }
-        let outermost = next[layout.free - 1];
-        next[layout.free..].fill(outermost);
-        for (ratio, slope) in zone.iter_mut().zip(&slopes[layout.free..]) {
-            *ratio = (slope / slopes[layout.free - 1]).clamp(0.0, 10.0);
-        }
         last = worst;
         if worst <= settings.tolerance && !layout.release(&unknowns) {
-            let mut coefficients: Vec<Vec<f64>> = (0..n)
-                .map(|j| {
-                    let mut own = unknowns.as_slice()[layout.unknowns(j)].to_vec();
-                    own.truncate(layout.modes[j]);
-                    own
-                })
-                .collect();
+            let mut coefficients: Vec<Vec<f64>> =
+                (0..n).map(|j| unknowns.as_slice()[layout.modes(j)].to_vec()).collect();
             // What the singular modes carry, below the tolerance, goes to the others.
             let carried = |coefficients: &[Vec<f64>]| -> f64 {
                 let line = |j: usize| {
@@ -149,12 +154,14 @@ fn solve_once(
                 coefficients,
                 approach,
                 iterations: iteration,
-                end_zone: settings.end_zone,
+                spacing: settings.spacing,
                 residual: worst,
                 load_error,
             });
         }
-        half_widths = next;
+        for (a, shares) in half_widths.iter_mut().zip(&layout.shares) {
+            *a = shares.iter().map(|(free, share)| share * moves[*free]).sum::<f64>().max(0.05);
+        }
     }
     Err(Error::NotConverged {
         iterations: settings.max_iterations,
@@ -163,27 +170,59 @@ fn solve_once(
     })
 }
 
-/// Which unknowns each node has: the free nodes, which come first, have all modes and the singular
-/// one; the nodes of the end zone have the half-width of the outermost free node and up to two
-/// modes. There wavenumbers beyond the largest one decide the shape, and a half-width of their own
-/// would be noise. A node of the end zone whose pressure would pull loses a mode, its second one
-/// first; with none left it carries no pressure.
+/// Which unknowns each node has. Free nodes have all modes and the singular one, whose amplitude
+/// says how their half-width has to move. Next to the end of the line nodes stand closer than the
+/// shortest wave: half-widths of their own would be noise there, so they follow linearly from those
+/// of the free nodes, at least `spacing` apart. Behind the last free node, and with a wider spacing, the pressure
+/// has two modes at most. A node that is not free and whose pressure would pull loses a mode, its
+/// second one first; with none left it carries no pressure.
 #[derive(Debug, Clone)]
 struct Layout {
-    free: usize,
+    /// The free nodes, ascending.
+    free: Vec<usize>,
+    /// The half-width of each node in those of the free ones: positions in `free`, and shares.
+    shares: Vec<[(usize, f64); 2]>,
+    /// Modes of each node.
+    counts: Vec<usize>,
     all_modes: usize,
-    modes: Vec<usize>,
+    is_free: Vec<bool>,
     starts: Vec<usize>,
 }
 
 impl Layout {
     fn new(axis: &Panels, settings: &ContactSettings) -> Self {
-        let end = axis.breaks()[axis.panel_count()] - settings.end_zone;
-        let free = axis.nodes().iter().filter(|&&y| y <= end).count().max(1);
-        let end_modes = settings.modes.min(2);
-        let modes =
-            (0..axis.len()).map(|j| if j < free { settings.modes } else { end_modes }).collect();
-        let mut layout = Self { free, all_modes: settings.modes, modes, starts: Vec::new() };
+        let n = axis.len();
+        let mut limit = axis.breaks()[axis.panel_count()] - settings.spacing;
+        let mut free = Vec::new();
+        for (j, &y) in axis.nodes().iter().enumerate().rev() {
+            if y <= limit || j == 0 && free.is_empty() {
+                free.push(j);
+                limit = y - settings.spacing;
+            }
+        }
+        free.reverse();
+        let shares = axis
+            .nodes()
+            .iter()
+            .enumerate()
+            .map(|(j, y)| {
+                let after = free.partition_point(|f| *f < j);
+                if after == 0 || after == free.len() && free.len() == 1 {
+                    return [(0, 1.0), (0, 0.0)];
+                }
+                let before = after.min(free.len() - 1) - 1;
+                let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
+                let share = ((y - a) / (b - a)).min(1.0+ *EXTRA);
+                [(before, 1.0 - share), (before + 1, share)]
+            })
+            .collect();
+        let last = *free.last().expect("at least one");
+        let counts =
+            (0..n).map(|j| if j <= last { settings.modes } else { settings.modes.min(2) }).collect();
+        let mut is_free = vec![false; n];
+        free.iter().for_each(|j| is_free[*j] = true);
+        let all_modes = settings.modes;
+        let mut layout = Self { free, shares, counts, all_modes, is_free, starts: Vec::new() };
         layout.number();
         layout
     }
@@ -192,28 +231,49 @@ impl Layout {
     fn number(&mut self) {
         let mut next = 0;
         self.starts.clear();
-        for (j, modes) in self.modes.iter().enumerate() {
+        for (modes, free) in self.counts.iter().zip(&self.is_free) {
             self.starts.push(next);
-            next += modes + usize::from(j < self.free);
+            next += modes + usize::from(*free);
         }
         self.starts.push(next);
     }
 
-    /// Unknowns and collocation equations of node `j`: its modes, then the singular one.
-    fn unknowns(&self, j: usize) -> std::ops::Range<usize> {
+    /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is free.
+    fn unknowns(&self, j: usize) -> Range<usize> {
         self.starts[j]..self.starts[j + 1]
+    }
+
+    /// The modes of node `j`.
+    fn modes(&self, j: usize) -> Range<usize> {
+        self.starts[j]..self.starts[j] + self.counts[j]
+    }
+
+    /// The singular mode of the free node `j`.
+    fn singular(&self, j: usize) -> usize {
+        self.starts[j + 1] - 1
     }
 
     /// Unknowns in all, the approach included.
     fn size(&self) -> usize {
-        self.starts[self.modes.len()] + 1
+        self.starts[self.counts.len()] + 1
+    }
+
+    /// The amplitude of node `j`'s singular mode in those of the free nodes: columns and factors.
+    /// Moving the boundary by a part moves amplitudes in proportion to the edge slopes.
+    fn singular_parts(&self, j: usize, slopes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+        let own = slopes[j];
+        self.shares[j].map(|(position, share)| {
+            let free = self.free[position];
+            let ratio = if free == j { 1.0 } else { (own / slopes[free]).clamp(0.0, 10.0) };
+            (self.singular(free), share * ratio)
+        }).into_iter().filter(|(_, factor)| *factor != 0.0)
     }
 
     /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode, else
     /// those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
     fn points(&self, j: usize) -> impl Iterator<Item = f64> {
         let count = self.unknowns(j).len();
-        let free = j < self.free;
+        let free = self.is_free[j];
         (0..count).map(move |l| {
             let angle = if free {
                 PI * (2 * l + 1) as f64 / (4 * count) as f64
@@ -224,20 +284,21 @@ impl Layout {
         })
     }
 
-    /// Takes modes from the nodes of the end zone whose pressure is negative somewhere across the
+    /// Takes modes from the nodes that are not free and whose pressure is negative somewhere across the
     /// contact: the second one where the shape is to blame, all where the mean is; whether there
     /// was one.
     fn release(&mut self, unknowns: &DVector<f64>) -> bool {
         let mut released = false;
-        for j in self.free..self.modes.len() {
-            let c = &unknowns.as_slice()[self.unknowns(j)];
+        let last = *self.free.last().expect("at least one");
+        for j in last + 1..self.counts.len() {
+            let c = &unknowns.as_slice()[self.modes(j)];
             // c_0 + c_1 (4 t^2 - 1) is monotonic in t^2: its ends decide.
             let left = match c {
                 [c0, ..] if *c0 < 0.0 => 0,
                 [c0, c1] if c0 - c1 < 0.0 || c0 + 3.0 * c1 < 0.0 => 1,
                 _ => continue,
             };
-            self.modes[j] = left;
+            self.counts[j] = left;
             released = true;
         }
         self.number();
@@ -245,110 +306,137 @@ impl Layout {
     }
 }
 
-/// C(k) less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the diagonal.
+/// C(k) less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the diagonal, interpolated to
+/// the fine wavenumbers.
 fn remainders(compliance: &Compliance, n: usize) -> Vec<DMatrix<f64>> {
-    let ks = compliance.wavenumbers.nodes();
-    ks.iter()
+    let numbers = compliance.wavenumbers;
+    let coarse: Vec<_> = numbers
+        .coarse()
+        .nodes()
+        .iter()
         .zip(compliance.matrices)
         .map(|(&k, c)| c - DMatrix::identity(n, n) * (-2.0 * PI / k * (-k * SCREEN).exp_m1()))
-        .collect()
+        .collect();
+    let interpolated = |fine: usize| {
+        let (first, weights) = numbers.interpolation(fine);
+        let mut sum = DMatrix::zeros(n, n);
+        for (weight, matrix) in weights.iter().zip(&coarse[first..]) {
+            if *weight != 0.0 {
+                sum.zip_apply(matrix, |s, m| *s += weight * m);
+            }
+        }
+        sum
+    };
+    (0..numbers.fine().len()).map(interpolated).collect()
 }
 
 /// The linear problem for held half-widths: the unknowns of each node, then the approach.
-fn linear_solve(
-    compliance: &Compliance,
-    remainders: &[DMatrix<f64>],
-    axis: &Panels,
-    layout: &Layout,
-    half_widths: &[f64],
-    zone: &[f64],
-    load: f64,
-) -> Result<DVector<f64>> {
-    let n = axis.len();
-    // The end zone moves with the outermost free node: so does its singular mode.
-    let shared = layout.unknowns(layout.free - 1).end - 1;
-    let singular_column = |j: usize, own: &std::ops::Range<usize>| {
-        if j < layout.free { own.end - 1 } else { shared }
-    };
-    let size = layout.size();
-    let mut matrix = DMatrix::zeros(size, size);
-    let mut right = DVector::zeros(size);
-    let mut transform = vec![0.0; size - 1];
-    let mut singular_transform = vec![0.0; n];
-    let mut cosine = vec![0.0; size - 1];
-    let wavenumbers = compliance.wavenumbers;
-    for ((&k, w), remainder) in
-        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(remainders)
-    {
-        for (j, &a) in half_widths.iter().enumerate() {
-            let modes = layout.modes[j];
-            let own = &mut transform[layout.unknowns(j)];
-            singular_transform[j] = strip::transforms(a, k, &mut own[..modes]);
-            for (c, t) in cosine[layout.unknowns(j)].iter_mut().zip(layout.points(j)) {
-                *c = (k * a * t).cos();
+struct Linear<'a> {
+    compliance: &'a Compliance<'a>,
+    remainders: &'a [DMatrix<f64>],
+    axis: &'a Panels,
+    layout: &'a Layout,
+    half_widths: &'a [f64],
+    slopes: &'a [f64],
+    negligible: f64,
+}
+
+impl Linear<'_> {
+    fn solve(&self, load: f64) -> Result<DVector<f64>> {
+        let size = self.layout.size();
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut right = DVector::zeros(size);
+        self.add_waves(&mut matrix);
+        self.add_local(&mut matrix, &mut right);
+        right[size - 1] = load;
+        matrix.lu().solve(&right).ok_or_else(|| Error::NotConverged {
+            iterations: 0,
+            residual: f64::INFINITY,
+            remedy: "the collocation matrix is singular: check the case's lengths".into(),
+        })
+    }
+
+    /// Adds what the remainders of the compliance displace.
+    fn add_waves(&self, matrix: &mut DMatrix<f64>) {
+        let (layout, n) = (self.layout, self.axis.len());
+        let mut transform = vec![0.0; layout.size() - 1];
+        let mut singular_transform = vec![0.0; n];
+        let mut cosine = vec![0.0; layout.size() - 1];
+        let points: Vec<f64> = (0..n).flat_map(|j| layout.points(j)).collect();
+        let wavenumbers = self.compliance.wavenumbers.fine();
+        let terms = wavenumbers.nodes().iter().zip(wavenumbers.weights());
+        for ((&k, w), remainder) in terms.zip(self.remainders) {
+            for (j, &a) in self.half_widths.iter().enumerate() {
+                singular_transform[j] = strip::transforms(a, k, &mut transform[layout.modes(j)]);
+                let own = layout.unknowns(j);
+                for (c, t) in cosine[own.clone()].iter_mut().zip(&points[own]) {
+                    *c = (k * a * t).cos();
+                }
             }
-        }
-        for j in 0..n {
-            let own = layout.unknowns(j);
-            let modes = own.start..own.start + layout.modes[j];
-            let ratio = if j < layout.free { 1.0 } else { zone[j - layout.free] };
-            let singular = (singular_column(j, &own), ratio * singular_transform[j]);
-            for (m, transform) in modes.map(|m| (m, transform[m])).chain([singular]) {
-                let factor = w / (PI * PI) * transform;
-                let column = &mut matrix.column_mut(m);
-                let column = column.as_mut_slice();
-                for (i, r) in remainder.column(j).iter().enumerate() {
-                    let r = factor * r;
-                    if r.abs() < NEGLIGIBLE {
-                        continue;
-                    }
-                    let rows = layout.unknowns(i);
-                    for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
-                        *entry += r * c;
+            for j in 0..n {
+                let singular = layout
+                    .singular_parts(j, self.slopes)
+                    .map(|(column, factor)| (column, factor * singular_transform[j]));
+                for (m, transform) in layout.modes(j).map(|m| (m, transform[m])).chain(singular) {
+                    let factor = w / (PI * PI) * transform;
+                    let column = &mut matrix.column_mut(m);
+                    let column = column.as_mut_slice();
+                    for (i, r) in remainder.column(j).iter().enumerate() {
+                        let r = factor * r;
+                        if r.abs() < self.negligible {
+                            continue;
+                        }
+                        let rows = layout.unknowns(i);
+                        for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
+                            *entry += r * c;
+                        }
                     }
                 }
             }
         }
     }
-    let mut local = vec![0.0; layout.all_modes];
-    for (i, &a) in half_widths.iter().enumerate() {
-        let modes = layout.modes[i];
-        let own = layout.unknowns(i);
-        let ratio = if i < layout.free { 1.0 } else { zone[i - layout.free] };
-        let singular_column = singular_column(i, &own);
-        for (row, t) in own.clone().zip(layout.points(i)) {
-            let singular = strip::logarithmic(a, t, &mut local[..modes]);
-            for (m, value) in local[..modes].iter().enumerate() {
-                matrix[(row, own.start + m)] += 2.0 / PI * value;
-            }
-            matrix[(row, singular_column)] += 2.0 / PI * ratio * singular;
-            // (1/2) int ln((x - x')^2 + d^2) p(x') dx' by Gauss-Chebyshev of the first kind, with
-            // sqrt(1-t^2) U_2m = sin((2m+1) f).
-            for q in 0..SCREEN_POINTS {
-                let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
-                let offset = a * (t - angle.cos());
-                let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
-                let weight = 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64;
-                for m in 0..modes {
-                    let mode = ((2 * m + 1) as f64 * angle).sin() * angle.sin();
-                    matrix[(row, own.start + m)] += weight * mode;
+
+    /// Adds the plane, screened part, the approach, the gap and the load's equation.
+    fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DVector<f64>) {
+        let (layout, last) = (self.layout, self.layout.size() - 1);
+        let mut local = vec![0.0; layout.all_modes];
+        for (i, &a) in self.half_widths.iter().enumerate() {
+            let modes = layout.modes(i);
+            let singular: Vec<(usize, f64)> = layout.singular_parts(i, self.slopes).collect();
+            for (row, t) in layout.unknowns(i).zip(layout.points(i)) {
+                let amplitude = strip::logarithmic(a, t, &mut local[..modes.len()]);
+                for (m, value) in modes.clone().zip(&local) {
+                    matrix[(row, m)] += 2.0 / PI * value;
                 }
-                matrix[(row, singular_column)] += weight * ratio;
+                for (column, factor) in &singular {
+                    matrix[(row, *column)] += 2.0 / PI * factor * amplitude;
+                }
+                // (1/2) int ln((x - x')^2 + d^2) p(x') dx' by Gauss-Chebyshev of the first kind, with
+                // sqrt(1-t^2) U_2m = sin((2m+1) f).
+                for q in 0..SCREEN_POINTS {
+                    let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
+                    let offset = a * (t - angle.cos());
+                    let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
+                    let weight = 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64;
+                    for (m, column) in modes.clone().enumerate() {
+                        let mode = ((2 * m + 1) as f64 * angle).sin() * angle.sin();
+                        matrix[(row, column)] += weight * mode;
+                    }
+                    for (column, factor) in &singular {
+                        matrix[(row, *column)] += weight * factor;
+                    }
+                }
+                matrix[(row, last)] = -1.0;
+                right[row] = -(a * t).powi(2);
             }
-            matrix[(row, size - 1)] = -1.0;
-            right[row] = -(a * t).powi(2);
+            if let Some(first) = modes.clone().next() {
+                matrix[(last, first)] = self.axis.weights()[i] * a * 0.5 * PI;
+            }
+            for (column, factor) in &singular {
+                matrix[(last, *column)] += self.axis.weights()[i] * a * PI * factor;
+            }
         }
-        if modes > 0 {
-            matrix[(size - 1, own.start)] = axis.weights()[i] * a * 0.5 * PI;
-        }
-        matrix[(size - 1, singular_column)] += axis.weights()[i] * a * PI * ratio;
     }
-    right[size - 1] = load;
-    matrix.lu().solve(&right).ok_or_else(|| Error::NotConverged {
-        iterations: 0,
-        residual: f64::INFINITY,
-        remedy: "the collocation matrix is singular: check the case's lengths".into(),
-    })
 }
 
 /// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
@@ -356,22 +444,30 @@ fn linear_solve(
 /// drops out of the difference.
 pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
     let mut modes = Vec::new();
-    let mut sum = 0.0;
-    let wavenumbers = compliance.wavenumbers;
-    for ((&k, w), c) in
-        wavenumbers.nodes().iter().zip(wavenumbers.weights()).zip(compliance.matrices)
-    {
-        let fade = (-k * depth).exp();
-        if fade < 1e-12 {
-            break;
-        }
-        let p = DVector::from_fn(solution.half_widths.len(), |j, _| {
-            let coefficients = &solution.coefficients[j];
-            modes.resize(coefficients.len(), 0.0);
-            strip::transforms(solution.half_widths[j], k, &mut modes);
-            modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
-        });
-        sum += w / (PI * PI) * fade * (c * p).mean();
-    }
-    sum
+    let numbers = compliance.wavenumbers.coarse().nodes();
+    let means: Vec<f64> = numbers
+        .iter()
+        .zip(compliance.matrices)
+        .map(|(&k, c)| {
+            let p = DVector::from_fn(solution.half_widths.len(), |j, _| {
+                let coefficients = &solution.coefficients[j];
+                modes.resize(coefficients.len(), 0.0);
+                strip::transforms(solution.half_widths[j], k, &mut modes);
+                modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
+            });
+            (c * p).mean()
+        })
+        .collect();
+    // A finite line load's displacement is linear in ln k for small k; so it is interpolated, on
+    // wavenumbers about 1/depth, wherever those of the contact lie.
+    let mean = |k: f64| {
+        let right = numbers.partition_point(|n| *n < k).clamp(1, numbers.len() - 1);
+        let (low, high) = (numbers[right - 1].ln(), numbers[right].ln());
+        let share = (k.ln() - low) / (high - low);
+        means[right - 1] + share * (means[right] - means[right - 1])
+    };
+    let breaks = (-16..=4).map(|i| if i == -16 { 0.0 } else { 3f64.powi(i) / depth }).collect();
+    let own = Panels::new(breaks, 4);
+    let terms = own.nodes().iter().zip(own.weights());
+    terms.map(|(&k, w)| w / (PI * PI) * (-k * depth).exp() * mean(k)).sum()
 }
