@@ -63,10 +63,10 @@ impl Resolution {
             }
         } else {
             Self {
-                order: 4,
+                order: 5,
                 corner: 0.015,
                 ratio: 2.5,
-                modes: 3,
+                modes: 5,
                 k_max: 50.0,
                 k_order: 4,
                 k_step: 4.0,
@@ -97,9 +97,10 @@ impl Resolution {
         }
     }
 
-    /// Smallest distance of nodes that the largest wavenumber tells apart.
+    /// Smallest distance of half-widths that are unknowns of their own: nearer to each other, or to
+    /// the end, the largest wavenumber does not tell them apart.
     pub fn spacing(&self) -> f64 {
-        std::env::var("SPACING").map(|v| v.parse::<f64>().unwrap()).unwrap_or(1.0) / self.k_max
+        3.0 / self.k_max
     }
 
     /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).

@@ -3,7 +3,6 @@ use crate::kernels::strip;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use std::ops::Range;
-static EXTRA: std::sync::LazyLock<f64> = std::sync::LazyLock::new(|| std::env::var("EXTRA").map(|v| v.parse().unwrap()).unwrap_or(1.0));
 
 /// The compliance of both bodies together, one matrix per wavenumber.
 #[derive(Debug, Clone)]
@@ -56,6 +55,9 @@ const SCREEN: f64 = 2.0;
 /// Entries of the collocation matrix per wavenumber that are as good as none, relative to the
 /// tolerance of the singularity.
 const NEGLIGIBLE: f64 = 0.03;
+
+/// Points across the contact at which a pressure's sign is looked at.
+const SHAPE_POINTS: i32 = 8;
 
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
 const SCREEN_POINTS: usize = 12;
@@ -173,9 +175,8 @@ fn solve_once(
 /// Which unknowns each node has. Free nodes have all modes and the singular one, whose amplitude
 /// says how their half-width has to move. Next to the end of the line nodes stand closer than the
 /// shortest wave: half-widths of their own would be noise there, so they follow linearly from those
-/// of the free nodes, at least `spacing` apart. Behind the last free node, and with a wider spacing, the pressure
-/// has two modes at most. A node that is not free and whose pressure would pull loses a mode, its
-/// second one first; with none left it carries no pressure.
+/// of the free nodes, at least `spacing` apart. A node behind the last free one whose pressure would
+/// pull loses modes, the higher ones first; with none left it carries no pressure.
 #[derive(Debug, Clone)]
 struct Layout {
     /// The free nodes, ascending.
@@ -212,13 +213,11 @@ impl Layout {
                 }
                 let before = after.min(free.len() - 1) - 1;
                 let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
-                let share = ((y - a) / (b - a)).min(1.0+ *EXTRA);
+                let share = ((y - a) / (b - a));
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let last = *free.last().expect("at least one");
-        let counts =
-            (0..n).map(|j| if j <= last { settings.modes } else { settings.modes.min(2) }).collect();
+        let counts = vec![settings.modes; n];
         let mut is_free = vec![false; n];
         free.iter().for_each(|j| is_free[*j] = true);
         let all_modes = settings.modes;
@@ -285,18 +284,26 @@ impl Layout {
     }
 
     /// Takes modes from the nodes that are not free and whose pressure is negative somewhere across the
-    /// contact: the second one where the shape is to blame, all where the mean is; whether there
-    /// was one.
+    /// contact: the higher ones where the shape is to blame, all where the mean is; whether there was
+    /// one.
     fn release(&mut self, unknowns: &DVector<f64>) -> bool {
         let mut released = false;
         let last = *self.free.last().expect("at least one");
         for j in last + 1..self.counts.len() {
             let c = &unknowns.as_slice()[self.modes(j)];
-            // c_0 + c_1 (4 t^2 - 1) is monotonic in t^2: its ends decide.
-            let left = match c {
-                [c0, ..] if *c0 < 0.0 => 0,
-                [c0, c1] if c0 - c1 < 0.0 || c0 + 3.0 * c1 < 0.0 => 1,
-                _ => continue,
+            let pulls = |modes: &[f64]| {
+                (0..=SHAPE_POINTS).any(|i| {
+                    // Just inside the edge the sign is that of the slope.
+                    let t = 0.999 * f64::from(i) / f64::from(SHAPE_POINTS);
+                    strip::pressure(1.0, modes, t) < 0.0
+                })
+            };
+            let left = match c.len() {
+                0 => continue,
+                _ if c[0] < 0.0 => 0,
+                _ if !pulls(c) => continue,
+                1 | 2 => 1,
+                _ => 2,
             };
             self.counts[j] = left;
             released = true;
