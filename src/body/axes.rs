@@ -23,6 +23,9 @@ pub struct Resolution {
     pub ratio: f64,
     /// Modes of the pressure across the contact.
     pub modes: usize,
+    /// Smallest distance along the line of half-widths that are unknowns of their own, and of the last
+    /// one from the end.
+    pub spacing: f64,
     /// Largest wavenumber.
     pub k_max: f64,
     /// Gauss nodes per panel of wavenumbers.
@@ -52,6 +55,7 @@ impl Resolution {
                 corner: 0.04,
                 ratio: 2.5,
                 modes: 3,
+                spacing: 0.1,
                 k_max: 20.0,
                 k_order: 3,
                 k_step: 3.0,
@@ -67,7 +71,8 @@ impl Resolution {
                 corner: 0.015,
                 ratio: 2.5,
                 modes: 5,
-                k_max: 50.0,
+                spacing: 0.05,
+                k_max: 130.0,
                 k_order: 4,
                 k_step: 4.0,
                 k_min: 0.01,
@@ -86,6 +91,7 @@ impl Resolution {
             corner: 0.5 * self.corner,
             ratio: self.ratio.sqrt(),
             modes: self.modes + 2,
+            spacing: 0.5 * self.spacing,
             k_max: 2.0 * self.k_max,
             k_order: self.k_order,
             k_step: 0.5 * self.k_step,
@@ -95,12 +101,6 @@ impl Resolution {
             face_reach: 2.0 * self.face_reach,
             reach: (2.0 * self.reach).min(30.0),
         }
-    }
-
-    /// Smallest distance of half-widths that are unknowns of their own: nearer to each other, or to
-    /// the end, the largest wavenumber does not tell them apart.
-    pub fn spacing(&self) -> f64 {
-        3.0 / self.k_max
     }
 
     /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).
@@ -125,7 +125,7 @@ impl Resolution {
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
     /// wants the finest panels, one that is farther away sees fields that vary over its distance.
     fn end_panel(&self, ledge: f64) -> f64 {
-        self.corner.max(ledge / 16.0)
+        if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
     }
 
     /// [`Resolution::contact_axis`] and panels on to a body's end face at `half`, graded towards the

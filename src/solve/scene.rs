@@ -143,7 +143,7 @@ impl SolvedScene {
         let setup = start.elapsed().as_secs_f64();
         let settings = ContactSettings {
             modes: resolution.modes,
-            spacing: resolution.spacing(),
+            spacing: resolution.spacing,
             tolerance: 1e-3 * scene.tolerance,
             max_iterations: 40,
         };
