@@ -54,7 +54,7 @@ const SCREEN: f64 = 2.0;
 
 /// Entries of the collocation matrix per wavenumber that are as good as none, relative to the
 /// tolerance of the singularity.
-const NEGLIGIBLE: f64 = 0.03;
+const NEGLIGIBLE: f64 = 0.1;
 
 /// Points across the contact at which a pressure's sign is looked at.
 const SHAPE_POINTS: i32 = 8;
@@ -77,7 +77,7 @@ pub fn solve(
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
-    let remainders = remainders(compliance, axis.len());
+    let remainders = remainders(compliance, axis.len(), NEGLIGIBLE * settings.tolerance);
     // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
     let mut settings = *settings;
     let mut answer = solve_once(compliance, &remainders, axis, &settings);
@@ -94,7 +94,7 @@ pub fn solve(
 /// [`solve`] with the spacing as it is given.
 fn solve_once(
     compliance: &Compliance,
-    remainders: &[DMatrix<f64>],
+    remainders: &[Remainder],
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
@@ -114,7 +114,6 @@ fn solve_once(
             layout: &layout,
             half_widths: &half_widths,
             slopes: &slopes,
-            negligible: NEGLIGIBLE * settings.tolerance,
         };
         let unknowns = problem.solve(load)?;
         for (j, slope) in slopes.iter_mut().enumerate() {
@@ -313,9 +312,19 @@ impl Layout {
     }
 }
 
-/// C(k) less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the diagonal, interpolated to
-/// the fine wavenumbers.
-fn remainders(compliance: &Compliance, n: usize) -> Vec<DMatrix<f64>> {
+/// C(k) at one fine wavenumber, less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the
+/// diagonal.
+struct Remainder {
+    matrix: DMatrix<f64>,
+    /// Rows of each column that matter: where waves are short, only those near the line's end.
+    rows: Vec<Range<usize>>,
+    /// Rows and columns that matter.
+    nodes: Range<usize>,
+}
+
+/// The remainders at the fine wavenumbers, interpolated from the coarse ones; `negligible` is the
+/// displacement that one entry may leave out.
+fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> Vec<Remainder> {
     let numbers = compliance.wavenumbers;
     let coarse: Vec<_> = numbers
         .coarse()
@@ -324,28 +333,40 @@ fn remainders(compliance: &Compliance, n: usize) -> Vec<DMatrix<f64>> {
         .zip(compliance.matrices)
         .map(|(&k, c)| c - DMatrix::identity(n, n) * (-2.0 * PI / k * (-k * SCREEN).exp_m1()))
         .collect();
-    let interpolated = |fine: usize| {
+    let interpolated = |(fine, (&k, w)): (usize, (&f64, &f64))| {
         let (first, weights) = numbers.interpolation(fine);
-        let mut sum = DMatrix::zeros(n, n);
-        for (weight, matrix) in weights.iter().zip(&coarse[first..]) {
+        let mut matrix = DMatrix::<f64>::zeros(n, n);
+        for (weight, part) in weights.iter().zip(&coarse[first..]) {
             if *weight != 0.0 {
-                sum.zip_apply(matrix, |s, m| *s += weight * m);
+                matrix.zip_apply(part, |s, m| *s += weight * m);
             }
         }
-        sum
+        // The singular mode's transform, pi J0(k), falls least.
+        let limit = negligible * PI / (w * (0.8 / k.sqrt()).min(1.0));
+        let rows: Vec<Range<usize>> = matrix
+            .column_iter()
+            .map(|column| {
+                let mut strong = (0..n).filter(|i| column[*i].abs() > limit);
+                let first = strong.next().unwrap_or(0);
+                first..strong.next_back().map_or(first, |last| last + 1)
+            })
+            .collect();
+        let used = || rows.iter().enumerate().filter(|(_, r)| !r.is_empty());
+        let first = used().map(|(j, r)| j.min(r.start)).min().unwrap_or(0);
+        let last = used().map(|(j, r)| (j + 1).max(r.end)).max().unwrap_or(0);
+        Remainder { matrix, rows, nodes: first..last.max(first) }
     };
-    (0..numbers.fine().len()).map(interpolated).collect()
+    numbers.fine().nodes().iter().zip(numbers.fine().weights()).enumerate().map(interpolated).collect()
 }
 
 /// The linear problem for held half-widths: the unknowns of each node, then the approach.
 struct Linear<'a> {
     compliance: &'a Compliance<'a>,
-    remainders: &'a [DMatrix<f64>],
+    remainders: &'a [Remainder],
     axis: &'a Panels,
     layout: &'a Layout,
     half_widths: &'a [f64],
     slopes: &'a [f64],
-    negligible: f64,
 }
 
 impl Linear<'_> {
@@ -373,26 +394,26 @@ impl Linear<'_> {
         let wavenumbers = self.compliance.wavenumbers.fine();
         let terms = wavenumbers.nodes().iter().zip(wavenumbers.weights());
         for ((&k, w), remainder) in terms.zip(self.remainders) {
-            for (j, &a) in self.half_widths.iter().enumerate() {
+            for j in remainder.nodes.clone() {
+                let a = self.half_widths[j];
                 singular_transform[j] = strip::transforms(a, k, &mut transform[layout.modes(j)]);
                 let own = layout.unknowns(j);
                 for (c, t) in cosine[own.clone()].iter_mut().zip(&points[own]) {
                     *c = (k * a * t).cos();
                 }
             }
-            for j in 0..n {
+            for j in remainder.nodes.clone() {
                 let singular = layout
                     .singular_parts(j, self.slopes)
                     .map(|(column, factor)| (column, factor * singular_transform[j]));
+                let rows = remainder.rows[j].clone();
+                let entries = remainder.matrix.column(j);
                 for (m, transform) in layout.modes(j).map(|m| (m, transform[m])).chain(singular) {
                     let factor = w / (PI * PI) * transform;
                     let column = &mut matrix.column_mut(m);
                     let column = column.as_mut_slice();
-                    for (i, r) in remainder.column(j).iter().enumerate() {
-                        let r = factor * r;
-                        if r.abs() < self.negligible {
-                            continue;
-                        }
+                    for i in rows.clone() {
+                        let r = factor * entries[i];
                         let rows = layout.unknowns(i);
                         for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
                             *entry += r * c;

@@ -144,7 +144,7 @@ impl SolvedScene {
         let settings = ContactSettings {
             modes: resolution.modes,
             spacing: resolution.spacing,
-            tolerance: 1e-3 * scene.tolerance,
+            tolerance: 1e-2 * scene.tolerance,
             max_iterations: 40,
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
