@@ -15,7 +15,7 @@
 //! e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
 
 use super::bessel::{incomplete, k0_k1};
-use multiversion::multiversion;
+use multiversion::{multiversion, target::target_cfg_f};
 use std::f64::consts::FRAC_1_PI;
 use std::sync::{Arc, Mutex};
 
@@ -78,13 +78,16 @@ pub struct WaveTable {
     ww: Vec<[[f64; WW.order]; WW.order]>,
 }
 
-/// Monomial coefficients of four stresses [power of the radial coordinate][power of the angular one].
+/// Monomial coefficients of four stresses: for each power of the angular coordinate a vector of
+/// [power of the radial one][stress].
 ///
 /// In single precision, whose rounding is below the interpolation's error: a look-up is bound by
 /// the memory it touches.
-type Patch = [[[f32; LANES]; STRESS.order]; STRESS.order];
+type Patch = [[f32; LANES]; STRESS.order];
 
-const LANES: usize = 4;
+/// Stresses that are looked up together.
+const STRESSES: usize = 4;
+const LANES: usize = STRESSES * STRESS.order;
 
 /// How finely a function of rho and of the angle is tabulated.
 struct Fineness {
@@ -95,6 +98,9 @@ struct Fineness {
     /// Patches from the depth's direction to the surface's.
     angles: usize,
 }
+
+/// No stress of the six.
+const NONE: usize = 6;
 
 const STRESS: Fineness = Fineness { order: 4, rows: 2, angles: 8 };
 const WW: Fineness = Fineness { order: 6, rows: 1, angles: 6 };
@@ -186,8 +192,16 @@ impl WaveTable {
     pub fn new(nu: f64) -> Self {
         let (mut even, mut odd, mut ww) = (Vec::new(), Vec::new(), Vec::new());
         STRESS.tabulate::<{ STRESS.order }>(nu, |patch| {
-            even.push(patch.map(|row| row.map(|c| [0, 1, 2, 3].map(|i| c[i] as f32))));
-            odd.push(patch.map(|row| row.map(|c| [c[4] as f32, c[5] as f32, 0.0, 0.0])));
+            let lanes = |stress: [usize; STRESSES]| -> Patch {
+                std::array::from_fn(|b| {
+                    std::array::from_fn(|i| {
+                        let c = patch[i / STRESSES][b];
+                        c.get(stress[i % STRESSES]).map_or(0.0, |c| *c as f32)
+                    })
+                })
+            };
+            even.push(lanes([0, 1, 2, 3]));
+            odd.push(lanes([4, 5, NONE, NONE]));
         });
         WW.tabulate::<{ WW.order }>(nu, |patch| ww.push(patch.map(|row| row.map(|c| c[1]))));
         Self { nu, even, odd, ww }
@@ -271,18 +285,22 @@ impl WaveTable {
 
 /// Sums of the tabulated stresses over the loads that the table reaches, compiled for the
 /// processor's vector units too; `odd` tells which stresses are odd in the offset.
-#[multiversion(targets("x86_64+avx2+fma"))]
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn sum_loads(
     patches: &[Patch],
     k: f64,
     v: f64,
     offsets: &[f64],
     loads: &[f64],
-    odd: [bool; LANES],
-) -> [f64; LANES] {
+    odd: [bool; STRESSES],
+) -> [f64; STRESSES] {
     const BLOCK: usize = 16;
-    let mut even_total = [0.0; LANES];
-    let mut odd_total = [0.0; LANES];
+    let times = |a: f32, b: f32, c: f32| -> f32 {
+        if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+    };
+    let mut total = [0f32; LANES];
+    let flip: [f32; LANES] =
+        std::array::from_fn(|i| if odd[i % STRESSES] { -1.0 } else { 1.0 });
     let z = k * v;
     for (offsets, loads) in offsets.chunks(BLOCK).zip(loads.chunks(BLOCK)) {
         let (mut rhos, mut shares, mut scales) = ([1.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);
@@ -297,31 +315,29 @@ fn sum_loads(
             *scale = if inside { load * k / distance } else { 0.0 };
         }
         for (((rho, share), scale), u) in rhos.iter().zip(&shares).zip(&scales).zip(offsets) {
-            if *scale == 0.0 {
-                continue;
-            }
             let (patch, a, b) = STRESS.locate(*share, *rho);
-            let (patch, a, b) = (&patches[patch], a as f32, b as f32);
-            let mut sum = [0f32; LANES];
-            for row in patch.iter().rev() {
-                let mut inner = row[STRESS.order - 1];
-                for c in row[..STRESS.order - 1].iter().rev() {
-                    for i in 0..LANES {
-                        inner[i] = inner[i] * b + c[i];
-                    }
-                }
+            let (patch, a, b, scale) = (&patches[patch], a as f32, b as f32, *scale as f32);
+            let mut sum = patch[STRESS.order - 1];
+            for c in patch[..STRESS.order - 1].iter().rev() {
                 for i in 0..LANES {
-                    sum[i] = sum[i] * a + inner[i];
+                    sum[i] = times(sum[i], b, c[i]);
                 }
             }
-            let flipped = scale.copysign(scale * u);
+            let powers = [scale, scale * a, scale * a * a, scale * a * a * a];
+            let mut factors: [f32; LANES] = std::array::from_fn(|i| powers[i / STRESSES]);
+            if *u < 0.0 {
+                for i in 0..LANES {
+                    factors[i] *= flip[i];
+                }
+            }
             for i in 0..LANES {
-                even_total[i] += scale * f64::from(sum[i]);
-                odd_total[i] += flipped * f64::from(sum[i]);
+                total[i] = times(factors[i], sum[i], total[i]);
             }
         }
     }
-    std::array::from_fn(|i| if odd[i] { odd_total[i] } else { even_total[i] })
+    std::array::from_fn(|stress| {
+        (0..STRESS.order).map(|a| f64::from(total[a * STRESSES + stress])).sum()
+    })
 }
 
 /// [`exact`] to first order in `k` at distances much shorter than 1/k: the plane-strain line load
