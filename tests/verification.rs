@@ -294,20 +294,97 @@ fn compliance_is_reciprocal() {
 fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
     let resolution = Resolution::for_tolerance(1e-3);
     let body = Body::new(3.0, 4.0, 0.3, EdgeModel::QuarterSpace, 1.0, &resolution);
-    let wavenumbers = resolution.wavenumbers();
-    let layers: Vec<_> = wavenumbers.nodes().iter().map(|&k| body.layer(k)).collect();
+    let wavenumbers = resolution.wavenumbers(4.0);
+    let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     let axis = resolution.contact_axis(3.0);
     let solution = ContactSolution {
         half_widths: vec![1.0; axis.len()],
         coefficients: axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect(),
         approach: 0.0,
         iterations: 0,
-        end_zone: 0.0,
+        spacing: 0.0,
         residual: 0.0,
         load_error: 0.0,
     };
     let pressure = Pressure::new(&axis, &solution);
     move |place| at(&Field::new(&body, &wavenumbers, &layers, &pressure, 1.0, 1e-3), place)
+}
+
+/// What is left of the three tractions on the end faces, 40 x 40 points of each.
+#[test]
+fn end_faces_are_free() {
+    for (slenderness, length_ratio, nu) in [
+        (5.0, 1.0, 0.3),
+        (5.0, 0.5, 0.3),
+        (20.0, 1.0, 0.3),
+        (20.0, 0.5, 0.3),
+        (1.0, 1.0, 0.3),
+        (5.0, 0.99, 0.3),
+        (5.0, 1.0, 0.45),
+    ] {
+        let solved = solved(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
+        let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
+        for kind in BodyKind::ALL {
+            let field = solved.field(kind);
+            // On the face itself zero is put in; so near to it the fields say what they are.
+            let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
+            let mut left = [0.0; 3];
+            for i in 0..40 {
+                let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
+                for s in field.at(y, z, &xs) {
+                    for (worst, traction) in left.iter_mut().zip([s.yy, s.xy, s.yz]) {
+                        *worst = worse(*worst, traction.abs());
+                    }
+                }
+            }
+            for (name, left) in ["yy", "xy", "yz"].iter().zip(left) {
+                let what = format!("{} {slenderness} {length_ratio} {nu}: {name}", kind.name());
+                small(&what, left, 5e-3);
+            }
+        }
+    }
+}
+
+/// The force through a plane under the contact is the load: a half-space's misses what it lets pass
+/// beyond the end faces.
+#[test]
+fn planes_carry_the_load() {
+    for (slenderness, length_ratio) in [(5.0, 1.0), (5.0, 0.5), (20.0, 1.0)] {
+        let solved = solved(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        for kind in BodyKind::ALL {
+            let half = half_of(&solved.scene, kind);
+            let (field, ledge) = (solved.field(kind), half - slenderness);
+            let graded = |length: f64| {
+                let steps =
+                    (0..).map(|i| 0.05 * 1.8f64.powi(i)).take_while(move |s| 1.4 * s < length);
+                [0.0].into_iter().chain(steps).collect::<Vec<_>>()
+            };
+            let inner = graded(slenderness);
+            let mut breaks = vec![0.0];
+            breaks.extend(inner.iter().rev().map(|s| slenderness - s));
+            if ledge > 0.0 {
+                breaks.extend(graded(ledge)[1..].iter().map(|s| slenderness + s));
+                breaks.push(half);
+            }
+            let along = Panels::new(breaks, 5);
+            for depth in [0.5, 1.0, 2.0, 5.0] {
+                let mut breaks = vec![0.0];
+                let mut step = 0.5f64;
+                while breaks[breaks.len() - 1] < 100.0 {
+                    breaks.push(breaks[breaks.len() - 1] + step);
+                    step *= 1.4;
+                }
+                let across = Panels::new(breaks, 6);
+                let lines = along.nodes().iter().zip(along.weights()).map(|(&y, w)| {
+                    let stresses = field.at(y, depth, across.nodes());
+                    w * stresses.iter().zip(across.weights()).map(|(s, w)| -s.zz * w).sum::<f64>()
+                });
+                let force = 2.0 * lines.sum::<f64>() / (0.5 * PI * slenderness);
+                let what = format!("{} {slenderness} {length_ratio} at {depth}", kind.name());
+                near(&what, force, 1.0, 2e-3);
+            }
+        }
+    }
 }
 
 #[test]
@@ -326,13 +403,14 @@ fn stresses_superpose_and_mirror() {
         small("mirrored in x", apart(&turned, &whole), 1e-12);
         let s = both([x, -y, z]);
         let turned = StressTensor { xy: -s.xy, yz: -s.yz, ..s };
-        small("mirrored in y", apart(&turned, &whole), 1e-12);
+        // In y = 0 itself both are what is left of sums in single precision.
+        small("mirrored in y", apart(&turned, &whole), if y == 0.0 { 1e-6 } else { 1e-12 });
     }
     // What is odd in y vanishes in the middle plane, where nothing makes it do so but the loads.
     for x in [0.2, 1.0] {
         let s = both([x, 0.0, 0.4]);
-        small("xy in the middle plane", s.xy.abs(), 1e-9);
-        small("yz in the middle plane", s.yz.abs(), 1e-9);
+        small("xy in the middle plane", s.xy.abs(), 1e-6);
+        small("yz in the middle plane", s.yz.abs(), 1e-6);
     }
 }
 
@@ -463,7 +541,50 @@ fn refinement_changes_little_short_and_long() {
 
 #[test]
 fn refinement_changes_little_at_other_ledges_and_materials() {
-    assert_converged(&[(5.0, 0.1, 0.3), (5.0, 0.95, 0.3), (5.0, 0.99, 0.3)]);
+    assert_converged(&[(5.0, 0.1, 0.3), (5.0, 0.95, 0.3), (5.0, 0.99, 0.3), (20.0, 0.99, 0.3)]);
     assert_converged(&[(5.0, 1.0, 0.0), (5.0, 0.5, 0.0), (5.0, 1.0, 0.25), (5.0, 0.5, 0.25)]);
-    assert_converged(&[(5.0, 0.5, 0.45)]);
+    assert_converged(&[(5.0, 0.5, 0.45), (5.0, 1.0, 0.45)]);
+}
+
+/// One direction of refinement after the other: what a resolution half as fine as the default, and the
+/// default itself, are off from one twice as fine. The table stands in docs/theory.md.
+#[test]
+fn every_direction_converges() {
+    type Level = fn(&mut Resolution, f64);
+    let directions: [(&str, Level); 5] = [
+        ("panels along y and z", |r, level| {
+            r.corner *= 0.5f64.powf(level);
+            r.ratio = r.ratio.powf(0.5f64.powf(level));
+        }),
+        ("modes across x", |r, level| r.modes = (5.0 + 2.0 * level) as usize),
+        ("free half-widths", |r, level| r.spacing *= 0.5f64.powf(level)),
+        ("wavenumbers", |r, level| {
+            r.k_max *= 2f64.powf(level);
+            r.k_step *= 0.5f64.powf(level);
+            r.k_ratio = r.k_ratio.powf(0.5f64.powf(level));
+        }),
+        ("extents and images", |r, level| {
+            r.k_min *= 0.5f64.powf(level);
+            r.face_reach *= 2f64.powf(level);
+            r.reach = (r.reach * 2f64.powf(level)).min(30.0);
+            r.images = (r.images as f64 * 2f64.powf(level)).max(1.0) as usize;
+        }),
+    ];
+    for length_ratio in [1.0, 0.5] {
+        let scene = scene(5.0, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        for (name, level) in directions {
+            let solve = |by: f64| {
+                let mut resolution = Resolution::for_tolerance(1e-3);
+                level(&mut resolution, by);
+                SolvedScene::with_resolution(&scene, &resolution).unwrap()
+            };
+            let fine = solve(1.0);
+            let errors = [-1.0, 0.0].map(|by| changes(&solve(by), &fine));
+            let text = errors.map(|(p, s)| format!("{p:.5} / {s:.5}"));
+            println!("| {length_ratio} | {name} | {} | {} |", text[0], text[1]);
+            let [coarse, usual] = errors;
+            assert!(usual.0 <= coarse.0 && usual.1 <= coarse.1, "{name}: {errors:?}");
+            assert!(usual.0 <= 1e-3 && usual.1 <= 2e-3, "{name}: {errors:?}");
+        }
+    }
 }

@@ -111,7 +111,10 @@ mod tests {
         // (1 - e^(s T)) / -s with s = -1/8 + 3i.
         let (scale, r) = (1.0 / (1.0 / 64.0 + 9.0), (-2f64).exp());
         let (c, s) = (48f64.cos(), 48f64.sin());
-        let exact = [scale * (0.125 + r * (3.0 * s - 0.125 * c)), scale * (3.0 - r * (3.0 * c + 0.125 * s))];
+        let exact = [
+            scale * (0.125 + r * (3.0 * s - 0.125 * c)),
+            scale * (3.0 - r * (3.0 * c + 0.125 * s)),
+        ];
         for i in 0..2 {
             assert!((got[i] - exact[i]).abs() < 1e-6, "{got:?} {exact:?}");
         }
@@ -119,7 +122,8 @@ mod tests {
         assert!(first == 0 && weights[0] == 1.0);
         let last = fine.len() - 1;
         let (first, weights) = numbers.interpolation(last);
-        let sum: f64 = weights.iter().zip(&numbers.coarse().nodes()[first..]).map(|(w, k)| w * k).sum();
+        let sum: f64 =
+            weights.iter().zip(&numbers.coarse().nodes()[first..]).map(|(w, k)| w * k).sum();
         assert!((sum - fine.nodes()[last]).abs() < 1e-12);
     }
 }

@@ -6,6 +6,9 @@ use serde::Serialize;
 /// Wavenumber below which nothing varies with the contact's width.
 const SLOW: f64 = 0.5;
 
+/// Widest panel of wavenumbers along an end face: it resolves depths of some ten C.
+const WIDEST: f64 = 1.0;
+
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
 
@@ -47,39 +50,67 @@ pub struct Resolution {
 
 impl Resolution {
     /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
-    /// roller's corner.
+    /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. How far each of them keeps to its
+    /// tolerance is measured by its own refinement.
     pub fn for_tolerance(tolerance: f64) -> Self {
-        if tolerance >= 5e-3 {
+        let usual = Self {
+            order: 5,
+            corner: 0.015,
+            ratio: 2.0,
+            modes: 5,
+            spacing: 0.05,
+            k_max: 130.0,
+            k_order: 4,
+            k_step: 4.0,
+            k_min: 0.01,
+            k_ratio: 2.6,
+            images: 1,
+            face_reach: 14.0,
+            reach: 14.0,
+        };
+        let coarse = Self {
+            order: 3,
+            corner: 0.04,
+            ratio: 2.5,
+            modes: 4,
+            spacing: 0.1,
+            k_max: 20.0,
+            k_order: 3,
+            k_step: 3.0,
+            k_min: 0.05,
+            face_reach: 10.0,
+            reach: 10.0,
+            ..usual.clone()
+        };
+        if tolerance >= 1e-2 {
             Self {
-                order: 3,
-                corner: 0.04,
-                ratio: 2.5,
+                corner: 0.06,
+                ratio: 3.0,
                 modes: 3,
-                spacing: 0.1,
-                k_max: 20.0,
-                k_order: 3,
-                k_step: 3.0,
-                k_min: 0.05,
-                k_ratio: 2.6,
-                images: 1,
-                face_reach: 10.0,
-                reach: 10.0,
+                spacing: 0.15,
+                k_max: 12.0,
+                k_ratio: 3.0,
+                ..coarse
             }
+        } else if tolerance >= 5e-3 {
+            coarse
+        } else if tolerance >= 1e-3 {
+            usual
         } else {
             Self {
-                order: 5,
-                corner: 0.015,
-                ratio: 2.5,
-                modes: 5,
-                spacing: 0.05,
-                k_max: 130.0,
-                k_order: 4,
-                k_step: 4.0,
-                k_min: 0.01,
-                k_ratio: 2.6,
-                images: 1,
-                face_reach: 14.0,
-                reach: 14.0,
+                order: 7,
+                corner: 0.01,
+                ratio: 1.8,
+                modes: 7,
+                k_max: 260.0,
+                k_order: 5,
+                k_step: 3.0,
+                k_min: 0.005,
+                k_ratio: 2.2,
+                images: 2,
+                face_reach: 18.0,
+                reach: 18.0,
+                ..usual
             }
         }
     }
@@ -165,7 +196,9 @@ impl Resolution {
         let mut breaks = vec![0.0, smallest];
         let equal = |from: f64, to: f64, ratio: f64, breaks: &mut Vec<f64>| {
             let count = ((to / from).ln() / ratio.ln()).ceil().max(1.0) as i32;
-            breaks.extend((1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))));
+            breaks.extend(
+                (1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))),
+            );
         };
         equal(smallest, SLOW, 4.0 * self.k_ratio, &mut breaks);
         equal(SLOW, self.k_max, self.k_ratio, &mut breaks);
@@ -187,7 +220,10 @@ impl Resolution {
         let mut next = self.smallest_wavenumber(half);
         while next < 0.6 * top {
             breaks.push(next);
-            next *= 2.0 * self.ratio.sqrt();
+            next = (next * 2.0 * self.ratio.sqrt()).min(next + WIDEST);
+        }
+        while breaks[breaks.len() - 1] + 1.4 * WIDEST < top {
+            breaks.push(breaks[breaks.len() - 1] + WIDEST);
         }
         breaks.push(top);
         Panels::new(breaks, self.order)

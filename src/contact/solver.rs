@@ -129,8 +129,7 @@ fn solve_once(
                 let singular = unknowns[layout.singular(j)];
                 worst = worst.max(singular.abs());
                 // A step beyond a factor of two would leave the region where the linearisation holds.
-                let grow =
-                    if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
+                let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
                 half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
             })
             .collect();
@@ -212,7 +211,7 @@ impl Layout {
                 }
                 let before = after.min(free.len() - 1) - 1;
                 let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
-                let share = ((y - a) / (b - a));
+                let share = (y - a) / (b - a);
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
@@ -260,11 +259,14 @@ impl Layout {
     /// Moving the boundary by a part moves amplitudes in proportion to the edge slopes.
     fn singular_parts(&self, j: usize, slopes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
         let own = slopes[j];
-        self.shares[j].map(|(position, share)| {
-            let free = self.free[position];
-            let ratio = if free == j { 1.0 } else { (own / slopes[free]).clamp(0.0, 10.0) };
-            (self.singular(free), share * ratio)
-        }).into_iter().filter(|(_, factor)| *factor != 0.0)
+        self.shares[j]
+            .map(|(position, share)| {
+                let free = self.free[position];
+                let ratio = if free == j { 1.0 } else { (own / slopes[free]).clamp(0.0, 10.0) };
+                (self.singular(free), share * ratio)
+            })
+            .into_iter()
+            .filter(|(_, factor)| *factor != 0.0)
     }
 
     /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode, else
@@ -356,7 +358,14 @@ fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> Vec<Remaind
         let last = used().map(|(j, r)| (j + 1).max(r.end)).max().unwrap_or(0);
         Remainder { matrix, rows, nodes: first..last.max(first) }
     };
-    numbers.fine().nodes().iter().zip(numbers.fine().weights()).enumerate().map(interpolated).collect()
+    numbers
+        .fine()
+        .nodes()
+        .iter()
+        .zip(numbers.fine().weights())
+        .enumerate()
+        .map(interpolated)
+        .collect()
 }
 
 /// The linear problem for held half-widths: the unknowns of each node, then the approach.

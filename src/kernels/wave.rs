@@ -299,8 +299,7 @@ fn sum_loads(
         if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
     };
     let mut total = [0f32; LANES];
-    let flip: [f32; LANES] =
-        std::array::from_fn(|i| if odd[i % STRESSES] { -1.0 } else { 1.0 });
+    let flip: [f32; LANES] = std::array::from_fn(|i| if odd[i % STRESSES] { -1.0 } else { 1.0 });
     let z = k * v;
     for (offsets, loads) in offsets.chunks(BLOCK).zip(loads.chunks(BLOCK)) {
         let (mut rhos, mut shares, mut scales) = ([1.0; BLOCK], [0.0; BLOCK], [0.0; BLOCK]);

@@ -1,5 +1,6 @@
 //! One case and one edge model to one solution, in SI units.
 
+pub mod edge;
 mod grid;
 mod key;
 mod scene;
@@ -16,7 +17,7 @@ use std::time::Instant;
 
 pub use grid::solve_on_grid;
 pub use key::{END_DISTANCES, KeyResults, key_results};
-pub use scene::{Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
+pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
 
 /// What to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -303,6 +304,7 @@ impl SceneAnswer {
                 "resolution": solved.resolution,
                 "wavenumbers": [solved.wavenumbers.coarse().len(), solved.wavenumbers.fine().len()],
                 "contact_nodes": solved.pressure.axis().len(),
+                "edge": edge::edge_strength(solved),
                 "edge_residual": solved.contact.residual,
                 "bodies_shared": solved.bodies_shared(),
                 "approach_reference_m": reference,

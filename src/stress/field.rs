@@ -344,7 +344,8 @@ impl<'a> Field<'a> {
             if let Some(stencils) = &faces {
                 let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    let face = self.face_part(stencil, loads, z, depth, into, central, &mut scratch);
+                    let face =
+                        self.face_part(stencil, loads, z, depth, into, central, &mut scratch);
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                 }
                 let plate = body.plate_stress(k, &loads.plate, y, z);

@@ -1,0 +1,154 @@
+//! Strength of the contact pressure at the contact's end.
+//!
+//! Next to the end the contact is plane, in y and z. A pressure s^-m on s > 0, s the distance from
+//! the end, gives a half-plane's surface the slope u' = (2 / E') cot(pi m) s^-m, and a body that
+//! ends at s = 0 one of the other sign. The exponent of the pressure is the m at which the slopes of
+//! both bodies cancel (Dundurs and Lee, Journal of Elasticity 2, 1972): 1/2 between two
+//! half-planes, 0.226 between a quarter-plane and a half-plane of the same material. Flush ends
+//! have no such m > 0: the pressure stays finite, and nears its limit like s ln(1/s).
+
+use super::scene::{Scene, SolvedScene, guilbault_psi};
+use crate::body::EdgeModel;
+use nalgebra::{DMatrix, DVector, SVD};
+use serde::Serialize;
+use std::f64::consts::PI;
+
+/// Distances from the end (C) between which a pressure that grows without bound is fitted: farther
+/// in it is not a power of the distance any more, and nearer to the end it is not resolved.
+pub const SINGULAR_RANGE: [f64; 2] = [0.02, 0.1];
+
+/// The same for a pressure that stays finite.
+pub const FINITE_RANGE: [f64; 2] = [0.02, 0.15];
+
+/// Points of a fit, equally spaced in the logarithm of the distance.
+const POINTS: usize = 25;
+
+/// The pressure p(x = 0) near the contact's end, s the distance from it in units of C; pressures in
+/// units of p0.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[serde(tag = "kind", rename_all = "kebab-case")]
+pub enum EdgeStrength {
+    /// p = `factor` s^-`exponent`: it grows without bound.
+    Singular {
+        /// Fitted exponent m.
+        exponent: f64,
+        /// Fitted factor K, the law's pressure at s = 1 (p0).
+        factor: f64,
+        /// The exponent of the corner itself, s -> 0.
+        corner_exponent: f64,
+        /// Range of s of the fit (C).
+        range_c: [f64; 2],
+        /// Largest deviation of p from the fit, relative to p.
+        residual: f64,
+    },
+    /// p = `limit` + `log_slope` s ln(1/s) + `slope` s.
+    Finite {
+        /// Pressure at the end (p0).
+        limit: f64,
+        /// Factor of s ln(1/s) (p0/C).
+        log_slope: f64,
+        /// Factor of s (p0/C).
+        slope: f64,
+        /// Range of s of the fit (C).
+        range_c: [f64; 2],
+        /// Largest deviation of p from the fit (p0).
+        residual: f64,
+    },
+}
+
+/// The strength of the end of a solved scene; none where the model has no law of either kind:
+/// images that psi > 1 weighs, in both bodies, let the pressure at flush ends oscillate in ln s.
+pub fn edge_strength(solved: &SolvedScene) -> Option<EdgeStrength> {
+    let scene = &solved.scene;
+    match corner_exponent(scene) {
+        Some(m) => Some(singular(solved, m, SINGULAR_RANGE)),
+        None if scene.model == EdgeModel::Guilbault => None,
+        None => Some(finite(solved, FINITE_RANGE)),
+    }
+}
+
+/// The exponent m > 0 of the pressure s^-m at the contact's end; none where it is not singular.
+pub fn corner_exponent(scene: &Scene) -> Option<f64> {
+    let sum = |m: f64| -> f64 {
+        let flush = |half: f64| half <= scene.half_length * (1.0 + 1e-9);
+        let slope = |b: &super::SceneBody| {
+            let model = if flush(b.half) { scene.model } else { EdgeModel::HalfSpace };
+            b.share * slope(model, scene.psi.unwrap_or_else(|| guilbault_psi(b.nu)), m)
+        };
+        scene.bodies.iter().map(slope).sum()
+    };
+    // The sum falls from + infinity at 0 if a body goes on behind the end; else it is negative.
+    let (mut low, mut high) = (1e-6, 0.5);
+    if sum(low) <= 0.0 {
+        return None;
+    }
+    if sum(high) > -1e-12 {
+        return Some(high);
+    }
+    for _ in 0..60 {
+        let mid = 0.5 * (low + high);
+        if sum(mid) > 0.0 { low = mid } else { high = mid }
+    }
+    Some(0.5 * (low + high))
+}
+
+/// u' E' / 2 at s = 1 of a body that ends at s = 0, under the pressure s^-m, 0 < m <= 1/2.
+///
+/// With an image of weight psi: int_0^inf t^-m [1/(1-t) + psi/(1+t)] dt = pi (psi - cos pi m) / sin pi m.
+/// Free of traction: P = s^-m / (1 - tau^2), where tau = (1 - m) / cos(pi m / 2) is the normal
+/// stress that P and its image cause on the end face at the depth 1 (the Mellin transform of the
+/// line load's 4 t^2 / (pi (1 + t^2)^2)).
+fn slope(model: EdgeModel, psi: f64, m: f64) -> f64 {
+    let image = |psi: f64| ((PI * m).cos() - psi) / (PI * m).sin();
+    match model {
+        EdgeModel::HalfSpace => image(0.0),
+        EdgeModel::Mirror => image(1.0),
+        EdgeModel::Guilbault => image(psi),
+        EdgeModel::QuarterSpace => {
+            let tau = (1.0 - m) / (0.5 * PI * m).cos();
+            image(1.0) / (1.0 - tau * tau)
+        }
+    }
+}
+
+/// Distances of a fit and the pressure at them.
+fn samples(solved: &SolvedScene, [low, high]: [f64; 2]) -> Vec<(f64, f64)> {
+    let half_length = solved.scene.half_length;
+    (0..POINTS)
+        .map(|i| {
+            let s = low * (high / low).powf(i as f64 / (POINTS - 1) as f64);
+            (s, solved.pressure.at(0.0, half_length - s))
+        })
+        .collect()
+}
+
+/// Least squares of `values` in the functions whose values are the rows of `basis`.
+fn least_squares<const N: usize>(basis: &[[f64; N]], values: &[f64]) -> [f64; N] {
+    let matrix = DMatrix::from_fn(basis.len(), N, |i, j| basis[i][j]);
+    let right = DVector::from_column_slice(values);
+    let solution = SVD::new(matrix, true, true).solve(&right, 1e-12).expect("both factors");
+    std::array::from_fn(|i| solution[i])
+}
+
+/// Fits K s^-m on a range of s (C); `corner_exponent` is only passed on.
+pub fn singular(solved: &SolvedScene, corner_exponent: f64, range_c: [f64; 2]) -> EdgeStrength {
+    let samples = samples(solved, range_c);
+    let basis: Vec<_> = samples.iter().map(|(s, _)| [1.0, -s.ln()]).collect();
+    let values: Vec<f64> = samples.iter().map(|(_, p)| p.ln()).collect();
+    let [log_factor, exponent] = least_squares(&basis, &values);
+    let off = |(b, v): (&[f64; 2], &f64)| (v - log_factor - b[1] * exponent).abs();
+    let residual = basis.iter().zip(&values).map(off).fold(0.0, f64::max);
+    let factor = log_factor.exp();
+    EdgeStrength::Singular { exponent, factor, corner_exponent, range_c, residual }
+}
+
+/// Fits limit + log_slope s ln(1/s) + slope s on a range of s (C).
+pub fn finite(solved: &SolvedScene, range_c: [f64; 2]) -> EdgeStrength {
+    let samples = samples(solved, range_c);
+    let basis: Vec<_> = samples.iter().map(|(s, _)| [1.0, -s * s.ln(), *s]).collect();
+    let values: Vec<f64> = samples.iter().map(|(_, p)| *p).collect();
+    let [limit, log_slope, slope] = least_squares(&basis, &values);
+    let off = |(b, v): (&[f64; 3], &f64)| (v - limit - b[1] * log_slope - b[2] * slope).abs();
+    let residual = basis.iter().zip(&values).map(off).fold(0.0, f64::max);
+    EdgeStrength::Finite { limit, log_slope, slope, range_c, residual }
+}

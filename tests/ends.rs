@@ -1,0 +1,184 @@
+//! The strength of the contact's end, and the one number of the `guilbault` model that is fitted.
+//! Lengths are in units of C, stresses in units of p0.
+
+use edgeline::body::{EdgeModel, Resolution};
+use edgeline::solve::edge::{self, EdgeStrength};
+use edgeline::solve::{GAMMA, Scene, SceneBody, SolvedScene};
+use edgeline::stress::BodyKind;
+use edgeline::stress::curves::standard_curves;
+use edgeline::stress::field::transition;
+
+/// A contact of equal bodies: slenderness, length ratio, Poisson's ratio.
+fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
+    let body = |half| SceneBody { half, nu, share: 0.5 };
+    Scene {
+        half_length: slenderness,
+        bodies: [body(slenderness / length_ratio), body(slenderness)],
+        model,
+        psi: None,
+        tolerance: 1e-3,
+    }
+}
+
+/// The strength of the end at a resolution.
+fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
+    edge::edge_strength(&SolvedScene::with_resolution(scene, resolution).unwrap())
+}
+
+#[test]
+fn exponents_of_corners_are_the_known_ones() {
+    let exponent =
+        |length_ratio, nu, model| edge::corner_exponent(&scene(5.0, length_ratio, nu, model));
+    // Two half-planes: a rigid punch's. A quarter-plane on a half-plane of the same material, without
+    // friction: 0.226, whatever Poisson's ratio (Dundurs and Lee, Journal of Elasticity 2, 1972).
+    assert_eq!(exponent(0.5, 0.3, EdgeModel::HalfSpace), Some(0.5));
+    for nu in [0.0, 0.3, 0.49] {
+        let m = exponent(0.5, nu, EdgeModel::QuarterSpace).unwrap();
+        assert!((m - 0.226).abs() < 5e-4, "{m}");
+    }
+    // One quarter-plane that slides between mirrors: cot(pi m) = tan(pi m / 2).
+    let m = exponent(0.5, 0.3, EdgeModel::Mirror).unwrap();
+    assert!((m - 1.0 / 3.0).abs() < 1e-9, "{m}");
+    for model in [EdgeModel::QuarterSpace, EdgeModel::Mirror] {
+        assert_eq!(exponent(1.0, 0.3, model), None);
+    }
+}
+
+#[test]
+fn strengths_do_not_depend_on_the_mesh() {
+    let usual = Resolution::for_tolerance(1e-3);
+    for slenderness in [5.0, 20.0] {
+        let longer = scene(slenderness, 0.5, 0.3, EdgeModel::QuarterSpace);
+        let fits = [usual.clone(), usual.refined()].map(|r| match strength(&longer, &r) {
+            Some(EdgeStrength::Singular {
+                exponent, factor, corner_exponent, residual, ..
+            }) => {
+                assert!(exponent < corner_exponent && residual < 0.01, "{exponent} {residual}");
+                [exponent, factor]
+            }
+            other => panic!("{other:?}"),
+        });
+        assert!((fits[0][0] - fits[1][0]).abs() < 2e-3, "{fits:?}");
+        assert!((fits[0][1] / fits[1][1] - 1.0).abs() < 5e-3, "{fits:?}");
+        let flush = scene(slenderness, 1.0, 0.3, EdgeModel::QuarterSpace);
+        let limits = [usual.clone(), usual.refined()].map(|r| match strength(&flush, &r) {
+            Some(EdgeStrength::Finite { limit, residual, .. }) => {
+                assert!(residual < 2e-3, "{residual}");
+                limit
+            }
+            other => panic!("{other:?}"),
+        });
+        assert!((limits[0] - limits[1]).abs() < 3e-3, "{limits:?}");
+        if slenderness == 5.0 {
+            // Finite elements: 0.572, good to one percent.
+            assert!((limits[1] - 0.572).abs() < 0.006, "{limits:?}");
+        }
+    }
+    // Images that psi > 1 weighs in both bodies leave no law of either kind.
+    assert_eq!(strength(&scene(5.0, 1.0, 0.3, EdgeModel::Guilbault), &usual), None);
+}
+
+// --- The stress transition factor --------------------------------------------------------------
+
+/// What decides sigma_yy of `guilbault` at one point, and the complete solution's there.
+struct Sample {
+    /// sigma_yy with the images in full.
+    mirrored: f64,
+    /// The same on the end face, at the same x and z.
+    on_face: f64,
+    /// Distances from the two end faces.
+    distances: [f64; 2],
+    z: f64,
+    truth: f64,
+}
+
+impl Sample {
+    fn error(&self, gamma: f64) -> f64 {
+        let share: f64 = self.distances.iter().map(|&s| transition(s, self.z, gamma)).sum();
+        self.mirrored - share * self.on_face - self.truth
+    }
+}
+
+/// Samples of the standard curves of both bodies, 0.1 C from the roller's corner and beyond.
+fn samples((slenderness, length_ratio, nu): (f64, f64, f64)) -> Vec<Sample> {
+    let [model, truth] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace]
+        .map(|model| SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap());
+    let mut all = Vec::new();
+    for (kind, body) in BodyKind::ALL.into_iter().zip(model.scene.bodies) {
+        // A factor next to nothing corrects on the faces themselves and nowhere else.
+        let (mirrored, truth) = (model.field_with(kind, 1e-12), truth.field(kind));
+        for [x, y, z] in
+            standard_curves(kind, slenderness, body.half).into_iter().flat_map(|c| c.points)
+        {
+            if (y - slenderness).hypot(z) < 0.0999 {
+                continue;
+            }
+            let inside = body.half * (1.0 - 1e-8);
+            let yy = |y: f64| mirrored.at(y.min(inside), z, &[x])[0].yy;
+            all.push(Sample {
+                mirrored: yy(y),
+                on_face: yy(body.half),
+                distances: [body.half - y, body.half + y].map(|s| if s < 1e-9 { 0.0 } else { s }),
+                z,
+                truth: truth.at(y, z, &[x])[0].yy,
+            });
+        }
+    }
+    all
+}
+
+fn rms(samples: &[Sample], gamma: f64) -> f64 {
+    let sum: f64 = samples.iter().map(|s| s.error(gamma).powi(2)).sum();
+    (sum / samples.len() as f64).sqrt()
+}
+
+/// The factor of least squares, by golden section in its logarithm.
+fn best(samples: &[Sample]) -> f64 {
+    let (mut low, mut high) = (0.02f64.ln(), 50f64.ln());
+    let part = 0.5 * (5f64.sqrt() - 1.0);
+    while high - low > 1e-5 {
+        let (a, b) = (high - part * (high - low), low + part * (high - low));
+        if rms(samples, a.exp()) < rms(samples, b.exp()) { high = b } else { low = a }
+    }
+    (0.5 * (low + high)).exp()
+}
+
+#[test]
+fn the_transition_factor_is_that_of_least_squares() {
+    let fitted = [(5.0, 1.0, 0.3), (5.0, 0.5, 0.3), (20.0, 1.0, 0.3), (20.0, 0.5, 0.3)];
+    let others = [
+        (1.0, 1.0, 0.3),
+        (2.0, 1.0, 0.3),
+        (10.0, 0.75, 0.3),
+        (100.0, 1.0, 0.3),
+        (5.0, 0.95, 0.3),
+        (5.0, 1.0, 0.0),
+        (5.0, 1.0, 0.25),
+        (5.0, 1.0, 0.45),
+    ];
+    let mut together = Vec::new();
+    println!("| S_l | L_r | nu | rms without | rms | max | best gamma |");
+    for case in fitted.into_iter().chain(others) {
+        let samples = samples(case);
+        let (without, with) = (rms(&samples, 1e-12), rms(&samples, GAMMA));
+        let max = samples.iter().map(|s| s.error(GAMMA).abs()).fold(0.0, f64::max);
+        let (slenderness, length_ratio, nu) = case;
+        println!(
+            "| {slenderness} | {length_ratio} | {nu} | {without:.3} | {with:.3} | {max:.3} | {:.2} |",
+            best(&samples)
+        );
+        if fitted.contains(&case) {
+            together.extend(samples);
+        }
+    }
+    let gamma = best(&together);
+    println!(
+        "gamma {gamma:.4}: rms {:.4}, without {:.4}",
+        rms(&together, gamma),
+        rms(&together, 1e-12)
+    );
+    for g in [0.1, 0.2, 0.3, 0.4, 0.5, 0.7, 1.0, 1.5, 2.0, 3.0] {
+        println!("{g} {:.4}", rms(&together, g));
+    }
+    assert!((gamma - GAMMA).abs() <= 0.01, "gamma is {gamma}, the program has {GAMMA}");
+}
