@@ -180,11 +180,11 @@ impl Body {
 
     /// Stencils from the loads of the faces at +H and -H, both even in z, to the point (`y`, `z`).
     pub fn face_stencils(&self, y: f64, z: f64) -> [Stencil; 2] {
-        let even = [
-            Image { sign: 1.0, shift: 0.0, weight: 1.0 },
-            Image { sign: -1.0, shift: 0.0, weight: 1.0 },
-        ];
-        [self.half - y, self.half + y].map(|depth| Stencil::new(&self.face, &even, z, depth))
+        let image = |sign, weight| Image { sign, shift: 0.0, weight };
+        // In z = 0 both halves of the even load look alike.
+        let (one, both) = ([image(1.0, 2.0)], [image(1.0, 1.0), image(-1.0, 1.0)]);
+        let images: &[Image] = if z == 0.0 { &one } else { &both };
+        [self.half - y, self.half + y].map(|depth| Stencil::new(&self.face, images, z, depth))
     }
 
     /// Number of contact nodes.

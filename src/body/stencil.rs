@@ -36,12 +36,20 @@ struct Cluster {
     halves: Option<[usize; 2]>,
 }
 
-/// A cluster of several panels stands for them from this many of its lengths on: with n nodes the
-/// interpolation of kernels whose nearest pole is there is good to about 8^-n.
-const CLUSTER_DISTANCE: f64 = 1.5;
+/// Sum of the distances of a target from the two ends of an interval, in its lengths: (r + 1/r) / 2
+/// with r the parameter of Bernstein's ellipse through the target, where kernels have their pole. A
+/// function that is analytic within it is interpolated by n nodes to about r^-n and integrated by
+/// Gauss's rule to about r^-2n (Trefethen, Approximation Theory and Approximation Practice, 2013,
+/// theorems 8.2 and 19.3).
+///
+/// A cluster of several panels stands for them from here on, r = 6.5.
+const CLUSTER_DISTANCE: f64 = 3.3;
 
-/// A panel's own Gauss nodes serve from this many of its lengths on, good to about 5^(-2n).
-const PANEL_DISTANCE: f64 = 0.8;
+/// A panel's own Gauss nodes serve from here on, r = 3.3.
+const PANEL_DISTANCE: f64 = 1.8;
+
+/// The four Gauss nodes or more of a piece of a panel, r = 2.6.
+const PIECE_DISTANCE: f64 = 1.5;
 
 impl Sources {
     /// Clusters of an axis's panels.
@@ -118,7 +126,7 @@ impl Sources {
 }
 
 /// Quadrature of sum over images of int kernel(target - s', depth) f(s) ds, with f given at the
-/// nodes of an axis. Panels that the target is near are cut into pieces no longer than their
+/// nodes of an axis. Panels that the target is near are cut into pieces about as long as their
 /// distance from it, with f interpolated: the kernels' peaks (ln r, or a spread of the width of the
 /// depth) are then resolved, wherever the target lies. Panels far away act as clusters.
 #[derive(Debug, Clone, Default)]
@@ -154,10 +162,10 @@ impl Stencil {
             while let Some(index) = open.pop() {
                 let cluster = &sources.clusters[index];
                 let [a, b] = cluster.ends;
-                let gap = distance(a, b, own, depth);
+                let far = distances(a, b, own, depth);
                 let factor =
                     if cluster.halves.is_some() { CLUSTER_DISTANCE } else { PANEL_DISTANCE };
-                if gap >= factor * (b - a) {
+                if far >= factor * (b - a) {
                     for charge in index * order..(index + 1) * order {
                         let offset = image.sign * (own - sources.places[charge]);
                         stencil.far.push((offset, charge as u32, image.weight));
@@ -200,7 +208,7 @@ impl Stencil {
         let mut pieces = if a < own && own < b { vec![[a, own], [own, b]] } else { vec![[a, b]] };
         while let Some([c, d]) = pieces.pop() {
             let length = d - c;
-            if distance(c, d, own, depth) < PANEL_DISTANCE * length && length > smallest {
+            if distances(c, d, own, depth) < PIECE_DISTANCE * length && length > smallest {
                 let mid = 0.5 * (c + d);
                 pieces.extend([[c, mid], [mid, d]]);
                 continue;
@@ -286,10 +294,10 @@ impl LineLoads {
     }
 }
 
-/// Distance of the point (`own`, `depth`) from the segment [a, b].
-fn distance(a: f64, b: f64, own: f64, depth: f64) -> f64 {
-    let along = (a - own).max(own - b).max(0.0);
-    (along * along + depth * depth).sqrt()
+/// Sum of the distances of the point (`own`, `depth`) from `a` and from `b`.
+fn distances(a: f64, b: f64, own: f64, depth: f64) -> f64 {
+    let square = depth * depth;
+    ((own - a).powi(2) + square).sqrt() + ((own - b).powi(2) + square).sqrt()
 }
 
 #[cfg(test)]
