@@ -36,7 +36,7 @@ pub struct Body {
     /// displacement.
     images: Vec<Image>,
     /// The same as they act on the stresses: an image that psi weighs has its full weight here.
-    pub stress_images: Vec<Image>,
+    stress_images: Vec<Image>,
     /// Nodes of `surface` that belong to the contact; they come first.
     contact: usize,
     /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
@@ -184,7 +184,19 @@ impl Body {
         // In z = 0 both halves of the even load look alike.
         let (one, both) = ([image(1.0, 2.0)], [image(1.0, 1.0), image(-1.0, 1.0)]);
         let images: &[Image] = if z == 0.0 { &one } else { &both };
-        [self.half - y, self.half + y].map(|depth| Stencil::new(&self.face, images, z, depth))
+        [self.half - y, self.half + y]
+            .map(|depth| self.stress_stencil(&self.face, images, z, depth))
+    }
+
+    /// The stencil of the surface's load to the point (`y`, `z`), for stresses.
+    pub fn surface_stencil(&self, y: f64, z: f64) -> Stencil {
+        self.stress_stencil(&self.surface, &self.stress_images, y, z)
+    }
+
+    /// On a loaded surface itself the stresses' kernels vary over 1/k only.
+    fn stress_stencil(&self, from: &Sources, images: &[Image], along: f64, depth: f64) -> Stencil {
+        let shortest = if depth == 0.0 { 2.0 / self.resolution.k_max } else { 0.0 };
+        Stencil::resolving(from, images, along, depth, shortest)
     }
 
     /// Number of contact nodes.

@@ -149,8 +149,20 @@ const SMALLEST_PIECE: f64 = 1.0 / 512.0;
 const SHORTEST_PIECE: f64 = 0.004;
 
 impl Stencil {
-    /// Stencil for a `target` coordinate on the axis's line, at `depth` >= 0 from it.
+    /// Stencil for a `target` coordinate on the axis's line, at `depth` >= 0 from it, for kernels that
+    /// peak at the target.
     pub fn new(sources: &Sources, images: &[Image], target: f64, depth: f64) -> Self {
+        Self::resolving(sources, images, target, depth, 0.0)
+    }
+
+    /// [`Stencil::new`] for kernels that do not vary over lengths below `shortest`.
+    pub fn resolving(
+        sources: &Sources,
+        images: &[Image],
+        target: f64,
+        depth: f64,
+        shortest: f64,
+    ) -> Self {
         let order = sources.axis.order();
         let mut stencil = Self { order, ..Self::default() };
         let piece_rule = gauss_legendre(order.max(4));
@@ -180,6 +192,7 @@ impl Stencil {
                         panel,
                         own,
                         depth,
+                        shortest,
                         &piece_rule,
                         &mut basis,
                     );
@@ -198,12 +211,14 @@ impl Stencil {
         panel: usize,
         own: f64,
         depth: f64,
+        shortest: f64,
         piece_rule: &(Vec<f64>, Vec<f64>),
         basis: &mut [f64],
     ) {
         let [a, b] = axis.panel(panel);
-        let smallest =
+        let singular =
             if depth > 0.0 { 0.0 } else { (SMALLEST_PIECE * (b - a)).min(SHORTEST_PIECE) };
+        let smallest = singular.max(shortest);
         // Cut at the target first, so that pieces end there.
         let mut pieces = if a < own && own < b { vec![[a, own], [own, b]] } else { vec![[a, b]] };
         while let Some([c, d]) = pieces.pop() {

@@ -152,8 +152,9 @@ impl Loads {
     }
 }
 
-/// Depth (C) from which [`Field::down`] interpolates, on panels that double.
+/// Depth (C) from which [`Field::down`] interpolates, on panels that grow.
 const SMOOTH_DEPTH: f64 = 0.15;
+const GROWTH: f64 = 2.0;
 
 /// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
 const ON_SURFACE: f64 = 1e-9;
@@ -251,8 +252,8 @@ impl<'a> Field<'a> {
     pub fn down(&self, x: f64, y: f64, zs: &[f64], order: usize) -> Vec<StressTensor> {
         let deepest = zs.iter().fold(0.0, |m: f64, z| m.max(*z));
         let mut breaks = vec![SMOOTH_DEPTH];
-        while 2.0 * 1.3 * breaks[breaks.len() - 1] < deepest {
-            breaks.push(2.0 * breaks[breaks.len() - 1]);
+        while 1.3 * GROWTH * breaks[breaks.len() - 1] < deepest {
+            breaks.push(GROWTH * breaks[breaks.len() - 1]);
         }
         let shallow = zs.iter().filter(|z| **z < SMOOTH_DEPTH).count();
         if deepest <= SMOOTH_DEPTH || zs.len() - shallow <= breaks.len() * order {
@@ -311,11 +312,11 @@ impl<'a> Field<'a> {
     fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let y = y.abs();
         let body = self.body;
-        let surface = Stencil::new(&body.surface, &body.stress_images, y, z);
+        let surface = body.surface_stencil(y, z);
         let complete = body.model == EdgeModel::QuarterSpace;
         let faces = complete.then(|| body.face_stencils(y, z));
         let correction = (body.model == EdgeModel::Guilbault).then(|| {
-            let end = Stencil::new(&body.surface, &body.stress_images, body.half, z);
+            let end = body.surface_stencil(body.half, z);
             (end, [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma)))
         });
         let local: Vec<(usize, f64)> =
@@ -391,7 +392,7 @@ impl<'a> Field<'a> {
         body.for_strips(k, y, z, |u, w| scratch.push(u, w * loads.mean));
         if z == 0.0 {
             let p = value_at(&body.surface.axis, &loads.surface, y);
-            return surface_limit(body.nu, k, p, scratch);
+            return surface_limit(body.nu, k, p, central, scratch);
         }
         let [xx, yy, zz, yz, xy, xz] = self.line_loads(k, z, central, scratch);
         [xx, yy, zz, xy, xz, yz]
@@ -429,7 +430,7 @@ impl<'a> Field<'a> {
         stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
         let [xx, ww, dd, wd, xw, xd] = if depth == 0.0 {
             let q = value_at(&body.face.axis, &loads.face, z);
-            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, scratch);
+            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, central, scratch);
             [xx, ww, dd, wd, xw, xd]
         } else {
             self.line_loads(k, depth, central, scratch)
@@ -454,11 +455,11 @@ fn value_at(axis: &Panels, values: &[f64], at: f64) -> f64 {
 }
 
 /// Amplitudes on a loaded surface itself, see [`surface_spread`]: xx, along the surface, along the
-/// depth, xw, and no shear on the surface. `p` is the load there.
-fn surface_limit(nu: f64, k: f64, p: f64, loads: &LineLoads) -> Amplitudes {
+/// depth, xw (none on the plane x = 0, `central`), and no shear on the surface. `p` is the load there.
+fn surface_limit(nu: f64, k: f64, p: f64, central: bool, loads: &LineLoads) -> Amplitudes {
     let free = 1.0 - 2.0 * nu;
     let spread = free * loads.sum(|u| surface_spread(k, u));
-    let shear = free * loads.sum(|u| surface_spread_shear(k, u));
+    let shear = if central { 0.0 } else { free * loads.sum(|u| surface_spread_shear(k, u)) };
     [-2.0 * nu * p - spread, -p + spread, -p, shear, 0.0, 0.0]
 }
 
