@@ -2,6 +2,7 @@
 
 mod error;
 mod files;
+pub mod linear;
 mod material;
 mod panels;
 mod quadrature;

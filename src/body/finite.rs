@@ -8,7 +8,7 @@
 use super::axes::Resolution;
 use super::model::EdgeModel;
 use super::stencil::{Image, Sources, Stencil};
-use crate::base::Panels;
+use crate::base::{Panels, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::plate;
 use crate::kernels::wave::WaveTable;
@@ -263,7 +263,7 @@ impl Body {
         let from_face = self.faces_matrix(k, to_face.nrows());
         let system = DMatrix::identity(n, n) - from_face * &to_face;
         let contact_columns = DMatrix::identity(n, self.contact);
-        let surface = system.lu().solve(&contact_columns).expect("I - T T is regular for k > 0");
+        let surface = linear::solve(system, contact_columns).expect("I - T T is regular for k > 0");
         Layer {
             compliance: displacement * &surface,
             face: Some(-(to_face * &surface)),

@@ -1,4 +1,4 @@
-use crate::base::{Error, Panels, Result, Wavenumbers};
+use crate::base::{Error, Panels, Result, Wavenumbers, linear};
 use crate::kernels::strip;
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
@@ -56,6 +56,13 @@ const SCREEN: f64 = 2.0;
 /// tolerance of the singularity.
 const NEGLIGIBLE: f64 = 0.1;
 
+/// Distance from the line's end (C) beyond which a few modes describe the pressure.
+const DISTURBED: f64 = 1.0;
+const INNER_MODES: usize = 3;
+
+/// Iterations of an attempt that is not the last.
+const ATTEMPT: usize = 12;
+
 /// Points across the contact at which a pressure's sign is looked at.
 const SHAPE_POINTS: i32 = 8;
 
@@ -79,16 +86,17 @@ pub fn solve(
 ) -> Result<ContactSolution> {
     let remainders = remainders(compliance, axis.len(), NEGLIGIBLE * settings.tolerance);
     // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
-    let mut settings = *settings;
-    let mut answer = solve_once(compliance, &remainders, axis, &settings);
+    let mut attempt =
+        ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
     for _ in 0..3 {
+        let answer = solve_once(compliance, &remainders, axis, &attempt);
         if answer.is_ok() {
-            break;
+            return answer;
         }
-        settings.spacing *= 2.0;
-        answer = solve_once(compliance, &remainders, axis, &settings);
+        attempt.spacing *= 2.0;
     }
-    answer
+    attempt.max_iterations = settings.max_iterations;
+    solve_once(compliance, &remainders, axis, &attempt)
 }
 
 /// [`solve`] with the spacing as it is given.
@@ -215,7 +223,10 @@ impl Layout {
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let counts = vec![settings.modes; n];
+        let inner = axis.breaks()[axis.panel_count()] - DISTURBED;
+        let modes_at =
+            |y: &f64| if *y < inner { settings.modes.min(INNER_MODES) } else { settings.modes };
+        let counts = axis.nodes().iter().map(modes_at).collect();
         let mut is_free = vec![false; n];
         free.iter().for_each(|j| is_free[*j] = true);
         let all_modes = settings.modes;
@@ -382,15 +393,16 @@ impl Linear<'_> {
     fn solve(&self, load: f64) -> Result<DVector<f64>> {
         let size = self.layout.size();
         let mut matrix = DMatrix::zeros(size, size);
-        let mut right = DVector::zeros(size);
+        let mut right = DMatrix::zeros(size, 1);
         self.add_waves(&mut matrix);
         self.add_local(&mut matrix, &mut right);
         right[size - 1] = load;
-        matrix.lu().solve(&right).ok_or_else(|| Error::NotConverged {
+        let solution = linear::solve(matrix, right).ok_or_else(|| Error::NotConverged {
             iterations: 0,
             residual: f64::INFINITY,
             remedy: "the collocation matrix is singular: check the case's lengths".into(),
-        })
+        })?;
+        Ok(solution.column(0).into_owned())
     }
 
     /// Adds what the remainders of the compliance displace.
@@ -399,6 +411,7 @@ impl Linear<'_> {
         let mut transform = vec![0.0; layout.size() - 1];
         let mut singular_transform = vec![0.0; n];
         let mut cosine = vec![0.0; layout.size() - 1];
+        let mut shape = Vec::with_capacity(layout.size());
         let points: Vec<f64> = (0..n).flat_map(|j| layout.points(j)).collect();
         let wavenumbers = self.compliance.wavenumbers.fine();
         let terms = wavenumbers.nodes().iter().zip(wavenumbers.weights());
@@ -415,26 +428,28 @@ impl Linear<'_> {
                 let singular = layout
                     .singular_parts(j, self.slopes)
                     .map(|(column, factor)| (column, factor * singular_transform[j]));
-                let rows = remainder.rows[j].clone();
+                let rows = &remainder.rows[j];
+                if rows.is_empty() {
+                    continue;
+                }
+                let span = layout.starts[rows.start]..layout.starts[rows.end];
                 let entries = remainder.matrix.column(j);
+                shape.clear();
+                for i in rows.clone() {
+                    shape.extend(cosine[layout.unknowns(i)].iter().map(|c| entries[i] * c));
+                }
                 for (m, transform) in layout.modes(j).map(|m| (m, transform[m])).chain(singular) {
                     let factor = w / (PI * PI) * transform;
-                    let column = &mut matrix.column_mut(m);
-                    let column = column.as_mut_slice();
-                    for i in rows.clone() {
-                        let r = factor * entries[i];
-                        let rows = layout.unknowns(i);
-                        for (entry, c) in column[rows.clone()].iter_mut().zip(&cosine[rows]) {
-                            *entry += r * c;
-                        }
-                    }
+                    let mut column = matrix.column_mut(m);
+                    let column = &mut column.as_mut_slice()[span.clone()];
+                    column.iter_mut().zip(&shape).for_each(|(entry, s)| *entry += factor * s);
                 }
             }
         }
     }
 
     /// Adds the plane, screened part, the approach, the gap and the load's equation.
-    fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DVector<f64>) {
+    fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
         let (layout, last) = (self.layout, self.layout.size() - 1);
         let mut local = vec![0.0; layout.all_modes];
         for (i, &a) in self.half_widths.iter().enumerate() {

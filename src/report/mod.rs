@@ -1,7 +1,7 @@
 //! One file per form of output.
 
 pub mod chart;
-mod contour;
+pub mod contour;
 pub mod field;
 pub mod gates;
 pub mod page;
