@@ -106,7 +106,7 @@ fn samples((slenderness, length_ratio, nu): (f64, f64, f64)) -> Vec<Sample> {
     let mut all = Vec::new();
     for (kind, body) in BodyKind::ALL.into_iter().zip(model.scene.bodies) {
         // A factor next to nothing corrects on the faces themselves and nowhere else.
-        let (mirrored, truth) = (model.field_with(kind, 1e-12), truth.field(kind));
+        let (mirrored, truth) = (model.field_with(kind, 1e-12, 1e-3), truth.field(kind));
         for [x, y, z] in
             standard_curves(kind, slenderness, body.half).into_iter().flat_map(|c| c.points)
         {

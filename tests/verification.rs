@@ -433,6 +433,68 @@ fn pressure_never_pulls() {
     }
 }
 
+// --- What is skipped ---------------------------------------------------------------------------
+
+/// Sources beyond a wave's reach, and end faces that a wavenumber does not reach.
+#[test]
+fn what_waves_do_not_reach_does_not_matter() {
+    let usual = Resolution::for_tolerance(1e-3);
+    let farther = Resolution { reach: 28.0, face_reach: 28.0, ..usual.clone() };
+    for (slenderness, length_ratio) in [(5.0, 1.0), (5.0, 0.5), (5.0, 0.1)] {
+        let scene = scene(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        let [near, far] =
+            [&usual, &farther].map(|r| SolvedScene::with_resolution(&scene, r).unwrap());
+        let field = near.field(BodyKind::Block);
+        at(&field, [0.0, slenderness - 1.0, 0.5]);
+        let work = field.work();
+        assert!(work.done > 0 && work.beyond_reach > 0, "{work:?}");
+        assert_eq!(work.ends > 0, length_ratio < 1.0, "{work:?}");
+        let (pressure, stress) = changes(&near, &far);
+        small(&format!("{slenderness} {length_ratio}: pressure"), pressure, 5e-4);
+        small(&format!("{slenderness} {length_ratio}: stresses"), stress, 5e-4);
+    }
+}
+
+#[test]
+fn faded_wavenumbers_do_not_matter() {
+    let solved = solved(5.0, 0.5, 0.3, EdgeModel::QuarterSpace);
+    for kind in BodyKind::ALL {
+        let usual = solved.field(kind);
+        let all = solved.field_with(kind, 1.0, 0.0);
+        let mut worst: f64 = 0.0;
+        for (_, place) in curve_points(&solved.scene, kind) {
+            worst = worse(worst, apart(&at(&usual, place), &at(&all, place)));
+        }
+        assert!(usual.work().faded > 0 && all.work().faded == 0);
+        small(kind.name(), worst, 2e-4);
+    }
+}
+
+#[test]
+fn bodies_that_are_alike_are_computed_once() {
+    let alike = solved(5.0, 1.0, 0.3, EdgeModel::QuarterSpace);
+    let mut scene = alike.scene.clone();
+    scene.bodies[0].nu += 1e-12;
+    let different = SolvedScene::new(&scene).unwrap();
+    assert!(alike.bodies_shared() && !different.bodies_shared());
+    let (pressure, stress) = changes(&different, &alike);
+    small("pressure", pressure, 1e-8);
+    small("stresses", stress, 1e-6);
+}
+
+#[test]
+fn a_curve_alone_is_what_it_is_among_all() {
+    let case = case(5e-4, 5.0, 0.5);
+    let whole = solve(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.bodies = vec![BodyKind::Roller];
+    options.curves = vec!["depth-end".into()];
+    let alone = solve(&case, &options).unwrap();
+    assert_eq!(alone.curves.len(), 1);
+    let same = whole.curves.iter().find(|c| **c == alone.curves[0]);
+    assert!(same.is_some(), "the curve differs");
+}
+
 // --- Scales and threads ------------------------------------------------------------------------
 
 fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {

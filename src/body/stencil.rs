@@ -263,6 +263,16 @@ impl Stencil {
         }
     }
 
+    /// Number of its source points.
+    pub fn len(&self) -> usize {
+        self.far.len() + self.near.len()
+    }
+
+    /// Whether it has none.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
     /// Appends every source point within `reach` to `loads`, with the `values` at the first nodes
     /// (zeros behind them) and their `charges`.
     pub fn gather(&self, reach: f64, values: &[f64], charges: &[f64], loads: &mut LineLoads) {

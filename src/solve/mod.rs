@@ -9,7 +9,7 @@ use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::kernels::strip;
-use crate::stress::{BodyKind, curves};
+use crate::stress::{BodyKind, Work, curves};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -219,6 +219,7 @@ struct SceneAnswer {
     lines: Vec<PressureLine>,
     curves: Vec<Curve>,
     points: Vec<StressTensor>,
+    work: Work,
 }
 
 impl SceneAnswer {
@@ -226,13 +227,13 @@ impl SceneAnswer {
         let start = Instant::now();
         let solved = SolvedScene::new(scene)?;
         let before = start.elapsed().as_secs_f64();
-        let (curves, points) = stresses(&solved, case, options);
+        let (curves, points, work) = stresses(&solved, case, options);
         let mut seconds = solved.seconds;
         seconds.total = start.elapsed().as_secs_f64();
         seconds.stress = seconds.total - before;
         let cells = pressure_cells(&solved);
         let lines = pressure_lines(&solved);
-        Ok(Self { solved, seconds, cells, lines, curves, points })
+        Ok(Self { solved, seconds, cells, lines, curves, points, work })
     }
 
     /// In a case's own units, with what its own radius adds.
@@ -307,6 +308,20 @@ impl SceneAnswer {
                 "edge": edge::edge_strength(solved),
                 "edge_residual": solved.contact.residual,
                 "bodies_shared": solved.bodies_shared(),
+                "work": {
+                    "done": self.work.done,
+                    "avoided": {
+                        "sources beyond a wave's reach": self.work.beyond_reach,
+                        "end faces beyond a wave's reach": self.work.ends,
+                        "wavenumbers that have faded": self.work.faded,
+                        "the other body is alike":
+                            if solved.bodies_shared() && options.bodies.len() > 1 {
+                                self.work.done
+                            } else {
+                                0
+                            },
+                    },
+                },
                 "approach_reference_m": reference,
                 "roller_diametral_tension_pa": tension.xx * p0,
             }),
@@ -400,7 +415,7 @@ fn stresses(
     solved: &SolvedScene,
     case: &Case,
     options: &Options,
-) -> (Vec<Curve>, Vec<StressTensor>) {
+) -> (Vec<Curve>, Vec<StressTensor>, Work) {
     let scene = &solved.scene;
     let c_m = case.hertz().c_m;
     let mut curves = Vec::new();
@@ -470,5 +485,11 @@ fn stresses(
             }
         }
     }
-    (out, points)
+    let work = fields.iter().map(|(_, field)| field.work()).fold(Work::default(), |sum, w| Work {
+        done: sum.done + w.done,
+        beyond_reach: sum.beyond_reach + w.beyond_reach,
+        ends: sum.ends + w.ends,
+        faded: sum.faded + w.faded,
+    });
+    (out, points, work)
 }

@@ -180,13 +180,14 @@ impl SolvedScene {
 
     /// The stress field of a body, without what only the roller's own shape adds.
     pub fn field(&self, kind: BodyKind) -> Field<'_> {
-        self.field_with(kind, GAMMA)
+        self.field_with(kind, GAMMA, self.scene.tolerance)
     }
 
-    /// [`SolvedScene::field`] with another stress transition factor than [`GAMMA`].
-    pub fn field_with(&self, kind: BodyKind, gamma: f64) -> Field<'_> {
+    /// [`SolvedScene::field`] with another stress transition factor than [`GAMMA`], and what adds less
+    /// than `tolerance` (p0) left out.
+    pub fn field_with(&self, kind: BodyKind, gamma: f64, tolerance: f64) -> Field<'_> {
         let (body, layers) = self.body(kind);
-        Field::new(body, &self.wavenumbers, layers, &self.pressure, gamma, self.scene.tolerance)
+        Field::new(body, &self.wavenumbers, layers, &self.pressure, gamma, tolerance)
     }
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.

@@ -14,7 +14,9 @@ use crate::contact::ContactSolution;
 use crate::kernels::strip;
 use crate::kernels::wave::{surface_spread, surface_spread_shear};
 use nalgebra::DVector;
+use serde::Serialize;
 use std::f64::consts::PI;
+use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
 /// The contact pressure as a function of place.
@@ -152,6 +154,38 @@ impl Loads {
     }
 }
 
+/// Kernel evaluations for stresses: those done, and those that a sum of all sources over all
+/// wavenumbers would have taken besides.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct Work {
+    /// Evaluations done.
+    pub done: u64,
+    /// Spared: sources farther away than a wave reaches.
+    pub beyond_reach: u64,
+    /// Spared: end faces that a wavenumber does not reach from the contact.
+    pub ends: u64,
+    /// Spared: wavenumbers behind those that add nothing any more.
+    pub faded: u64,
+}
+
+/// [`Work`] that several threads add to.
+#[derive(Debug, Default)]
+struct Counters {
+    done: AtomicU64,
+    beyond_reach: AtomicU64,
+    ends: AtomicU64,
+    faded: AtomicU64,
+}
+
+impl Counters {
+    fn add(&self, work: &Work) {
+        self.done.fetch_add(work.done, Relaxed);
+        self.beyond_reach.fetch_add(work.beyond_reach, Relaxed);
+        self.ends.fetch_add(work.ends, Relaxed);
+        self.faded.fetch_add(work.faded, Relaxed);
+    }
+}
+
 /// Depth (C) from which [`Field::down`] interpolates, on panels that grow.
 const SMOOTH_DEPTH: f64 = 0.15;
 const GROWTH: f64 = 2.0;
@@ -176,6 +210,7 @@ pub struct Field<'a> {
     gamma: f64,
     /// A wavenumber's share of a stress that is as good as none (p0).
     negligible: f64,
+    counters: Counters,
 }
 
 /// After so many negligible fine wavenumbers in a row, more than a period of the oscillation that the
@@ -214,7 +249,16 @@ impl<'a> Field<'a> {
             .collect();
         let negligible = 0.005 * tolerance;
         let all = Mutex::default();
-        Self { body, pressure, wavenumbers, layers, central, all, gamma, negligible }
+        let counters = Counters::default();
+        Self { body, pressure, wavenumbers, layers, central, all, gamma, negligible, counters }
+    }
+
+    /// The kernel evaluations so far.
+    pub fn work(&self) -> Work {
+        let Counters { done, beyond_reach, ends, faded } = &self.counters;
+        let [done, beyond_reach, ends, faded] =
+            [done, beyond_reach, ends, faded].map(|count| count.load(Relaxed));
+        Work { done, beyond_reach, ends, faded }
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
@@ -332,14 +376,20 @@ impl<'a> Field<'a> {
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
         let mut scratch = LineLoads::default();
-        for loads in items {
+        let on_faces: usize = faces.iter().flatten().map(Stencil::len).sum();
+        let on_surface = surface.len() + correction.as_ref().map_or(0, |c| c.0.len());
+        let mut work = Work::default();
+        for (number, loads) in items.iter().enumerate() {
             let k = loads.k;
             if fading >= faded {
+                work.faded = ((items.len() - number) * (on_surface + on_faces)) as u64;
                 break;
             }
             let mut amplitudes = self.surface_part(&surface, loads, y, z, central, &mut scratch);
+            let mut done = scratch.offsets.len();
             if let Some((end, shares)) = &correction {
                 let on_end = self.surface_part(end, loads, body.half, z, true, &mut scratch)[1];
+                done += scratch.offsets.len();
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
@@ -348,10 +398,16 @@ impl<'a> Field<'a> {
                     let face =
                         self.face_part(stencil, loads, z, depth, into, central, &mut scratch);
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
+                    done += scratch.offsets.len();
                 }
                 let plate = body.plate_stress(k, &loads.plate, y, z);
                 amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
             }
+            let ends = if loads.face.is_empty() { on_faces } else { 0 };
+            work.done += done as u64;
+            work.ends += ends as u64;
+            // Strips are sources that the stencils do not count.
+            work.beyond_reach += (on_surface + on_faces).saturating_sub(ends + done) as u64;
             let p: f64 = local.iter().map(|(j, w)| w * loads.contact[*j]).sum();
             let e = (-k * z).exp() * p;
             amplitudes[0] += (1.0 - k * z) * e;
@@ -369,6 +425,7 @@ impl<'a> Field<'a> {
                 }
             }
         }
+        self.counters.add(&work);
         sums.into_iter().map(StressTensor::from_components).collect()
     }
 
@@ -384,10 +441,10 @@ impl<'a> Field<'a> {
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
         let reach = body.reach(k);
+        scratch.clear();
         if z > reach {
             return [0.0; 6];
         }
-        scratch.clear();
         stencil.gather(reach, &loads.surface, &loads.surface_charges, scratch);
         body.for_strips(k, y, z, |u, w| scratch.push(u, w * loads.mean));
         if z == 0.0 {
@@ -423,10 +480,10 @@ impl<'a> Field<'a> {
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
         let reach = body.reach(k);
+        scratch.clear();
         if depth > reach || loads.face.is_empty() {
             return [0.0; 6];
         }
-        scratch.clear();
         stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
         let [xx, ww, dd, wd, xw, xd] = if depth == 0.0 {
             let q = value_at(&body.face.axis, &loads.face, z);

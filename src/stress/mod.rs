@@ -5,5 +5,5 @@ pub mod field;
 pub mod grid;
 
 pub use curves::{BodyKind, CurveSpec};
-pub use field::{Field, Pressure};
+pub use field::{Field, Pressure, Work};
 pub use grid::{Grid, GridStress};
