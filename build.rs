@@ -1,9 +1,19 @@
 //! Lists the files that are built into the program: the recorded finite-element results and the
 //! sources of the finite-element side. Listing them here keeps the lists complete by themselves.
+//! Evaluates the closed forms that the stresses' tables interpolate, which takes longer than a solve.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
+
+// The closed forms as the program has them.
+#[allow(dead_code)]
+#[path = "src/kernels"]
+mod kernels {
+    pub mod bessel;
+    pub mod line_load;
+    pub mod patches;
+}
 
 fn main() {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("set by cargo"));
@@ -34,6 +44,29 @@ fn main() {
     }
     sources.push(']');
     fs::write(out.join("fem_sources.rs"), sources).expect("OUT_DIR can be written");
+
+    for file in ["bessel", "line_load", "patches"] {
+        println!("cargo::rerun-if-changed=src/kernels/{file}.rs");
+    }
+    println!("cargo::rerun-if-changed=build.rs");
+    let stresses = |(u, v): (f64, f64)| {
+        let rho = u.hypot(v);
+        let [zero, one] = [0.0, 1.0].map(|nu| {
+            let s = kernels::line_load::exact(1.0, nu, u, v);
+            [s.xx, s.ww, s.dd, s.wd, s.xw, s.xd].map(|s| rho * s)
+        });
+        (zero, std::array::from_fn::<f64, 6, _>(|c| one[c] - zero[c]))
+    };
+    let mut bytes = Vec::new();
+    for (zero, more) in kernels::patches::STRESS.places().map(stresses) {
+        bytes.extend(zero.iter().chain(&more).flat_map(|s| (*s as f32).to_le_bytes()));
+    }
+    fs::write(out.join("wave_stress.f32"), &bytes).expect("OUT_DIR can be written");
+    bytes.clear();
+    for (zero, more) in kernels::patches::WW.places().map(stresses) {
+        bytes.extend([zero[1], more[1]].iter().flat_map(|s| s.to_le_bytes()));
+    }
+    fs::write(out.join("wave_ww.f64"), &bytes).expect("OUT_DIR can be written");
 }
 
 /// What a folder holds, by name; nothing if it is not there.

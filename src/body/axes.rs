@@ -189,7 +189,7 @@ impl Resolution {
     }
 
     /// Wavenumbers across the contact, for bodies of half-length up to `half`: coarse panels that
-    /// grow from [`Resolution::smallest_wavenumber`] to `k_max`, cut where they are wider than
+    /// grow from the smallest one to `k_max`, cut where they are wider than
     /// `k_step` for the pressure's transform.
     pub fn wavenumbers(&self, half: f64) -> Wavenumbers {
         let smallest = self.smallest_wavenumber(half);

@@ -1,72 +1,15 @@
-//! A half-space under a line load that varies as cos(k x) along its line.
-//!
-//! Conventions of this module: `u` is the offset from the load along the surface, across the line;
-//! `v` >= 0 is the depth; the load is a unit force per length times cos(k x) on the line u = 0 of
-//! the surface. In-plane stresses `ww` (along u), `dd` (along the depth), `xx` and `wd` vary as
-//! cos(k x), the shears `xw` and `xd` as sin(k x). Pressure is positive, stress is positive in
-//! tension. Integrating any of them over k from 0 to infinity and dividing by pi gives the field
-//! of a point load (Boussinesq).
-//!
-//! Source: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2, carries
-//! sigma_dd = -p (1 + kappa v) e^(-kappa v) and, tangentially,
-//! sigma_ab = (d_a d_b / kappa^2) [(1 - 2 nu) - kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v)
-//! (the Papkovich-Neuber solution with one harmonic function; Johnson, Contact Mechanics, 1985,
-//! chapter 3). The inverse transforms in l are K0, K1 and their incomplete integrals:
-//! e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
+//! Stresses of line loads that vary as cos(k x) along their line, tabulated; the conventions and the
+//! closed forms are those of [`crate::kernels::line_load`].
 
-use super::bessel::{incomplete, k0_k1};
+use super::line_load::{WaveStress, near};
+use super::patches::{CEILING, FLOOR, Fineness, STRESS, WW};
 use multiversion::{multiversion, target::target_cfg_f};
-use std::f64::consts::FRAC_1_PI;
 use std::sync::{Arc, Mutex};
 
-/// Amplitudes of the six stresses; see the module for which vary as cos(k x) and which as sin(k x).
-#[derive(Debug, Clone, Copy, Default, PartialEq)]
-pub struct WaveStress {
-    pub xx: f64,
-    /// Along the surface, across the load's line.
-    pub ww: f64,
-    /// Along the depth.
-    pub dd: f64,
-    pub xw: f64,
-    pub xd: f64,
-    pub wd: f64,
-}
-
-/// Stresses at offset `u` and depth `v` > 0 (or v = 0 with u /= 0) of a line load of wavenumber
-/// `k` > 0, in a material of Poisson's ratio `nu`.
-#[inline]
-pub fn exact(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
-    let rho = (u * u + v * v).sqrt();
-    let x = k * rho;
-    let (k0, k1) = k0_k1(x);
-    let (j, n) = incomplete(k * u.abs(), k * v);
-    let k1_rho = k1 / rho;
-    // K2(x) k / rho^2, from K2 = K0 + 2 K1 / x.
-    let k2_rho2 = (k * k0 + 2.0 * k1_rho) / (rho * rho);
-    // Inverse transforms of e^(-kappa v) kappa^(-m), m = 2, 1, 0, -1, and their slopes along u.
-    let e2 = FRAC_1_PI * j / k;
-    let e1 = FRAC_1_PI * k0;
-    let e0 = FRAC_1_PI * k * v * k1_rho;
-    let em1 = FRAC_1_PI * k * (v * v * k2_rho2 - k1_rho);
-    let slope2 = -FRAC_1_PI * n * u.signum();
-    let slope1 = -FRAC_1_PI * k * u * k1_rho;
-    let slope0 = -FRAC_1_PI * k * v * u * k2_rho2;
-    let free = 1.0 - 2.0 * nu;
-    let xx = k * k * (v * e1 - free * e2) - 2.0 * nu * e0;
-    WaveStress {
-        xx,
-        ww: v * em1 - e0 - k * k * (v * e1 - free * e2),
-        dd: -e0 - v * em1,
-        xw: -k * (free * slope2 - v * slope1),
-        xd: -k * v * e0,
-        wd: v * slope0,
-    }
-}
-
-/// [`exact`] of one material, tabulated: with lengths in units of 1/k the six stresses times
+/// [`super::line_load::exact`] of one material, tabulated: with lengths in units of 1/k the six stresses times
 /// rho are smooth functions of rho and of the angle, interpolated by polynomials on patches, rows of
 /// patches in octaves of rho. Absolute error of rho times a stress below 5e-5, of [`WaveTable::ww`]
-/// below 2e-5 (checked against [`exact`]), at less than a tenth of its time.
+/// below 2e-5 (checked against the closed forms), at less than a tenth of its time.
 #[derive(Debug, Clone)]
 pub struct WaveTable {
     nu: f64,
@@ -89,86 +32,50 @@ type Patch = [[f32; LANES]; STRESS.order];
 const STRESSES: usize = 4;
 const LANES: usize = STRESSES * STRESS.order;
 
-/// How finely a function of rho and of the angle is tabulated.
-struct Fineness {
-    /// Coefficients in either direction.
-    order: usize,
-    /// Patches an octave of rho.
-    rows: usize,
-    /// Patches from the depth's direction to the surface's.
-    angles: usize,
-}
-
 /// No stress of the six.
 const NONE: usize = 6;
 
-const STRESS: Fineness = Fineness { order: 4, rows: 2, angles: 8 };
-const WW: Fineness = Fineness { order: 6, rows: 1, angles: 6 };
+/// Stresses times rho at the places of [`STRESS`] and of [`WW`] (ww alone), k = 1, for nu = 0 and what
+/// nu = 1 adds, in little-endian: they are linear in nu. Evaluated when the program is built.
+const STRESS_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_stress.f32"));
+const WW_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_ww.f64"));
 
-/// Octaves of rho that are tabulated, 2^LOW up to 2^HIGH.
-const LOW: i32 = -9;
-const HIGH: i32 = 5;
-const FLOOR: f64 = 1.0 / 512.0;
-const CEILING: f64 = 32.0;
-
-impl Fineness {
-    /// The patch and the place in it, in [-1, 1], of the distance `rho` and of `share`, that of the
-    /// offset in the sum of offset and depth.
-    #[inline(always)]
-    fn locate(&self, share: f64, rho: f64) -> (usize, f64, f64) {
-        let bits = rho.to_bits();
-        let octave = ((bits >> 52) as i32) - 1023;
-        let mantissa = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52));
-        let along = (mantissa - 1.0) * self.rows as f64;
-        let row = along as usize;
-        let around = share * self.angles as f64;
-        let angle = (around as usize).min(self.angles - 1);
-        let patch = ((octave - LOW) as usize * self.rows + row) * self.angles + angle;
-        (patch, 2.0 * (along - row as f64) - 1.0, 2.0 * (around - angle as f64) - 1.0)
-    }
-
-    /// Calls `add` with the coefficients [radial][angular] of the six stresses times rho on each patch.
-    fn tabulate<const N: usize>(&self, nu: f64, mut add: impl FnMut([[[f64; 6]; N]; N])) {
-        let nodes: [f64; N] =
-            std::array::from_fn(|i| (std::f64::consts::PI * (i as f64 + 0.5) / N as f64).cos());
-        // From values at Chebyshev nodes to powers; so few powers keep this well conditioned.
-        let inverse = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, j| nodes[i].powi(j as i32));
-        let inverse = inverse.try_inverse().expect("distinct nodes");
-        let rows = (HIGH - LOW) as usize * self.rows;
-        for (row, angle) in (0..rows).flat_map(|r| (0..self.angles).map(move |a| (r, a))) {
-            let scale = 2f64.powi(LOW + (row / self.rows) as i32);
-            let mut values = [[[0.0; 6]; N]; N];
-            for (row_values, t) in values.iter_mut().zip(nodes) {
-                let part = (row % self.rows) as f64 + 0.5 + 0.5 * t;
-                let rho = scale * (1.0 + part / self.rows as f64);
-                for (value, t) in row_values.iter_mut().zip(nodes) {
-                    let share = (angle as f64 + 0.5 + 0.5 * t) / self.angles as f64;
-                    let (sin, cos) = share.atan2(1.0 - share).sin_cos();
-                    let s = exact(1.0, nu, rho * sin, rho * cos);
-                    *value = [s.xx, s.ww, s.dd, s.wd, s.xw, s.xd].map(|s| rho * s);
+/// Calls `add` with the monomial coefficients [radial][angular] of each patch of `C` functions, whose
+/// `values` are given in the order of [`Fineness::places`].
+fn interpolate<const N: usize, const C: usize>(
+    fineness: &Fineness,
+    values: impl Iterator<Item = [f64; C]>,
+    mut add: impl FnMut([[[f64; C]; N]; N]),
+) {
+    // From values at Chebyshev nodes to powers; so few powers keep this well conditioned.
+    let powers = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, j| fineness.node(i).powi(j as i32));
+    let inverse = powers.try_inverse().expect("distinct nodes");
+    let mut values = values.peekable();
+    while values.peek().is_some() {
+        // One direction after the other.
+        let mut half_way = [[[0.0; C]; N]; N];
+        for i in 0..N {
+            for j in 0..N {
+                let value = values.next().expect("whole patches");
+                for (a, row) in half_way.iter_mut().enumerate() {
+                    for (sum, v) in row[j].iter_mut().zip(value) {
+                        *sum += inverse[(a, i)] * v;
+                    }
                 }
             }
-            // One direction after the other.
-            let mut half_way = [[[0.0; 6]; N]; N];
-            let mut patch = [[[0.0; 6]; N]; N];
-            for (a, i, j) in indices::<N>() {
-                for c in 0..6 {
-                    half_way[a][j][c] += inverse[(a, i)] * values[i][j][c];
-                }
-            }
-            for (b, j, a) in indices::<N>() {
-                for c in 0..6 {
-                    patch[a][b][c] += inverse[(b, j)] * half_way[a][j][c];
-                }
-            }
-            add(patch);
         }
+        let mut patch = [[[0.0; C]; N]; N];
+        for (into, from) in patch.iter_mut().zip(&half_way) {
+            for (b, coefficient) in into.iter_mut().enumerate() {
+                for (j, v) in from.iter().enumerate() {
+                    for (sum, v) in coefficient.iter_mut().zip(v) {
+                        *sum += inverse[(b, j)] * v;
+                    }
+                }
+            }
+        }
+        add(patch);
     }
-}
-
-/// All triples of numbers below `N`.
-fn indices<const N: usize>() -> impl Iterator<Item = (usize, usize, usize)> {
-    (0..N).flat_map(|a| (0..N).flat_map(move |b| (0..N).map(move |c| (a, b, c))))
 }
 
 impl WaveTable {
@@ -191,7 +98,12 @@ impl WaveTable {
     /// The table for Poisson's ratio `nu`.
     pub fn new(nu: f64) -> Self {
         let (mut even, mut odd, mut ww) = (Vec::new(), Vec::new(), Vec::new());
-        STRESS.tabulate::<{ STRESS.order }>(nu, |patch| {
+        let single = |b: &[u8]| f64::from(f32::from_le_bytes(b.try_into().expect("four bytes")));
+        let stresses = STRESS_VALUES.chunks_exact(4 * 12).map(|place| -> [f64; 6] {
+            let value = |i: usize| single(&place[4 * i..4 * i + 4]);
+            std::array::from_fn(|c| value(c) + nu * value(6 + c))
+        });
+        interpolate::<{ STRESS.order }, 6>(&STRESS, stresses, |patch| {
             let lanes = |stress: [usize; STRESSES]| -> Patch {
                 std::array::from_fn(|b| {
                     std::array::from_fn(|i| {
@@ -203,11 +115,17 @@ impl WaveTable {
             even.push(lanes([0, 1, 2, 3]));
             odd.push(lanes([4, 5, NONE, NONE]));
         });
-        WW.tabulate::<{ WW.order }>(nu, |patch| ww.push(patch.map(|row| row.map(|c| c[1]))));
+        let double = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
+        let values = WW_VALUES
+            .chunks_exact(16)
+            .map(|place| [double(&place[..8]) + nu * double(&place[8..])]);
+        interpolate::<{ WW.order }, 1>(&WW, values, |patch| {
+            ww.push(patch.map(|row| row.map(|[c]| c)));
+        });
         Self { nu, even, odd, ww }
     }
 
-    /// As [`exact`].
+    /// As [`super::line_load::exact`].
     pub fn line_load(&self, k: f64, u: f64, v: f64) -> WaveStress {
         let [xx, ww, dd, wd, xw, xd] = self.sum(k, v, &[u], &[1.0]);
         WaveStress { xx, ww, dd, xw, xd, wd }
@@ -339,25 +257,6 @@ fn sum_loads(
     })
 }
 
-/// [`exact`] to first order in `k` at distances much shorter than 1/k: the plane-strain line load
-/// (Johnson 1985, Eq. 2.23) and the even term that a Poisson's ratio other than 1/2 adds; relative
-/// error below (k rho)^2 ln(k rho).
-#[inline]
-fn near(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
-    let free = 1.0 - 2.0 * nu;
-    let square = u * u + v * v;
-    let radial = 2.0 * FRAC_1_PI * v / (square * square);
-    let spread = 0.5 * free * k;
-    WaveStress {
-        xx: -2.0 * nu * FRAC_1_PI * v / square - spread,
-        ww: -radial * u * u + spread,
-        dd: -radial * v * v,
-        xw: k * FRAC_1_PI * (free * u.atan2(v) - u * v / square),
-        xd: -k * FRAC_1_PI * v * v / square,
-        wd: -radial * u * v,
-    }
-}
-
 /// The part of a half-space's surface stress that is not local to the load: at v = 0 the stresses
 /// under a pressure p(u) are xx = -2 nu p - (1 - 2 nu) s, ww = -p + (1 - 2 nu) s, dd = -p,
 /// with s the convolution of p with this kernel, (k / 2) e^(-k |u|) (J at v = 0 is (pi/2) e^-u).
@@ -375,6 +274,7 @@ pub fn surface_spread_shear(k: f64, u: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::line_load::exact;
     use super::*;
     use crate::base::Panels;
     use std::f64::consts::PI;

@@ -96,6 +96,8 @@ impl Pressure {
 #[derive(Debug, Clone)]
 struct Loads {
     k: f64,
+    /// Whether they serve the plane x = 0 only, where shears that are odd in x vanish.
+    central: bool,
     /// Factor of what they cause: the quadrature weight of the wavenumber, if the loads lack it,
     /// over pi.
     weight: f64,
@@ -115,11 +117,12 @@ struct Loads {
 
 impl Loads {
     /// The loads that go with the transform `contact` of the contact pressure, by the layers and
-    /// their weights.
+    /// their shares. Without a `weight` of the wavenumber its quadrature is in `contact`, and the loads
+    /// serve the plane x = 0.
     fn new(
         body: &Body,
         k: f64,
-        weight: f64,
+        weight: Option<f64>,
         contact: Vec<f64>,
         layers: &[Layer],
         shares: &[f64],
@@ -142,7 +145,8 @@ impl Loads {
         let total: f64 = surface.iter().zip(body.surface.axis.weights()).map(|(p, w)| p * w).sum();
         Self {
             k,
-            weight: weight / PI,
+            central: weight.is_none(),
+            weight: weight.unwrap_or(1.0) / PI,
             mean: total / body.half,
             plate: body.plate_transform(k, &face),
             surface_charges: body.surface.charges(&surface),
@@ -244,7 +248,7 @@ impl<'a> Field<'a> {
             .zip(moments.chunks_exact(n))
             .zip(layers)
             .map(|((&k, p), layer)| {
-                Loads::new(body, k, 1.0, p.to_vec(), std::slice::from_ref(layer), &[1.0])
+                Loads::new(body, k, None, p.to_vec(), std::slice::from_ref(layer), &[1.0])
             })
             .collect();
         let negligible = 0.005 * tolerance;
@@ -274,7 +278,7 @@ impl<'a> Field<'a> {
             let (first, shares) = numbers.interpolation(node);
             let mut p = vec![0.0; self.pressure.axis().len()];
             self.pressure.transform(k, &mut p);
-            Loads::new(self.body, k, weight, p, &self.layers[first..], shares)
+            Loads::new(self.body, k, Some(weight), p, &self.layers[first..], shares)
         });
         let loads = Arc::new(loads.collect::<Vec<_>>());
         made.push((level, loads.clone()));
@@ -385,18 +389,17 @@ impl<'a> Field<'a> {
                 work.faded = ((items.len() - number) * (on_surface + on_faces)) as u64;
                 break;
             }
-            let mut amplitudes = self.surface_part(&surface, loads, y, z, central, &mut scratch);
+            let mut amplitudes = self.surface_part(&surface, loads, y, z, &mut scratch);
             let mut done = scratch.offsets.len();
             if let Some((end, shares)) = &correction {
-                let on_end = self.surface_part(end, loads, body.half, z, true, &mut scratch)[1];
+                let on_end = self.surface_part(end, loads, body.half, z, &mut scratch)[1];
                 done += scratch.offsets.len();
                 amplitudes[1] -= on_end * (shares[0] + shares[1]);
             }
             if let Some(stencils) = &faces {
                 let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
                 for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    let face =
-                        self.face_part(stencil, loads, z, depth, into, central, &mut scratch);
+                    let face = self.face_part(stencil, loads, z, depth, into, &mut scratch);
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                     done += scratch.offsets.len();
                 }
@@ -436,7 +439,6 @@ impl<'a> Field<'a> {
         loads: &Loads,
         y: f64,
         z: f64,
-        central: bool,
         scratch: &mut LineLoads,
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
@@ -449,9 +451,9 @@ impl<'a> Field<'a> {
         body.for_strips(k, y, z, |u, w| scratch.push(u, w * loads.mean));
         if z == 0.0 {
             let p = value_at(&body.surface.axis, &loads.surface, y);
-            return surface_limit(body.nu, k, p, central, scratch);
+            return surface_limit(body.nu, k, p, loads.central, scratch);
         }
-        let [xx, yy, zz, yz, xy, xz] = self.line_loads(k, z, central, scratch);
+        let [xx, yy, zz, yz, xy, xz] = self.line_loads(k, z, loads.central, scratch);
         [xx, yy, zz, xy, xz, yz]
     }
 
@@ -475,7 +477,6 @@ impl<'a> Field<'a> {
         z: f64,
         depth: f64,
         into: f64,
-        central: bool,
         scratch: &mut LineLoads,
     ) -> Amplitudes {
         let (body, k) = (self.body, loads.k);
@@ -487,10 +488,10 @@ impl<'a> Field<'a> {
         stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
         let [xx, ww, dd, wd, xw, xd] = if depth == 0.0 {
             let q = value_at(&body.face.axis, &loads.face, z);
-            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, central, scratch);
+            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, loads.central, scratch);
             [xx, ww, dd, wd, xw, xd]
         } else {
-            self.line_loads(k, depth, central, scratch)
+            self.line_loads(k, depth, loads.central, scratch)
         };
         [xx, dd, ww, into * xd, xw, into * wd]
     }

@@ -1,0 +1,81 @@
+//! A half-space under a line load that varies as cos(k x) along its line.
+//!
+//! Conventions of this module: `u` is the offset from the load along the surface, across the line;
+//! `v` >= 0 is the depth; the load is a unit force per length times cos(k x) on the line u = 0 of
+//! the surface. In-plane stresses `ww` (along u), `dd` (along the depth), `xx` and `wd` vary as
+//! cos(k x), the shears `xw` and `xd` as sin(k x). Pressure is positive, stress is positive in
+//! tension. Integrating any of them over k from 0 to infinity and dividing by pi gives the field
+//! of a point load (Boussinesq).
+//!
+//! Source: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2, carries
+//! sigma_dd = -p (1 + kappa v) e^(-kappa v) and, tangentially,
+//! sigma_ab = (d_a d_b / kappa^2) [(1 - 2 nu) - kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v)
+//! (the Papkovich-Neuber solution with one harmonic function; Johnson, Contact Mechanics, 1985,
+//! chapter 3). The inverse transforms in l are K0, K1 and their incomplete integrals:
+//! e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
+
+use super::bessel::{incomplete, k0_k1};
+use std::f64::consts::FRAC_1_PI;
+
+/// Amplitudes of the six stresses; see the module for which vary as cos(k x) and which as sin(k x).
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct WaveStress {
+    pub xx: f64,
+    /// Along the surface, across the load's line.
+    pub ww: f64,
+    /// Along the depth.
+    pub dd: f64,
+    pub xw: f64,
+    pub xd: f64,
+    pub wd: f64,
+}
+
+/// Stresses at offset `u` and depth `v` > 0 (or v = 0 with u /= 0) of a line load of wavenumber
+/// `k` > 0, in a material of Poisson's ratio `nu`.
+#[inline]
+pub fn exact(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
+    let rho = (u * u + v * v).sqrt();
+    let x = k * rho;
+    let (k0, k1) = k0_k1(x);
+    let (j, n) = incomplete(k * u.abs(), k * v);
+    let k1_rho = k1 / rho;
+    // K2(x) k / rho^2, from K2 = K0 + 2 K1 / x.
+    let k2_rho2 = (k * k0 + 2.0 * k1_rho) / (rho * rho);
+    // Inverse transforms of e^(-kappa v) kappa^(-m), m = 2, 1, 0, -1, and their slopes along u.
+    let e2 = FRAC_1_PI * j / k;
+    let e1 = FRAC_1_PI * k0;
+    let e0 = FRAC_1_PI * k * v * k1_rho;
+    let em1 = FRAC_1_PI * k * (v * v * k2_rho2 - k1_rho);
+    let slope2 = -FRAC_1_PI * n * u.signum();
+    let slope1 = -FRAC_1_PI * k * u * k1_rho;
+    let slope0 = -FRAC_1_PI * k * v * u * k2_rho2;
+    let free = 1.0 - 2.0 * nu;
+    let xx = k * k * (v * e1 - free * e2) - 2.0 * nu * e0;
+    WaveStress {
+        xx,
+        ww: v * em1 - e0 - k * k * (v * e1 - free * e2),
+        dd: -e0 - v * em1,
+        xw: -k * (free * slope2 - v * slope1),
+        xd: -k * v * e0,
+        wd: v * slope0,
+    }
+}
+
+/// [`exact`] to first order in `k` at distances much shorter than 1/k: the plane-strain line load
+/// (Johnson 1985, Eq. 2.23) and the even term that a Poisson's ratio other than 1/2 adds; relative
+/// error below (k rho)^2 ln(k rho).
+#[inline]
+pub fn near(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
+    let free = 1.0 - 2.0 * nu;
+    let square = u * u + v * v;
+    let radial = 2.0 * FRAC_1_PI * v / (square * square);
+    let spread = 0.5 * free * k;
+    WaveStress {
+        xx: -2.0 * nu * FRAC_1_PI * v / square - spread,
+        ww: -radial * u * u + spread,
+        dd: -radial * v * v,
+        xw: k * FRAC_1_PI * (free * u.atan2(v) - u * v / square),
+        xd: -k * FRAC_1_PI * v * v / square,
+        wd: -radial * u * v,
+    }
+}

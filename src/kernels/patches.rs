@@ -1,0 +1,64 @@
+//! Where the stresses of line loads are tabulated: patches of the distance rho, in units of 1/k, and
+//! of the direction.
+
+/// How finely a function of rho and of the direction is tabulated.
+pub struct Fineness {
+    /// Coefficients in either coordinate of a patch.
+    pub order: usize,
+    /// Patches an octave of rho.
+    pub rows: usize,
+    /// Patches from the depth's direction to the surface's.
+    pub angles: usize,
+}
+
+/// For the stresses of fields.
+pub const STRESS: Fineness = Fineness { order: 4, rows: 2, angles: 8 };
+
+/// For the stress that the end faces' matrices are solved with.
+pub const WW: Fineness = Fineness { order: 6, rows: 1, angles: 6 };
+
+/// Octaves of rho that are tabulated, 2^LOW up to 2^HIGH.
+const LOW: i32 = -9;
+const HIGH: i32 = 5;
+
+/// Ends of the tabulated range of rho.
+pub const FLOOR: f64 = 1.0 / 512.0;
+pub const CEILING: f64 = 32.0;
+
+impl Fineness {
+    /// The patch and the place in it, in [-1, 1], of the distance `rho` and of `share`, that of the
+    /// offset in the sum of offset and depth.
+    #[inline(always)]
+    pub fn locate(&self, share: f64, rho: f64) -> (usize, f64, f64) {
+        let bits = rho.to_bits();
+        let octave = ((bits >> 52) as i32) - 1023;
+        let mantissa = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52));
+        let along = (mantissa - 1.0) * self.rows as f64;
+        let row = along as usize;
+        let around = share * self.angles as f64;
+        let angle = (around as usize).min(self.angles - 1);
+        let patch = ((octave - LOW) as usize * self.rows + row) * self.angles + angle;
+        (patch, 2.0 * (along - row as f64) - 1.0, 2.0 * (around - angle as f64) - 1.0)
+    }
+
+    /// Chebyshev nodes in [-1, 1], the places of a patch's values in either coordinate.
+    pub fn node(&self, i: usize) -> f64 {
+        (std::f64::consts::PI * (i as f64 + 0.5) / self.order as f64).cos()
+    }
+
+    /// Offsets and depths of all values, patch by patch, in a patch the direction running fastest.
+    pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
+        let (n, rows) = (self.order, (HIGH - LOW) as usize * self.rows);
+        let count = rows * self.angles * n * n;
+        (0..count).map(move |at| {
+            let (patch, i, j) = (at / (n * n), at / n % n, at % n);
+            let (row, angle) = (patch / self.angles, patch % self.angles);
+            let part = (row % self.rows) as f64 + 0.5 + 0.5 * self.node(i);
+            let octave = LOW + (row / self.rows) as i32;
+            let rho = 2f64.powi(octave) * (1.0 + part / self.rows as f64);
+            let share = (angle as f64 + 0.5 + 0.5 * self.node(j)) / self.angles as f64;
+            let (sin, cos) = share.atan2(1.0 - share).sin_cos();
+            (rho * sin, rho * cos)
+        })
+    }
+}
