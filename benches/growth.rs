@@ -5,7 +5,7 @@
 //! by the allocator: the process's own size would hide it.
 
 use edgeline::base::Material;
-use edgeline::body::EdgeModel;
+use edgeline::body::{EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Scene, SolvedScene, solve, solve_group};
 use edgeline::stress::grid::on_grid;
@@ -131,6 +131,19 @@ fn main() {
     for tolerance in [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4] {
         let case = case(1e-4, 5.0, tolerance);
         growth.row(&format!("{tolerance:e}"), nodes(&case), cost(|| solve(&case, &options)));
+    }
+    growth.end();
+
+    let title = "Cells: every panel halved and every extent doubled, S_l 5, pressure only";
+    let mut growth = Growth::head(title, "halved", "cells");
+    let scene = Scene::new(&case(1e-4, 5.0, 1e-2), model, None);
+    let mut resolution = Resolution::for_tolerance(scene.tolerance);
+    for halved in 0..3 {
+        let cells =
+            resolution.contact_axis(scene.half_length).len() * resolution.wavenumbers().len();
+        let work = || SolvedScene::with_resolution(&scene, &resolution).expect("it converges");
+        growth.row(&halved.to_string(), cells, cost(work));
+        resolution = resolution.refined();
     }
     growth.end();
 

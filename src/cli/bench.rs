@@ -20,7 +20,8 @@ use std::path::{Path, PathBuf};
 /// Writes pareto.csv (one row a case and a model's tolerance or FEM's mesh), pareto.svg (run time
 /// against error, both sides) and bench.json into the output folder. Errors are taken against FEM's
 /// finest mesh and against quarter-space at the tightest tolerance. Only with --fem live are times
-/// of FEM and the models divided; recorded ones are shown apart. Takes a few minutes for the four
+/// of FEM and the models divided; recorded ones are shown apart. A mesh that is done in the folder already is not run
+/// again: give a new folder to time both sides anew. Takes a few minutes for the four
 /// default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {

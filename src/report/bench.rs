@@ -1,11 +1,11 @@
 //! The files of `edgeline bench`: `pareto.csv`, `pareto.svg` and `bench.json`.
 
 use super::chart::{Figure, Look, Marker, Panel, Series, look};
-use super::study_files::pretty;
 use super::table::{Table, number, optional};
 use crate::base::{Result, write_whole};
 use crate::study::bench::{Accuracy, Against, Bench, CaseBench, Origin, Point, front};
 use crate::study::factorial::median;
+use serde_json::Value;
 use std::path::Path;
 
 /// Writes the three files into a folder that is there; `bench.json`, which says that the run is
@@ -19,9 +19,43 @@ pub fn write(bench: &Bench, folder: &Path) -> Result<()> {
     write_whole(&folder.join("bench.json"), json(bench))
 }
 
-/// The text of `bench.json`.
+/// The text of `bench.json`: a line for each case, point and ratio, so that versions of a record can
+/// be compared line by line.
 pub fn json(bench: &Bench) -> String {
-    pretty(&serde_json::to_value(bench).expect("a run is plain numbers and words"))
+    let value = serde_json::to_value(bench).expect("a run is plain numbers and words");
+    let mut text = String::new();
+    lines(&value, 0, &mut text);
+    text.push('\n');
+    text
+}
+
+/// Adds a value: the run itself and lists of objects with a line for each entry, all else on one
+/// line.
+fn lines(value: &Value, depth: usize, text: &mut String) {
+    let inner = "\n".to_string() + &"  ".repeat(depth + 1);
+    let outer = "\n".to_string() + &"  ".repeat(depth);
+    let listed = |v: &Value| v.as_array().is_some_and(|a| a.iter().any(Value::is_object));
+    match value {
+        Value::Object(map) if depth == 0 || map.values().any(listed) => {
+            for (i, (key, v)) in map.iter().enumerate() {
+                let start = if i == 0 { "{" } else { "," };
+                text.push_str(&format!("{start}{inner}{}: ", Value::from(key.as_str())));
+                lines(v, depth + 1, text);
+            }
+            text.push_str(&outer);
+            text.push('}');
+        }
+        Value::Array(list) if listed(value) => {
+            for (i, v) in list.iter().enumerate() {
+                text.push(if i == 0 { '[' } else { ',' });
+                text.push_str(&inner);
+                lines(v, depth + 1, text);
+            }
+            text.push_str(&outer);
+            text.push(']');
+        }
+        _ => text.push_str(&value.to_string()),
+    }
 }
 
 /// Points whose times may be compared with each other, as one group has them.
@@ -233,6 +267,21 @@ mod tests {
         assert_eq!(pairs, [(1e-2, (2.0, 0.4)), (1e-3, (4.0, 0.4))]);
         assert!(summed_up(&cases, Against::Limit).is_empty());
         assert_eq!(front_of(&cases[0], Origin::Model, Against::Fem), [(1.0, 0.1)]);
+    }
+
+    #[test]
+    fn the_text_is_the_record() {
+        let record = Bench::recorded().unwrap();
+        let text = json(&record);
+        assert_eq!(Bench::parse(&text, Path::new("b")).unwrap(), record);
+        let points: usize = record.cases.iter().map(|c| c.points.len()).sum();
+        let most = 30 + 6 * record.cases.len() + points + record.speedups.len();
+        assert!(text.lines().count() <= most, "{text}");
+        assert_eq!(
+            text,
+            include_str!("../../results/bench.json"),
+            "the record is as it was written"
+        );
     }
 
     fn json_accuracy(worst: f64) -> serde_json::Value {

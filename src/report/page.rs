@@ -3,7 +3,7 @@
 use super::plots;
 use super::study_files::StudyFiles;
 use super::table::Table;
-use super::verdict::{duration, rounded};
+use super::verdict::{duration, duration_with_spread, rounded};
 use crate::base::{Error, Result, write_whole};
 use minijinja::{Environment, context};
 use serde_json::{Map, Value, json};
@@ -71,6 +71,13 @@ fn render(
     environment.add_filter("typeset", |text: String| typeset(&text));
     environment.add_filter("seconds", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, duration)
+    });
+    environment.add_filter("with_spread", move |v: minijinja::Value, spread: minijinja::Value| {
+        match (as_number(&v), as_number(&spread)) {
+            (Some(v), Some(spread)) => duration_with_spread(v, spread),
+            (Some(v), None) => duration(v),
+            (None, _) => dash(),
+        }
     });
     environment.add_filter("short", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, |v| short(v).replace('-', "−"))

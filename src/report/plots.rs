@@ -458,25 +458,29 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
         if of.is_empty() {
             continue;
         }
-        let figure = |title: String, panels: Vec<Panel>, size| Figure {
+        // Four panels stand better in two rows than as three and one.
+        let columns = if of.len() == 4 { 2 } else { 3 };
+        let figure = |title: String, panels: Vec<Panel>, columns, size| Figure {
             title,
-            columns: 3,
+            columns,
             panels,
             panel_size: size,
         };
         plots.push((
             format!("half-normal-{method}"),
             figure(
-                format!("{method}: half-normal plot of the effects on the errors"),
+                format!("{method}: half-normal plot of the effects"),
                 of.iter().map(|(r, e)| e.half_normal(r)).collect(),
+                columns,
                 (380, 320),
             ),
         ));
         plots.push((
             format!("pareto-{method}"),
             figure(
-                format!("{method}: effects on the errors by size"),
+                format!("{method}: effects by size"),
                 of.iter().map(|(r, e)| e.pareto(r)).collect(),
+                columns,
                 (380, 300),
             ),
         ));
@@ -485,6 +489,7 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             figure(
                 format!("{method}: interactions"),
                 of.iter().flat_map(|(r, _)| interactions(files, method, r)).collect(),
+                3,
                 (380, 270),
             ),
         ));

@@ -157,6 +157,19 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// Seconds with their +-, both in the unit that fits the first, to two digits of the second.
+pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
+    let (unit, name) = match seconds {
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let (value, spread) = (seconds * unit, spread * unit);
+    let digits =
+        if spread > 0.0 { (1.0 - spread.log10().floor()).clamp(0.0, 3.0) as usize } else { 1 };
+    format!("{value:.digits$} ± {spread:.digits$} {name}")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -202,6 +215,11 @@ mod tests {
         assert_eq!(
             [4.2e-5, 0.0123, 0.27, 3.21, 45.4].map(duration),
             ["42 µs", "12.3 ms", "270 ms", "3.2 s", "45 s"]
+        );
+        let pairs = [(7.7, 0.234), (0.163, 0.0588), (4.2e-5, 9e-7), (12.0, 0.0)];
+        assert_eq!(
+            pairs.map(|(seconds, spread)| duration_with_spread(seconds, spread)),
+            ["7.70 ± 0.23 s", "163 ± 59 ms", "42.00 ± 0.90 µs", "12.0 ± 0.0 s"]
         );
         assert_eq!([14_234.0, 950.4, 3.0, 0.24].map(rounded), ["14,000", "950", "3", "0.2"]);
     }

@@ -99,18 +99,25 @@ pub struct Point {
     /// A model's tolerance (p0); a mesh's relative element size.
     pub setting: f64,
     /// Unknowns of both bodies (FEM).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub unknowns: Option<u64>,
     /// Times on one thread; FEM's on one thread a process.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub timing: Option<Timing>,
     /// Times on all threads (models).
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub all_threads: Option<Timing>,
     /// The processor where that is not of this run.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub machine: Option<String>,
     /// Against FEM's finest mesh; for that mesh itself its difference to the next finest.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub to_fem: Option<Accuracy>,
     /// Against quarter-space at the tightest tolerance; none for that solution itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub to_limit: Option<Accuracy>,
     /// Why there is no answer.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub err: Option<String>,
 }
 
