@@ -305,7 +305,7 @@ fn method_row(
     row.set("seconds_stress", &number(s.seconds.stress));
     if let Some(one) = m.timing.first() {
         row.set("seconds", &number(one.median_s));
-        row.set("seconds_spread", &number(one.spread_s()));
+        row.set("seconds_spread", &optional((one.repeats > 1).then(|| one.spread_s())));
         row.set("seconds_cold", &optional(one.cold_s));
     }
     if let Some(all) = m.timing.get(1) {

@@ -86,7 +86,8 @@ pub fn measure<T: Send, E: Send>(
     let all = || -> Result<Timing, E> {
         timed()?;
         let mut warm = vec![timed()?];
-        while warm.len() < repeats && warm.iter().sum::<f64>() < BUDGET_S {
+        // One run alone would have no spread.
+        while warm.len() < repeats && (warm.len() < 2 || warm.iter().sum::<f64>() < BUDGET_S) {
             warm.push(timed()?);
         }
         Ok(Timing::new(rayon::current_num_threads(), &warm))
@@ -148,5 +149,10 @@ mod tests {
             Ok::<_, ()>(())
         };
         assert_eq!(measure(1, 50, slow).unwrap().repeats, 2);
+        let slower = || {
+            std::thread::sleep(std::time::Duration::from_millis(600));
+            Ok::<_, ()>(())
+        };
+        assert_eq!(measure(1, 50, slower).unwrap().repeats, 2);
     }
 }
