@@ -370,6 +370,13 @@ fn the_page_works_in_a_browser() {
         page.wait(fits);
         let overflow = "document.documentElement.scrollWidth <= innerWidth";
         assert_eq!(page.eval(overflow), json!(true), "the page is wider than {width} px");
+        let controls = "[...document.querySelectorAll('.controls > *, #chart, .verdict')].every(\
+                        (e) => e.getBoundingClientRect().right <= innerWidth)";
+        assert_eq!(page.eval(controls), json!(true), "a control sticks out at {width} px");
+        // What scrolls sideways can be reached by keyboard.
+        let reachable = "[...document.querySelectorAll('.wide, figure')].every(\
+                         (e) => e.scrollWidth <= e.clientWidth || e.tabIndex === 0)";
+        page.wait(reachable);
         for scheme in ["light", "dark"] {
             page.scheme(scheme);
             let background = page.text("getComputedStyle(document.body).backgroundColor");
@@ -378,5 +385,14 @@ fn the_page_works_in_a_browser() {
             assert_eq!(page.picture(&pictures.join(name)), (width, height));
         }
     }
+
+    // On paper there are no controls, and words say what they have chosen.
+    page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
+    let display = |id: &str| format!("getComputedStyle(document.querySelector('{id}')).display");
+    assert_eq!(page.text(&display(".controls")), "none");
+    assert_eq!(page.text(&display("#shown")), "block");
+    let shown = page.text("document.getElementById('shown').textContent");
+    assert!(shown.contains(case) && shown.contains("block, depth-0.9"), "{shown}");
+    assert_eq!(page.text("document.getElementById('chart').getAttribute('aria-label')"), shown);
     assert_eq!(page.complaints(), Vec::<String>::new());
 }

@@ -13,10 +13,10 @@ pub use study_file::{DEFAULT_STUDY, Study};
 pub use sweep_file::Sweep;
 
 use crate::base::{HertzScales, Material};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A right circular cylinder with its axis along y.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Roller {
     /// Radius (m).
     pub radius_m: f64,
@@ -27,7 +27,7 @@ pub struct Roller {
 }
 
 /// A rectangular block, deep and wide against the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Block {
     /// Length along y (m), not shorter than the roller.
     pub length_m: f64,
@@ -36,7 +36,7 @@ pub struct Block {
 }
 
 /// A validated contact problem in SI units.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// The case's name, unique in a study.
     pub name: String,
@@ -113,5 +113,44 @@ impl Case {
             slenderness: self.roller.length_m / (2.0 * hertz.c_m),
             length_ratio: self.roller.length_m / self.block.length_m,
         }
+    }
+
+    /// Whether `other` is the same problem, whatever it is called and however accurately it is to be
+    /// solved: bodies, materials and load agree to nine digits.
+    pub fn is_same_problem(&self, other: &Case) -> bool {
+        let numbers = |c: &Case| {
+            let (roller, block) = (c.roller.material, c.block.material);
+            [
+                c.roller.radius_m,
+                c.roller.length_m,
+                c.block.length_m,
+                c.force_n,
+                roller.young_pa,
+                block.young_pa,
+                // 1 - nu^2 is what matters, and nu may be 0.
+                1.0 + roller.poisson,
+                1.0 + block.poisson,
+            ]
+        };
+        numbers(self).iter().zip(numbers(other)).all(|(a, b)| (a - b).abs() <= 1e-9 * b)
+    }
+
+    /// The case file that [`Case::parse`] reads this case from, to the last digit.
+    pub fn to_toml(&self) -> String {
+        let (roller, block) = (self.roller, self.block);
+        let body = |material: Material, length_m: f64| {
+            let (young_pa, poisson) = (material.young_pa, material.poisson);
+            format!("length_m = {length_m:?}\nyoung_pa = {young_pa:?}\npoisson = {poisson:?}\n")
+        };
+        format!(
+            "name = \"{}\"\n[roller]\nradius_m = {:?}\n{}[block]\n{}[load]\nforce_n = {:?}\n\
+             [accuracy]\ntolerance = {:?}\n",
+            self.name,
+            roller.radius_m,
+            body(roller.material, roller.length_m),
+            body(block.material, block.length_m),
+            self.force_n,
+            self.tolerance,
+        )
     }
 }

@@ -47,6 +47,18 @@ fn close(a: f64, b: f64) -> bool {
 }
 
 #[test]
+fn a_case_survives_its_file() {
+    for text in [DIMENSIONLESS, LOADED] {
+        let case = parse(text).unwrap();
+        assert_eq!(parse(&case.to_toml()).unwrap(), case);
+        let other = Case { name: "other".into(), tolerance: 1e-4, ..case.clone() };
+        assert!(case.is_same_problem(&other));
+        let longer = Block { length_m: 1.001 * case.block.length_m, ..case.block };
+        assert!(!case.is_same_problem(&Case { block: longer, ..case.clone() }));
+    }
+}
+
+#[test]
 fn dimensionless_case_has_its_factors() {
     let case = parse(DIMENSIONLESS).unwrap();
     let (factors, hertz) = (case.factors(), case.hertz());

@@ -25,18 +25,25 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     #[command(flatten)]
+    size: Size,
+    #[command(flatten)]
     fem: FemOptions,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
     json: bool,
 }
 
+/// The mesh of whatever runs finite elements on one.
+#[derive(Args)]
+pub(super) struct Size {
+    /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
+    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    pub size: f64,
+}
+
 /// Options of everything that runs finite elements.
 #[derive(Args)]
 pub(super) struct FemOptions {
-    /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
-    size: f64,
     /// Linear solver of the finite elements
     #[arg(long, default_value = "direct", value_parser = linear())]
     linear: Linear,
@@ -64,10 +71,10 @@ pub(super) struct FemOptions {
 }
 
 impl FemOptions {
-    /// The settings that they amount to.
-    pub fn settings(&self) -> Settings {
+    /// The settings that they amount to, for a mesh of relative element size `size`.
+    pub fn settings(&self, size: f64) -> Settings {
         Settings {
-            size: self.size,
+            size,
             linear: self.linear,
             ranks: self.ranks,
             python: self.python.clone(),
@@ -98,7 +105,7 @@ fn seconds(text: &str) -> std::result::Result<f64, String> {
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let case = Case::find(&arguments.case)?;
     prepare_folder(&arguments.out)?;
-    let driver = Driver::new(arguments.fem.settings())?;
+    let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
     let interpreter = driver.interpreter();
     eprintln!(
         "using {} ({}), dolfinx {}",

@@ -1,10 +1,11 @@
 //! `edgeline gate`: does it still hold?
 
-use super::study::{What, built_in_baseline, built_in_gates, find_study};
+use super::study::{What, built_in_baseline, built_in_gates};
 use super::{Outcome, print, print_json};
 use crate::base::{Error, Result, prepare_folder, write_whole};
 use crate::report::gates;
 use crate::report::study_files::pretty;
+use crate::report::table::read;
 use crate::study::gate::{self, Baseline};
 use clap::{Args, ValueHint};
 use std::io::Write;
@@ -18,12 +19,8 @@ use std::path::{Path, PathBuf};
 /// finite-element curves.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A study file; the built-in two-level factorial study if left out
-    #[arg(value_hint = ValueHint::FilePath)]
-    study: Option<PathBuf>,
-    /// Folder for the results; made if it is not there
-    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
-    out: PathBuf,
+    #[command(flatten)]
+    what: What,
     /// Thresholds (TOML) in place of those built into the program
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     gates: Option<PathBuf>,
@@ -33,8 +30,6 @@ pub(super) struct Arguments {
     /// Accept the numbers of this run: show what changes and write them to --baseline
     #[arg(long, requires = "baseline")]
     accept: bool,
-    #[command(flatten)]
-    what: What,
     /// Print the outcomes as one JSON object and nothing else
     #[arg(long)]
     json: bool,
@@ -44,7 +39,7 @@ pub(super) struct Arguments {
 const LISTED: usize = 40;
 
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
-    let study = find_study(arguments.study.as_deref())?;
+    let study = arguments.what.find_study()?;
     let thresholds = match &arguments.gates {
         Some(path) => gate::parse(&read(path)?, path)?,
         None => built_in_gates()?,
@@ -55,9 +50,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         Some(path) => Baseline::parse(&read(path)?, path)?,
         None => built_in_baseline()?,
     };
-    prepare_folder(&arguments.out)?;
+    let out = &arguments.what.out;
+    prepare_folder(out)?;
     let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
-    let run = arguments.what.run(&study, &arguments.out, if timed { 5 } else { 0 })?;
+    let run = arguments.what.run(&study, if timed { 5 } else { 0 })?;
 
     if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {
         return accept(path, &accepted, &Baseline::of(&run), arguments.json);
@@ -65,9 +61,9 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let outcomes = gate::evaluate(&run, &thresholds, Some(&accepted));
     let markdown = gates::markdown(&outcomes);
     let json = gates::json(&outcomes);
-    write_whole(&arguments.out.join("gates.json"), pretty(&json))?;
-    write_whole(&arguments.out.join("gates.md"), &markdown)?;
-    write_whole(&arguments.out.join("junit.xml"), gates::junit(&outcomes))?;
+    write_whole(&out.join("gates.json"), pretty(&json))?;
+    write_whole(&out.join("gates.md"), &markdown)?;
+    write_whole(&out.join("junit.xml"), gates::junit(&outcomes))?;
     if let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY") {
         append(Path::new(&path), &markdown)?;
     }
@@ -107,14 +103,6 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
     lines.push(format!("accepted {places} numbers into {}", path.display()));
     print(&(lines.join("\n") + "\n"))?;
     Ok(Outcome::Done)
-}
-
-fn read(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|source| Error::Io {
-        action: "read",
-        path: path.to_path_buf(),
-        source,
-    })
 }
 
 /// Adds to the end of a file: other steps of a job write there too.

@@ -1,5 +1,7 @@
 //! The command line: one file per subcommand.
 
+mod bench;
+mod cold;
 mod doctor;
 mod fem;
 mod gate;
@@ -37,6 +39,7 @@ enum Command {
     Study(study::Arguments),
     Sweep(sweep::Arguments),
     Gate(gate::Arguments),
+    Bench(bench::Arguments),
     Report(report::Arguments),
     Doctor(doctor::Arguments),
 }
@@ -65,6 +68,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Study(arguments) => study::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
         Command::Gate(arguments) => gate::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Doctor(arguments) => doctor::run(arguments),
     };

@@ -23,11 +23,7 @@ struct Row {
 /// # Errors
 /// [`Error::File`] with the line of the first row that is not such a point.
 pub(super) fn read(path: &Path, case: &Case) -> Result<Vec<Point>> {
-    let text = std::fs::read_to_string(path).map_err(|source| Error::Io {
-        action: "read",
-        path: path.to_path_buf(),
-        source,
-    })?;
+    let text = crate::report::table::read(path)?;
     let refuse = |line: Option<u64>, message: String| Error::File {
         path: path.to_path_buf(),
         line: line.map(|l| l as usize),

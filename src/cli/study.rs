@@ -1,6 +1,7 @@
 //! `edgeline study`: every case by every model, against FEM.
 
-use super::fem::FemOptions;
+use super::cold::ColdRuns;
+use super::fem::{FemOptions, Size};
 use super::solve::edge_model;
 use super::{Outcome, print, print_json};
 use crate::base::{Error, Result, prepare_folder};
@@ -10,6 +11,7 @@ use crate::fem;
 use crate::report::study_files::{Context, StudyFiles};
 use crate::report::{page, plots};
 use crate::solve::{Options, Solution, solve_group};
+use crate::study::bench::{Bench, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::live::Live;
 use crate::study::{Range, Reference, Setup, StudyRun, reference, run as run_study};
@@ -23,15 +25,10 @@ use std::time::{Instant, SystemTime, UNIX_EPOCH};
 /// Writes study.csv (one row a case and source), curves.csv, pressure.csv, fem_error.csv,
 /// errors.csv (one row a case, model, curve and quantity), effects.csv, summary.json, plots/*.svg,
 /// report.html and report.md into the output folder. With recorded finite-element curves it takes
-/// some seconds; with --fem live, minutes a case.
+/// half a minute, nearly all of it for timing (--repeats 0: some seconds); with --fem live, minutes
+/// a case.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A study file; the built-in two-level factorial study if left out
-    #[arg(value_hint = ValueHint::FilePath)]
-    study: Option<PathBuf>,
-    /// Folder for the results; made if it is not there
-    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
-    out: PathBuf,
     #[command(flatten)]
     what: What,
     /// Warm repeats of each model's timing; 0 leaves the timing out
@@ -63,6 +60,12 @@ impl FemSource {
 /// What a study and its gates have in common.
 #[derive(Args)]
 pub(super) struct What {
+    /// A study file; the built-in two-level factorial study if left out
+    #[arg(value_hint = ValueHint::FilePath)]
+    study: Option<PathBuf>,
+    /// Folder for the results; made if it is not there
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    pub(super) out: PathBuf,
     /// Models to run, separated by commas; all of them if left out
     #[arg(long, value_delimiter = ',', value_parser = edge_model())]
     methods: Vec<EdgeModel>,
@@ -81,8 +84,39 @@ pub(super) struct What {
     /// Runs of the finite elements of each case with --fem live: their median counts
     #[arg(long, value_name = "N", default_value_t = 2)]
     fem_repeats: usize,
+    /// Factor of the images of guilbault, in place of the one that follows from Poisson's ratio
+    #[arg(long, value_parser = factor)]
+    psi: Option<f64>,
+    #[command(flatten)]
+    size: Size,
     #[command(flatten)]
     options: FemOptions,
+}
+
+/// Parses the factor of images.
+fn factor(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=2.0).contains(&value) => Ok(value),
+        _ => Err("give a factor between 0 and 2".into()),
+    }
+}
+
+/// The recorded FEM curves: those built into the program, or those of a folder.
+pub(super) struct Records(Option<Vec<fem::Reference>>);
+
+impl Records {
+    /// Those below `folder`; the built-in ones without it.
+    pub(super) fn read(folder: Option<&Path>) -> Result<Self> {
+        folder.map(fem::Reference::read_all).transpose().map(Self)
+    }
+
+    /// The record of a case, if there is one.
+    pub(super) fn find(&self, case: &Case) -> Result<Option<fem::Reference>> {
+        match &self.0 {
+            Some(all) => Ok(all.iter().find(|r| r.is_of(case)).cloned()),
+            None => fem::Reference::embedded_of(case),
+        }
+    }
 }
 
 /// Parses a distance in units of C.
@@ -94,6 +128,11 @@ fn distance(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl What {
+    /// The study of a file, or the built-in one.
+    pub(super) fn find_study(&self) -> Result<Study> {
+        self.study.as_deref().map_or_else(|| Ok(Study::built_in()), Study::read)
+    }
+
     /// The range of the errors.
     fn range(&self) -> Range {
         Range { stress_c: self.exclude, pressure_c: self.exclude_pressure.clone() }
@@ -105,13 +144,18 @@ impl What {
         EdgeModel::ALL.into_iter().filter(wanted).collect()
     }
 
-    /// Runs `study` with live FEM in folders below `folder`.
-    pub(super) fn run(&self, study: &Study, folder: &Path, repeats: usize) -> Result<StudyRun> {
+    /// Runs `study` with live FEM in folders below the one for the results.
+    pub(super) fn run(&self, study: &Study, repeats: usize) -> Result<StudyRun> {
+        let folder = &self.out;
         let live = match self.fem {
-            FemSource::Live => Some(Live::new(self.options.settings(), self.fem_repeats)?),
+            FemSource::Live => {
+                Some(Live::new(self.options.settings(self.size.size), self.fem_repeats)?)
+            }
             FemSource::Recorded => None,
         };
-        let recorded = self.reference.as_deref().map(fem::Reference::read_all).transpose()?;
+        let recorded = Records::read(self.reference.as_deref())?;
+        let times = Bench::recorded()?;
+        let cold = ColdRuns::new(folder);
         let bar = progress_bar();
         let answer = |case: &Case| -> std::result::Result<Reference, String> {
             if let Some(live) = &live {
@@ -120,12 +164,12 @@ impl What {
                     .run(case, &folder.join("fem").join(&case.name), &say)
                     .map_err(|e| e.to_string());
             }
-            let found = match &recorded {
-                Some(all) => Ok(all.iter().find(|r| r.is_of(case)).cloned()),
-                None => fem::Reference::embedded_of(case),
-            };
-            match found {
-                Ok(Some(r)) => Ok(reference::from_fem(&r)),
+            match recorded.find(case) {
+                Ok(Some(r)) => {
+                    let mut answer = reference::from_fem(&r);
+                    answer.provenance.timed = times.timed(case);
+                    Ok(answer)
+                }
                 Ok(None) => Err("there is no record of it".to_string()),
                 Err(e) => Err(e.to_string()),
             }
@@ -136,7 +180,10 @@ impl What {
                 methods: self.methods(),
                 range: self.range(),
                 repeats,
-                solver: &solve_all,
+                solver: &|cases, method| {
+                    solve_group(cases, &Options { psi: self.psi, ..Options::new(method) })
+                },
+                cold: &|case, method, threads| cold.seconds(case, method, threads),
                 reference: &answer,
                 progress: &|done, all, what| {
                     bar.set_length(all as u64);
@@ -158,7 +205,7 @@ impl What {
 }
 
 /// All standard curves of both bodies.
-fn solve_all(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
+pub(super) fn solve_all(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
     solve_group(cases, &Options::new(method))
 }
 
@@ -170,22 +217,18 @@ pub(super) fn progress_bar() -> ProgressBar {
     bar
 }
 
-/// The study of a file, or the built-in one.
-pub(super) fn find_study(path: Option<&Path>) -> Result<Study> {
-    path.map_or_else(|| Ok(Study::built_in()), Study::read)
-}
-
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let began = Instant::now();
     let date = now();
-    let study = find_study(arguments.study.as_deref())?;
-    prepare_folder(&arguments.out)?;
-    let run = arguments.what.run(&study, &arguments.out, arguments.repeats)?;
+    let study = arguments.what.find_study()?;
+    let out = &arguments.what.out;
+    prepare_folder(out)?;
+    let run = arguments.what.run(&study, arguments.repeats)?;
     if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.answer.is_err()) {
         return Err(first_failure(&run));
     }
     // The thresholds are made for the built-in study; another one has its own in `edgeline gate`.
-    let outcomes = match arguments.study {
+    let outcomes = match arguments.what.study {
         Some(_) => Vec::new(),
         None => {
             let gates = built_in_gates()?;
@@ -193,6 +236,13 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
             let drift = if usual { gates.drift } else { None };
             gate::evaluate(&run, &Gates { drift, ..gates }, Some(&built_in_baseline()?))
         }
+    };
+    let speedups: Vec<Speedup> = match arguments.what.fem {
+        FemSource::Recorded => {
+            let times = Bench::recorded()?;
+            study.cases().flat_map(|case| times.speedups_of(case)).collect()
+        }
+        FemSource::Live => Vec::new(),
     };
     let files = StudyFiles::of(
         &run,
@@ -203,15 +253,16 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
             machine: (&processor(), rayon::current_num_threads()),
             seconds: began.elapsed().as_secs_f64(),
             gates: &outcomes,
+            speedups: &speedups,
         },
     );
-    files.write(&arguments.out)?;
-    plots::write(&files, &arguments.out.join("plots"))?;
-    page::write(&files, &arguments.out)?;
+    files.write(out)?;
+    plots::write(&files, &out.join("plots"))?;
+    page::write(&files, out)?;
     if arguments.json {
         print_json(&files.summary)?;
     } else {
-        print(&text(&files, &arguments.out))?;
+        print(&text(&files, out))?;
     }
     Ok(Outcome::Done)
 }

@@ -202,23 +202,9 @@ impl Reference {
         &self.meshes[0]
     }
 
-    /// Whether `case` is the same problem: bodies, materials and load agree to nine digits.
+    /// Whether this is a record of the problem `case`.
     pub fn is_of(&self, case: &Case) -> bool {
-        let numbers = |c: &Case| {
-            let (roller, block) = (c.roller.material, c.block.material);
-            [
-                c.roller.radius_m,
-                c.roller.length_m,
-                c.block.length_m,
-                c.force_n,
-                roller.young_pa,
-                block.young_pa,
-                // 1 - nu^2 is what matters, and nu may be 0.
-                1.0 + roller.poisson,
-                1.0 + block.poisson,
-            ]
-        };
-        numbers(&self.case).iter().zip(numbers(case)).all(|(a, b)| (a - b).abs() <= 1e-9 * b)
+        self.case.is_same_problem(case)
     }
 
     /// The error estimate of one component (`sigma_xx` ... `tau_max`, or `pressure` with the body

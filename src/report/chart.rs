@@ -25,6 +25,7 @@ pub enum Marker {
     Square,
     Triangle,
     Cross,
+    Diamond,
 }
 
 /// How a source is drawn, everywhere.
@@ -256,6 +257,10 @@ fn draw_marker<B: DrawingBackend<ErrorType = std::io::Error>>(
             let outline: Vec<_> = corners.iter().chain(&corners[..1]).copied().collect();
             area.draw(&PathElement::new(outline, line))
         }
+        Marker::Diamond => {
+            let corners = vec![(x, y - 5), (x + 5, y), (x, y + 5), (x - 5, y), (x, y - 5)];
+            area.draw(&PathElement::new(corners, line))
+        }
         Marker::Cross => {
             area.draw(&PathElement::new(vec![(x - 4, y - 4), (x + 4, y + 4)], line))?;
             area.draw(&PathElement::new(vec![(x - 4, y + 4), (x + 4, y - 4)], line))
@@ -477,8 +482,8 @@ impl Panel {
         area.draw(&Rectangle::new([(x.from, y.to), (x.to, y.from)], INK.stroke_width(1)))
     }
 
-    /// Words beside their places: to the right where there is room, and moved up where they would
-    /// lie on each other.
+    /// Words beside their places: to the right where there is room, and moved up or down where they
+    /// would lie on each other or leave the panel.
     fn draw_notes<B: DrawingBackend<ErrorType = std::io::Error>>(
         &self,
         area: &DrawingArea<B, Shift>,
@@ -491,13 +496,14 @@ impl Panel {
             let width = (note.text.chars().count() as f64 * 12.0 * CHARACTER) as i32;
             let right = at.0 + 8 + width <= x.to;
             let from = if right { at.0 + 8 } else { at.0 - 8 - width };
-            let mut level = at.1;
-            while taken
-                .iter()
-                .any(|&(a, b, l)| from < b && a < from + width && (l - level).abs() < 13)
-            {
-                level -= 13;
-            }
+            let free = |level: i32| {
+                let apart = |&(a, b, l): &(i32, i32, i32)| {
+                    from >= b || a >= from + width || (l - level).abs() >= 13
+                };
+                (y.to + 6..=y.from - 6).contains(&level) && taken.iter().all(apart)
+            };
+            let levels = (0..20).flat_map(|step| [at.1 - 13 * step, at.1 + 13 * step]);
+            let level = levels.into_iter().find(|l| free(*l)).unwrap_or(at.1);
             taken.push((from, from + width, level));
             let (place, side) =
                 if right { (at.0 + 8, HPos::Left) } else { (at.0 - 8, HPos::Right) };

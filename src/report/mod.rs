@@ -1,5 +1,6 @@
 //! One file per form of output.
 
+pub mod bench;
 pub mod chart;
 pub mod contour;
 pub mod field;
@@ -10,7 +11,7 @@ pub mod solution;
 pub mod study_files;
 pub mod sweep;
 pub mod table;
-mod verdict;
+pub mod verdict;
 mod vtk;
 
 #[cfg(test)]

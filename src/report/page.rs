@@ -3,7 +3,7 @@
 use super::plots;
 use super::study_files::StudyFiles;
 use super::table::Table;
-use super::verdict::duration;
+use super::verdict::{duration, duration_with_spread, rounded};
 use crate::base::{Error, Result, write_whole};
 use minijinja::{Environment, context};
 use serde_json::{Map, Value, json};
@@ -64,11 +64,20 @@ fn render(
 ) -> Result<String> {
     let mut environment = Environment::new();
     let dash = || "–".to_string();
-    environment.add_filter("p0", move |v: minijinja::Value| {
-        as_number(&v).map_or_else(dash, |v| format!("{v:.4}").replace('-', "−"))
-    });
+    environment
+        .add_filter("p0", move |v: minijinja::Value| as_number(&v).map_or_else(dash, four_digits));
+    environment
+        .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));
+    environment.add_filter("typeset", |text: String| typeset(&text));
     environment.add_filter("seconds", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, duration)
+    });
+    environment.add_filter("with_spread", move |v: minijinja::Value, spread: minijinja::Value| {
+        match (as_number(&v), as_number(&spread)) {
+            (Some(v), Some(spread)) => duration_with_spread(v, spread),
+            (Some(v), None) => duration(v),
+            (None, _) => dash(),
+        }
     });
     environment.add_filter("short", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, |v| short(v).replace('-', "−"))
@@ -88,11 +97,34 @@ fn render(
         any_ratio => files.study.rows.iter().any(|r| !files.study.text(r, "log10_speedup").is_empty()),
         effects => effects(files),
         details => details(files),
+        work => work(files),
+        timed => timed(files),
+        equal_error => equal_error(files),
+        fem_versions => fem_versions(files),
     };
     environment
         .get_template(name)
         .and_then(|t| t.render(context! { ..more, ..base }))
         .map_err(fault)
+}
+
+/// Four digits after the point; what rounds to zero has no sign.
+fn four_digits(value: f64) -> String {
+    let text = format!("{value:.4}");
+    if text == "-0.0000" { "0.0000".to_string() } else { text.replace('-', "−") }
+}
+
+/// Minus signs instead of hyphens before digits, which also keeps lines from breaking there.
+fn typeset(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let number = rest.peek().is_some_and(char::is_ascii_digit);
+        out.push(if c == '-' && number && " (e".contains(before) { '−' } else { c });
+        before = c;
+    }
+    out
 }
 
 fn as_number(value: &minijinja::Value) -> Option<f64> {
@@ -217,7 +249,8 @@ fn times(files: &StudyFiles) -> Vec<Value> {
                 "all_threads": cell(study, r, "seconds_all_threads"),
                 "threads": study.text(r, "threads"),
                 "unknowns": study.text(r, "unknowns"),
-                "ratio": study.number(r, "log10_speedup").map(|d| 10f64.powf(d)),
+                "ratio": cell(study, r, "speedup"),
+                "ratio_spread": cell(study, r, "speedup_spread"),
                 "timed_on": study.text(r, "timed_on"),
             })
         })
@@ -252,12 +285,16 @@ fn effects(files: &StudyFiles) -> Vec<Value> {
         .collect()
 }
 
-/// The numbers of each solution's `details`, one row a case and method.
+/// Names and texts of some values.
+type Named = Vec<(String, String)>;
+
+/// The numbers of each solution's `details` but its work: those that are the same in all, and the
+/// others, one row a case and method.
 fn details(files: &StudyFiles) -> Option<Value> {
-    fn flatten(prefix: &str, value: &Value, all: &mut Vec<(String, String)>) {
+    fn flatten(prefix: &str, value: &Value, all: &mut Named) {
         match value {
             Value::Object(map) => {
-                for (key, v) in map {
+                for (key, v) in map.iter().filter(|(key, _)| *key != "work") {
                     let name =
                         if prefix.is_empty() { key.clone() } else { format!("{prefix} {key}") };
                     flatten(&name.replace('_', " "), v, all);
@@ -276,35 +313,169 @@ fn details(files: &StudyFiles) -> Option<Value> {
             Value::Array(_) | Value::Null => {}
         }
     }
-    let mut names: Vec<String> = Vec::new();
-    let mut rows = Vec::new();
+    let mut rows: Vec<(Value, String, Named)> = Vec::new();
     for case in files.summary["cases"].as_array()? {
         for (method, run) in case["methods"].as_object()? {
             let mut numbers = Vec::new();
             flatten("", &run["details"], &mut numbers);
-            for (name, _) in &numbers {
-                if !names.contains(name) {
-                    names.push(name.clone());
-                }
+            if !numbers.is_empty() {
+                rows.push((case["name"].clone(), method.clone(), numbers));
             }
-            rows.push((case["name"].clone(), method.clone(), numbers));
         }
     }
-    if names.is_empty() {
-        return None;
+    let mut names: Vec<&String> = Vec::new();
+    for (name, _) in rows.iter().flat_map(|(_, _, numbers)| numbers) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
     }
+    let value = |numbers: &Named, name: &str| -> String {
+        let found = numbers.iter().find(|(k, _)| k == name);
+        found.map(|(_, v)| v.clone()).unwrap_or_default()
+    };
+    let first = rows.first()?.2.clone();
+    let (same, other): (Vec<&String>, Vec<&String>) = names.into_iter().partition(|name| {
+        rows.iter().all(|(_, _, numbers)| value(numbers, name) == value(&first, name))
+    });
+    let same: Vec<Value> =
+        same.iter().map(|n| json!({ "name": n, "value": value(&first, n) })).collect();
     let rows: Vec<Value> = rows
-        .into_iter()
-        .filter(|(_, _, numbers)| !numbers.is_empty())
+        .iter()
         .map(|(case, method, numbers)| {
-            let values: Vec<&str> = names
-                .iter()
-                .map(|n| numbers.iter().find(|(k, _)| k == n).map_or("", |(_, v)| v.as_str()))
-                .collect();
+            let values: Vec<String> = other.iter().map(|n| value(numbers, n)).collect();
             json!({ "case": case, "method": method, "values": values })
         })
         .collect();
-    Some(json!({ "names": names, "rows": rows }))
+    Some(json!({ "same": same, "names": other, "rows": rows }))
+}
+
+/// What the solves did and what they could leave out, by reason (`details.work`); cases that are
+/// one problem have one row.
+fn work(files: &StudyFiles) -> Option<Value> {
+    let mut reasons: Vec<String> = Vec::new();
+    let mut rows: Vec<([Value; 3], Vec<String>, Value)> = Vec::new();
+    for case in files.summary["cases"].as_array()? {
+        for (method, run) in case["methods"].as_object()? {
+            let work = &run["details"]["work"];
+            if work["done"].as_u64().is_none() {
+                continue;
+            }
+            for reason in work["avoided"].as_object().into_iter().flat_map(Map::keys) {
+                if !reasons.contains(reason) {
+                    reasons.push(reason.clone());
+                }
+            }
+            let name = case["name"].as_str().unwrap_or_default().to_string();
+            let problem = [json!(method), case["S_l"].clone(), case["L_r"].clone()];
+            match rows.iter_mut().find(|(p, _, w)| *p == problem && w == work) {
+                Some((_, cases, _)) => cases.push(name),
+                None => rows.push((problem, vec![name], work.clone())),
+            }
+        }
+    }
+    let rows: Vec<Value> = rows
+        .into_iter()
+        .map(|([method, ..], cases, work)| {
+            let count = |reason: &String| work["avoided"][reason].as_u64().unwrap_or(0);
+            let by_reason: Vec<u64> = reasons.iter().map(count).collect();
+            let (done, avoided) =
+                (work["done"].as_u64().unwrap_or(0), by_reason.iter().sum::<u64>());
+            let all = (done + avoided).max(1) as f64;
+            json!({
+                "method": method,
+                "cases": cases.join(", "),
+                "done": done,
+                "avoided": avoided,
+                "share": (100.0 * avoided as f64 / all).round() as u64,
+                "by_reason": by_reason,
+            })
+        })
+        .collect();
+    (!rows.is_empty()).then(|| json!({ "reasons": reasons, "rows": rows }))
+}
+
+/// FEM and models timed in one run, where the run's FEM curves are from elsewhere.
+fn timed(files: &StudyFiles) -> Option<Value> {
+    let all_times = times(files);
+    let mut head = None;
+    let mut rows = Vec::new();
+    for case in files.summary["cases"].as_array()? {
+        let timed = &case["fem"]["timed"];
+        if !timed.is_object() {
+            continue;
+        }
+        head.get_or_insert(timed);
+        let ratios = all_times.iter().find(|row| row["case"] == case["name"])?;
+        let methods: Vec<Value> = methods(files)
+            .iter()
+            .enumerate()
+            .map(|(i, m)| {
+                json!({
+                    "seconds": timed["methods"][m][0],
+                    "spread": timed["methods"][m][1],
+                    "ratio": ratios["methods"][i]["ratio"],
+                    "ratio_spread": ratios["methods"][i]["ratio_spread"],
+                })
+            })
+            .collect();
+        rows.push(json!({
+            "case": case["name"],
+            "size": timed["size"],
+            "unknowns": timed["unknowns"],
+            "error": timed["error"],
+            "fem": { "seconds": timed["seconds"][0], "spread": timed["seconds"][1] },
+            "methods": methods,
+        }));
+    }
+    let head = head?;
+    Some(json!({
+        "date": head["date"],
+        "machine": head["machine"],
+        "command": head["command"],
+        "tolerance": head["tolerance"],
+        "rows": rows,
+    }))
+}
+
+/// The ratios at equal error of the record, one row a case and one entry a level.
+fn equal_error(files: &StudyFiles) -> Option<Value> {
+    let all = files.summary["speedups"].as_array()?;
+    let mut levels: Vec<f64> = all.iter().filter_map(|s| s["level"].as_f64()).collect();
+    levels.sort_by(|a, b| b.total_cmp(a));
+    levels.dedup();
+    let own = |s: &&Value| s["against"] == "limit";
+    let rows: Vec<Value> = files.summary["cases"]
+        .as_array()?
+        .iter()
+        .filter(|case| all.iter().filter(own).any(|s| s["case"] == case["name"]))
+        .map(|case| {
+            let at = |level: &f64| {
+                let is_it = |s: &&Value| s["case"] == case["name"] && s["level"] == *level;
+                all.iter().filter(own).find(is_it).cloned().unwrap_or(Value::Null)
+            };
+            json!({ "case": case["name"], "at": levels.iter().map(at).collect::<Vec<_>>() })
+        })
+        .collect();
+    (!rows.is_empty()).then(|| json!({ "levels": levels, "rows": rows }))
+}
+
+/// The versions that FEM ran with, and of which cases.
+fn fem_versions(files: &StudyFiles) -> Vec<Value> {
+    let mut all: Vec<(String, Vec<&str>)> = Vec::new();
+    for case in files.summary["cases"].as_array().into_iter().flatten() {
+        let Some(versions) = case["fem"]["versions"].as_object() else { continue };
+        let text: Vec<String> = versions
+            .iter()
+            .map(|(name, v)| format!("{name} {}", v.as_str().unwrap_or_default()))
+            .collect();
+        let (text, name) = (text.join(", "), case["name"].as_str().unwrap_or_default());
+        match all.iter_mut().find(|(t, _)| *t == text) {
+            Some((_, cases)) => cases.push(name),
+            None => all.push((text, vec![name])),
+        }
+    }
+    let known = all.into_iter().filter(|(text, _)| !text.is_empty());
+    known.map(|(text, cases)| json!({ "text": text, "cases": cases.join(", ") })).collect()
 }
 
 /// The numbers behind the curves: coordinates in C, values in p0, five digits after the point.

@@ -4,6 +4,7 @@ use super::chart::{Bar, Figure, Note, Panel, Rule, Series, look};
 use super::study_files::StudyFiles;
 use super::table::Table;
 use crate::base::{Result, prepare_folder, write_whole};
+use crate::study::effects::responses;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -206,6 +207,12 @@ impl<'a> Case<'a> {
     }
 }
 
+/// A response in words.
+fn label(response: &str) -> String {
+    let found = responses().into_iter().find(|r| r.name == response);
+    found.map_or_else(|| response.to_string(), |r| r.label)
+}
+
 /// Rows of `effects.csv` of one method and response.
 struct EffectRows<'a> {
     table: &'a Table,
@@ -246,7 +253,7 @@ impl<'a> EffectRows<'a> {
             named.then(|| Note { at, text: self.table.text(r, "term").replace(" x ", " × ") })
         });
         Panel {
-            title: response.replace('_', " "),
+            title: label(response),
             x_label: "half-normal quantile".to_string(),
             y_label: format!("|effect| ({})", self.unit),
             series: vec![Series::marks("", look("quarter-space"), points.clone())],
@@ -275,7 +282,7 @@ impl<'a> EffectRows<'a> {
             .collect();
         bars.sort_by(|a, b| b.value.total_cmp(&a.value));
         Panel {
-            title: response.replace('_', " "),
+            title: label(response),
             x_label: format!("|effect| ({}); full: beyond SME", self.unit),
             bars,
             rules: self
@@ -345,7 +352,7 @@ fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> 
                 })
                 .collect();
             panels.push(Panel {
-                title: format!("{}: {a} × {b}", response.replace('_', " ")),
+                title: format!("{}: {a} × {b}", label(response)),
                 x_label: a.to_string(),
                 y_label: format!("mean of the runs ({unit})"),
                 series,
@@ -400,7 +407,8 @@ fn time_and_error(files: &StudyFiles) -> Figure {
 }
 
 /// A response's half-normal plot, Pareto chart and interactions are shown for these.
-pub const SHOWN_RESPONSES: [&str; 3] = ["pressure_rms", "stress_rms", "von_mises_max"];
+pub const SHOWN_RESPONSES: [&str; 4] =
+    ["pressure_rms", "stress_rms", "von_mises_max", "log10_speedup"];
 
 /// All figures of a run by name.
 fn figures(files: &StudyFiles) -> Vec<(String, Figure)> {
@@ -450,25 +458,29 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
         if of.is_empty() {
             continue;
         }
-        let figure = |title: String, panels: Vec<Panel>, size| Figure {
+        // Four panels stand better in two rows than as three and one.
+        let columns = if of.len() == 4 { 2 } else { 3 };
+        let figure = |title: String, panels: Vec<Panel>, columns, size| Figure {
             title,
-            columns: 3,
+            columns,
             panels,
             panel_size: size,
         };
         plots.push((
             format!("half-normal-{method}"),
             figure(
-                format!("{method}: half-normal plot of the effects on the errors"),
+                format!("{method}: half-normal plot of the effects"),
                 of.iter().map(|(r, e)| e.half_normal(r)).collect(),
+                columns,
                 (380, 320),
             ),
         ));
         plots.push((
             format!("pareto-{method}"),
             figure(
-                format!("{method}: effects on the errors by size"),
+                format!("{method}: effects by size"),
                 of.iter().map(|(r, e)| e.pareto(r)).collect(),
+                columns,
                 (380, 300),
             ),
         ));
@@ -477,6 +489,7 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             figure(
                 format!("{method}: interactions"),
                 of.iter().flat_map(|(r, _)| interactions(files, method, r)).collect(),
+                3,
                 (380, 270),
             ),
         ));

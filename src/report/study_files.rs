@@ -4,6 +4,7 @@
 use super::table::{self, Table, number, optional};
 use super::verdict;
 use crate::base::{Error, Result, write_whole};
+use crate::study::bench::Speedup;
 use crate::study::effects::{self, Effects};
 use crate::study::errors::CriticalPoint;
 use crate::study::factorial::half_normal_quantile;
@@ -45,6 +46,8 @@ pub struct Context<'a> {
     pub seconds: f64,
     /// Outcomes of the gates.
     pub gates: &'a [Outcome],
+    /// Ratios at equal error on record, where FEM did not run now.
+    pub speedups: &'a [Speedup],
 }
 
 /// Columns of a point and its stresses, as everywhere in the program.
@@ -201,6 +204,8 @@ fn study_table(run: &StudyRun) -> Table {
             "seconds_cold",
             "seconds_all_threads",
             "threads",
+            "speedup",
+            "speedup_spread",
             "seconds_setup",
             "seconds_contact",
             "seconds_stress",
@@ -300,14 +305,18 @@ fn method_row(
     row.set("seconds_stress", &number(s.seconds.stress));
     if let Some(one) = m.timing.first() {
         row.set("seconds", &number(one.median_s));
-        row.set("seconds_spread", &number(one.spread_s()));
-        row.set("seconds_cold", &number(one.cold_s));
+        row.set("seconds_spread", &optional((one.repeats > 1).then(|| one.spread_s())));
+        row.set("seconds_cold", &optional(one.cold_s));
     }
     if let Some(all) = m.timing.get(1) {
         row.set("seconds_all_threads", &number(all.median_s));
         row.set("threads", &all.threads.to_string());
     }
     row.set("timed_on", "this machine");
+    if let Some(ratio) = effects::speedup(case, m) {
+        row.set("speedup", &number(ratio.value));
+        row.set("speedup_spread", &number(ratio.plus_minus));
+    }
     row.cells
 }
 
@@ -588,6 +597,7 @@ fn summary(
         "gates_hold": !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
         "gates": context.gates,
         "effects_in_words": told,
+        "speedups": context.speedups,
         "not_done": not_done,
         "cases": cases,
     })

@@ -17,6 +17,7 @@ fn files(twist: Twist) -> StudyFiles {
         machine: ("a made-up processor", 2),
         seconds: 1.5,
         gates: &outcomes,
+        speedups: &[],
     };
     StudyFiles::of(&run, &context)
 }
@@ -29,11 +30,7 @@ fn a_run_is_read_back_as_it_was_written() {
     let read = StudyFiles::read(folder.path()).unwrap();
     assert_eq!(read.tables().map(|t| t.rows.len()), written.tables().map(|t| t.rows.len()));
     assert_eq!(read.tables(), written.tables());
-    // Not compared as a whole: JSON's numbers come back to one in the last digit.
-    assert_eq!(
-        read.summary["method_summary"][3]["gates"],
-        written.summary["method_summary"][3]["gates"]
-    );
+    assert_eq!(read.summary, written.summary);
     assert_eq!(read.summary["cases"].as_array().map(Vec::len), Some(9));
     // Nine cases (eight corners and the centre), four methods and FEM.
     assert_eq!(read.study.rows.len(), 45);
@@ -73,4 +70,48 @@ fn plots_are_well_formed_and_hold_every_source() {
         f.write(folder.as_ref()).unwrap();
         page::write(&f, folder.as_ref()).unwrap();
     }
+}
+
+#[test]
+fn work_done_and_avoided_is_shown_by_reason() {
+    let mut run = files(Twist::None);
+    assert!(!page::html(&run).unwrap().contains("id=\"work\""));
+    let work = serde_json::json!({
+        "done": 1200,
+        "avoided": { "symmetry in x": 1200, "image too weak": 600 },
+    });
+    for case in run.summary["cases"].as_array_mut().unwrap() {
+        case["methods"]["quarter-space"]["details"]["work"] = work.clone();
+        case["methods"]["mirror"]["details"]["work"] =
+            serde_json::json!({ "done": 7, "avoided": {} });
+    }
+    let html = page::html(&run).unwrap();
+    let table = html.split("id=\"work\"").nth(1).unwrap().split("</table>").next().unwrap();
+    assert!(table.contains("avoided:<br>symmetry in x"), "{table}");
+    // Five problems by two models: cases that differ in load share their rows.
+    assert_eq!(table.matches("<tr><td").count(), 10, "{table}");
+    let row = "<td class=\"text\">quarter-space</td><td>1200</td><td>1800 (60 %)</td>\
+               <td>1200</td><td>600</td>";
+    assert_eq!(table.matches(row).count(), 5, "{table}");
+    assert_eq!(table.matches("<td>7</td><td>0 (0 %)</td><td>0</td><td>0</td>").count(), 5);
+    let markdown = page::markdown(&run).unwrap();
+    assert!(markdown.contains("| quarter-space | 1200 | 1800 (60 %) | 1200 | 600 |"), "{markdown}");
+}
+
+#[test]
+fn ratios_are_shown_with_their_uncertainty_and_their_origin() {
+    let run = files(Twist::None);
+    // 15 s +- 0.3 s over 10 ms +- 0.4 ms: 1500 +- 67.
+    let row = run.study.rows.iter().find(|r| run.study.text(r, "case") == "w1e-3_sl5_lr1").unwrap();
+    let number = |name| run.study.number(row, name).unwrap();
+    assert!((number("speedup") - 1500.0).abs() < 1e-3);
+    assert!((number("speedup_spread") - 1500.0 * 0.02f64.hypot(0.04)).abs() < 1e-3);
+    assert!((number("log10_speedup") - 1500f64.log10()).abs() < 1e-6);
+    for text in [page::html(&run).unwrap(), page::markdown(&run).unwrap()] {
+        assert!(text.contains("1,500 ± 67"));
+        assert!(text.contains("edgeline bench --fem live"));
+    }
+    // Its effects are analysed like all others.
+    let rows = &run.effects.rows;
+    assert!(rows.iter().any(|r| run.effects.text(r, "response") == "log10_speedup"));
 }

@@ -40,6 +40,7 @@ pub fn sentences(summary: &Value) -> Vec<String> {
     }
     all.extend(fem_error(summary));
     all.extend(time(summary, methods));
+    all.extend(equal_error(summary));
     all
 }
 
@@ -96,22 +97,47 @@ fn time(summary: &Value, methods: &[Value]) -> Option<String> {
             duration(slow)
         ));
         let ratios = &best["speedup"];
-        if let (Some(low), Some(high)) = (ratios["low"].as_f64(), ratios["high"].as_f64()) {
-            text.push_str(&format!(
+        match (ratios["low"].as_f64(), ratios["high"].as_f64()) {
+            (Some(low), Some(high)) if live => text.push_str(&format!(
                 ", {} to {} times as long in one run on one machine",
                 rounded(low),
                 rounded(high)
-            ));
-        } else if !live {
-            text.push_str(", which is not divided by a time of this one");
+            )),
+            _ if !live => text.push_str(", which is not divided by a time of this one"),
+            _ => {}
         }
     }
     text.push('.');
     Some(text)
 }
 
+/// What the record of times says at the smallest error that a FEM mesh of it reached.
+fn equal_error(summary: &Value) -> Option<String> {
+    let own = |s: &&Value| s["against"] == "limit";
+    let all: Vec<&Value> = summary["speedups"].as_array()?.iter().filter(own).collect();
+    let level = all.iter().filter_map(|s| s["level"].as_f64()).reduce(f64::min)?;
+    let here: Vec<&&Value> = all.iter().filter(|s| s["level"].as_f64() == Some(level)).collect();
+    let ratio =
+        |s: &&&Value| Some((s["ratio"]["value"].as_f64()?, s["ratio"]["plus_minus"].as_f64()?));
+    let low = here.iter().filter_map(ratio).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let high = here.iter().filter_map(ratio).max_by(|a, b| a.0.total_cmp(&b.0))?;
+    let cases = if here.len() == 1 { "case" } else { "cases" };
+    Some(format!(
+        "Timed in one run on one machine and each right to {level} p0 of its own limit, FEM took {} ± \
+         {} to {} ± {} times as long as quarter-space ({} {cases}).",
+        rounded(low.0),
+        rounded(low.1),
+        rounded(high.0),
+        rounded(high.1),
+        here.len()
+    ))
+}
+
 /// Two significant digits with thousands apart.
-fn rounded(value: f64) -> String {
+pub fn rounded(value: f64) -> String {
+    if value < 9.95 {
+        return format!("{value:.1}").trim_end_matches(".0").to_string();
+    }
     let scale = 10f64.powi(value.abs().max(1.0).log10().floor() as i32 - 1);
     let whole = ((value / scale).round() * scale) as u64;
     let digits = whole.to_string();
@@ -129,6 +155,19 @@ pub fn duration(seconds: f64) -> String {
         s if s < 10.0 => format!("{s:.1} s"),
         s => format!("{s:.0} s"),
     }
+}
+
+/// Seconds with their +-, both in the unit that fits the first, to two digits of the second.
+pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
+    let (unit, name) = match seconds {
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let (value, spread) = (seconds * unit, spread * unit);
+    let digits =
+        if spread > 0.0 { (1.0 - spread.log10().floor()).clamp(0.0, 3.0) as usize } else { 1 };
+    format!("{value:.digits$} ± {spread:.digits$} {name}")
 }
 
 #[cfg(test)]
@@ -153,11 +192,35 @@ mod tests {
     }
 
     #[test]
+    fn ratios_of_the_record_are_those_at_the_smallest_error() {
+        let one = |level: f64, against: &str, value: f64| {
+            json!({ "level": level, "against": against,
+                    "ratio": { "value": value, "plus_minus": 0.02 * value } })
+        };
+        let speedups = [
+            one(0.02, "limit", 9e4),
+            one(0.005, "limit", 2100.0),
+            one(0.005, "fem", 1.0),
+            one(0.005, "limit", 8000.0),
+        ];
+        let text = equal_error(&json!({ "speedups": speedups })).unwrap();
+        assert!(text.contains("right to 0.005 p0"), "{text}");
+        assert!(text.contains("2,100 ± 42 to 8,000 ± 160 times as long"), "{text}");
+        assert!(text.ends_with("(2 cases)."), "{text}");
+        assert!(equal_error(&json!({ "speedups": [] })).is_none());
+    }
+
+    #[test]
     fn times_and_ratios_read_well() {
         assert_eq!(
             [4.2e-5, 0.0123, 0.27, 3.21, 45.4].map(duration),
             ["42 µs", "12.3 ms", "270 ms", "3.2 s", "45 s"]
         );
-        assert_eq!([14_234.0, 950.4, 3.0].map(rounded), ["14,000", "950", "3"]);
+        let pairs = [(7.7, 0.234), (0.163, 0.0588), (4.2e-5, 9e-7), (12.0, 0.0)];
+        assert_eq!(
+            pairs.map(|(seconds, spread)| duration_with_spread(seconds, spread)),
+            ["7.70 ± 0.23 s", "163 ± 59 ms", "42.00 ± 0.90 µs", "12.0 ± 0.0 s"]
+        );
+        assert_eq!([14_234.0, 950.4, 3.0, 0.24].map(rounded), ["14,000", "950", "3", "0.2"]);
     }
 }

@@ -3,6 +3,7 @@
 use super::factorial::{self, Analysis, Verdict};
 use super::run::{CaseRun, MethodRun, Role, StudyRun};
 use super::sampled::Quantity;
+use super::timing::Ratio;
 use crate::body::EdgeModel;
 
 /// A number per case and method whose dependence on the factors is analysed.
@@ -46,13 +47,31 @@ pub fn responses() -> Vec<Response> {
     ];
     for quantity in Quantity::ALL {
         let name = quantity.name();
-        all.push(response(&format!("{name}_rms"), &format!("RMS error of {name}"), "p0"));
-        all.push(response(&format!("{name}_max"), &format!("largest error of {name}"), "p0"));
+        let words = match quantity {
+            Quantity::Stress(_) => name,
+            Quantity::VonMises => "the von Mises stress",
+            Quantity::TauMax => "the largest shear stress",
+        };
+        all.push(response(&format!("{name}_rms"), &format!("RMS error of {words}"), "p0"));
+        all.push(response(&format!("{name}_max"), &format!("largest error of {words}"), "p0"));
     }
     all.push(response("critical_value", "error of the largest von Mises stress", "p0"));
     all.push(response("critical_depth", "error of its depth", "C"));
     all.push(response("log10_speedup", "log10 of FEM time over method time", "decades"));
     all
+}
+
+/// How many times as long FEM takes as the method on one thread, with its uncertainty: from this run
+/// where FEM ran in it, else from a record of both. Only times of one run on one machine are
+/// divided.
+pub fn speedup(case: &CaseRun, method: &MethodRun) -> Option<Ratio> {
+    let fem = &case.reference.as_ref().ok()?.provenance;
+    if fem.live {
+        let spread = fem.seconds_spread.unwrap_or(0.0);
+        return Some(Ratio::new((fem.seconds?, spread), method.timing.first()?.with_spread()));
+    }
+    let timed = fem.timed.as_ref()?;
+    Some(Ratio::new(timed.seconds, *timed.methods.get(method.method.name())?))
 }
 
 /// Value of a response, where the case and method have one.
@@ -63,16 +82,7 @@ pub fn response_value(name: &str, case: &CaseRun, method: &MethodRun) -> Option<
     match name {
         "critical_value" => Some(answer.critical?.value - case.reference_critical?.value),
         "critical_depth" => Some(answer.critical?.at[2] - case.reference_critical?.at[2]),
-        "log10_speedup" => {
-            let reference = &case.reference.as_ref().ok()?.provenance;
-            // Only times of one run on one machine are divided.
-            let own = if reference.live {
-                method.timing.first()?.median_s
-            } else {
-                reference.sam_seconds.get(method.method.name())?[0]
-            };
-            Some((reference.seconds? / own).log10())
-        }
+        "log10_speedup" => Some(speedup(case, method)?.value.log10()),
         _ if name.starts_with("pressure") => Some(pick(*summary.pressure.first()?, name)),
         _ if name.starts_with("stress") => Some(pick(summary.stress, name)),
         _ => {

@@ -5,8 +5,32 @@ use super::run::Reference;
 use super::timing::Timing;
 use crate::base::Result;
 use crate::case::Case;
-use crate::fem::{self, Driver, Settings};
+use crate::fem::{self, Driver, MeshResult, Settings};
 use std::path::Path;
+
+/// Runs `case` by one driver `repeats` times (at least once), each in a folder of its own below
+/// `folder`: the first result, and the wall-clock times of all.
+///
+/// A run that is done there already is not done again: its time is that of the run that left it.
+///
+/// # Errors
+/// As [`Driver::run`].
+pub fn repeated(
+    driver: &Driver,
+    repeats: usize,
+    case: &Case,
+    folder: &Path,
+    progress: &dyn Fn(&str),
+) -> Result<(MeshResult, Timing)> {
+    let first = driver.run(case, &folder.join("run-1"), progress)?;
+    let mut seconds = vec![first.summary.total_seconds()];
+    for i in 2..=repeats {
+        let again = driver.run(case, &folder.join(format!("run-{i}")), progress)?;
+        seconds.push(again.summary.total_seconds());
+    }
+    let timing = Timing::new(first.summary.ranks, &seconds);
+    Ok((first, timing))
+}
 
 /// How much coarser the second mesh is, whose difference to the first is FEM's own error.
 const COARSER: f64 = 1.4;
@@ -34,19 +58,12 @@ impl Live {
 
     /// Solves a case in folders below `folder`; `progress` is told what goes on.
     ///
-    /// Every repeat has a folder of its own, and a run that is done there already is not done
-    /// again: its time is that of the run that left it.
-    ///
     /// # Errors
     /// As [`Driver::run`].
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<Reference> {
         let coarse = self.coarse.run(case, &folder.join("coarser"), progress)?;
-        let fine = (1..=self.repeats)
-            .map(|i| self.fine.run(case, &folder.join(format!("run-{i}")), progress))
-            .collect::<Result<Vec<_>>>()?;
-        let seconds: Vec<f64> = fine.iter().map(|r| r.summary.total_seconds()).collect();
-        let timing = Timing::new(1, seconds[0], &seconds);
-        let meshes = fine.into_iter().take(1).chain([coarse]).collect();
+        let (fine, timing) = repeated(&self.fine, self.repeats, case, folder, progress)?;
+        let meshes = vec![fine, coarse];
         let mut reference = from_fem(&fem::Reference {
             case: case.clone(),
             source: "live",

@@ -3,6 +3,7 @@
 //! Everything here works in units of C and p0 (see [`crate::base::HertzScales`]): a study compares
 //! cases of different loads, and the fraction of p0 is what a user can judge.
 
+pub mod bench;
 pub mod effects;
 pub mod errors;
 pub mod factorial;
@@ -17,7 +18,7 @@ pub mod timing;
 pub use errors::{ErrorRow, Range};
 pub use run::{
     Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, Solver, StudyRun,
-    problem_key, run,
+    Timed, problem_key, run,
 };
 pub use sampled::{Quantity, Sampled, SampledCurve, SampledLine};
 

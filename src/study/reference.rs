@@ -46,10 +46,6 @@ pub fn from_fem(reference: &fem::Reference) -> Reference {
 fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
     let summary = &mesh.summary;
     let text = |name: &str| summary.more.get(name).and_then(|v| v.as_str()).map(str::to_string);
-    let pair = |value: &serde_json::Value| -> Option<[f64; 2]> {
-        let spread = value["spread"].as_f64().unwrap_or(0.0);
-        Some([value["median"].as_f64()?, spread])
-    };
     Provenance {
         live,
         date: text("date"),
@@ -67,14 +63,7 @@ fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
                 (name.clone(), v.as_str().map_or_else(|| v.to_string(), str::to_string))
             })
             .collect(),
-        sam_seconds: summary
-            .more
-            .get("sam_seconds")
-            .and_then(|v| v.as_object())
-            .into_iter()
-            .flatten()
-            .filter_map(|(method, v)| Some((method.clone(), pair(v)?)))
-            .collect(),
+        timed: None,
     }
 }
 

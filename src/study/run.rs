@@ -44,9 +44,33 @@ pub struct Provenance {
     pub stages: BTreeMap<String, f64>,
     /// Versions of the programs used.
     pub versions: BTreeMap<String, String>,
-    /// Median seconds and spread of each semi-analytical method, taken in the record's own run on
-    /// the record's machine.
-    pub sam_seconds: BTreeMap<String, [f64; 2]>,
+    /// Times of FEM and of the models from one run on one machine, where there is a record of them:
+    /// the ones whose ratio may be stated when the FEM answer is not of this run.
+    pub timed: Option<Timed>,
+}
+
+/// Times of FEM and of the models that solved the same case in one run on one machine.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Timed {
+    /// When it was.
+    pub date: String,
+    /// The machine's processor.
+    pub machine: String,
+    /// The command.
+    pub command: String,
+    /// Relative element size of the FEM mesh; 1 is the production mesh.
+    pub size: f64,
+    /// Unknowns of both bodies.
+    pub unknowns: u64,
+    /// Median seconds of all stages of FEM, and spread.
+    pub seconds: (f64, f64),
+    /// FEM's error on that mesh (p0): the largest RMS of one curve (see
+    /// [`super::bench::Accuracy::worst_rms`]), where it is known.
+    pub error: Option<f64>,
+    /// The models' tolerance.
+    pub tolerance: f64,
+    /// Median seconds and spread of each model on one thread.
+    pub methods: BTreeMap<String, (f64, f64)>,
 }
 
 /// Solves cases that share a scene by one edge model, one answer a case in their order.
@@ -142,6 +166,9 @@ pub struct Setup<'a> {
     pub repeats: usize,
     /// Solves cases that differ only in scale by one method, one result each, in order.
     pub solver: &'a Solver<'a>,
+    /// Seconds of one case by one method on this many threads in a process of its own, where that
+    /// can be measured.
+    pub cold: &'a dyn Fn(&Case, EdgeModel, usize) -> Option<f64>,
     /// FEM's answer for a case, or why there is none.
     pub reference: &'a dyn Fn(&Case) -> std::result::Result<Reference, String>,
     /// Called with the number of steps done and of all steps, and what was just done.
@@ -259,6 +286,7 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
             *slot = [1, 0]
                 .into_iter()
                 .filter_map(|threads| timing::measure(threads, setup.repeats, work).ok())
+                .map(|t| Timing { cold_s: (setup.cold)(&one[0], *method, t.threads), ..t })
                 .collect();
             step(&format!("timing {method}, {}", one[0].name));
         }

@@ -1,11 +1,14 @@
 //! Made-up solutions for tests: smooth closed forms of the right shape, different for each model.
 
-use crate::base::{Error, StressTensor};
+use crate::base::{Error, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
+use crate::fem::{self, MeshResult};
 use crate::solve::{Critical, Curve, PressureCell, PressureLine, Seconds, Solution};
 use crate::stress::{BodyKind, curves};
-use crate::study::run::{Provenance, Reference, Setup, StudyRun, run as run_study};
+use crate::study::bench::{FemMeshes, Mesh};
+use crate::study::run::{Provenance, Reference, Setup, StudyRun, Timed, run as run_study};
+use crate::study::timing::Timing;
 use crate::study::{Range, Sampled};
 
 /// What the made-up FEM answer differs by from the quarter-space one (p0).
@@ -106,6 +109,57 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
     }
 }
 
+/// Solutions that are off by their tolerance.
+pub fn solve_to_tolerance(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
+    cases.iter().map(|c| Ok(solution(c, method, end_share(method), c.tolerance))).collect()
+}
+
+/// What a made-up mesh is off by (p0): its size squared.
+pub fn mesh_shift(size: f64) -> f64 {
+    SHIFT * size * size
+}
+
+/// Made-up meshes of these sizes, on record and live.
+pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
+    let mesh = |size: f64| {
+        let method = EdgeModel::QuarterSpace;
+        let answer = solution(case, method, end_share(method), mesh_shift(size));
+        let summary = serde_json::json!({
+            "versions": { "processor": "a made-up processor" },
+            "ranks": 1,
+            "unknowns": (1e5 / size.powi(3)) as u64,
+            "load_error_rel": 0.0,
+            "equilibrium_residual": 0.0,
+            "complementarity_residual": 0.0,
+            "approach_m": answer.approach_m,
+            "p_centre_pa": answer.p_centre_pa,
+            "p_max_pa": answer.p_max_pa,
+            "seconds": { "total": 30.0 / size.powi(3) },
+            "peak_memory_mib": 100.0,
+        });
+        MeshResult {
+            size,
+            summary: serde_json::from_value(summary).unwrap(),
+            curves: answer.curves,
+            lines: answer.lines,
+        }
+    };
+    let timed = |size: f64| {
+        let result = mesh(size);
+        let seconds = result.summary.total_seconds();
+        Mesh { timing: Timing::new(1, &[0.9 * seconds, 1.1 * seconds]), result }
+    };
+    FemMeshes {
+        recorded: (!recorded.is_empty()).then(|| fem::Reference {
+            case: case.clone(),
+            source: "recorded",
+            meshes: recorded.iter().rev().map(|&size| mesh(size)).collect(),
+            errors: Vec::new(),
+        }),
+        live: live.iter().map(|&size| (size, Ok(timed(size)))).collect(),
+    }
+}
+
 /// What is wrong with a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Twist {
@@ -173,14 +227,24 @@ pub fn run(twist: Twist) -> StudyRun {
         for line in &mut sampled.lines {
             line.own_error = Some(vec![0.002; line.at.len()]);
         }
-        let sam = EdgeModel::ALL.map(|m| (m.name().to_string(), [0.01, 0.0004]));
+        let fem_seconds = 15.0 * case.factors().slenderness / 5.0;
+        let timed = Timed {
+            date: "2026-01-01".to_string(),
+            machine: "a made-up processor".to_string(),
+            command: "edgeline bench --fem live".to_string(),
+            size: 1.4,
+            unknowns: 80_000,
+            seconds: (fem_seconds, 0.3),
+            error: Some(0.004),
+            tolerance: case.tolerance,
+            methods: EdgeModel::ALL.map(|m| (m.name().to_string(), (0.01, 0.0004))).into(),
+        };
         let provenance = Provenance {
             date: Some("2026-01-01".to_string()),
             machine: Some("a made-up processor".to_string()),
             unknowns: Some(150_000),
-            seconds: Some(15.0 * case.factors().slenderness / 5.0),
-            seconds_spread: Some(0.3),
-            sam_seconds: sam.into(),
+            seconds: Some(4.0 * fem_seconds),
+            timed: Some(timed),
             ..Default::default()
         };
         Ok(Reference { sampled, provenance })
@@ -192,6 +256,7 @@ pub fn run(twist: Twist) -> StudyRun {
             range: Range::default(),
             repeats: 3,
             solver: &solver,
+            cold: &|_, _, _| Some(0.02),
             reference: &reference,
             progress: &|_, _, _| {},
         },

@@ -1,41 +1,49 @@
 //! Repeated timing of the semi-analytical solve.
 //!
-//! A time is only worth something with its conditions: the first solve in a process (`cold`, which
-//! builds every table) is kept apart from the repeats (`warm`), and one thread from all of them.
-//! The median is stated, with the quartiles as spread: a busy machine makes single runs slower,
-//! never faster, so the mean would be biased.
+//! A time is only worth something with its conditions: a solve in a process of its own (`cold`,
+//! which builds every table) is kept apart from repeats in one process (`warm`), and one thread
+//! from all of them. The median is stated, with the quartiles as spread: a busy machine makes
+//! single runs slower, never faster, so the mean would be biased.
 
 use super::factorial::median;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
 /// Times of repeated runs of one piece of work.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Timing {
     /// Threads that the work could use.
     pub threads: usize,
-    /// Seconds of the first run.
-    pub cold_s: f64,
+    /// Seconds of the work in a process of its own, start-up and files not counted, where that was
+    /// measured.
+    pub cold_s: Option<f64>,
     /// Median of the repeats (s).
     pub median_s: f64,
-    /// First and third quartile of the repeats (s).
+    /// First and third quartile of the repeats (s); the extremes of fewer than four, which have no
+    /// quartiles to speak of.
     pub quartiles_s: [f64; 2],
-    /// Number of repeats, without the first run.
+    /// Number of repeats.
     pub repeats: usize,
 }
 
 impl Timing {
-    /// From the times of the first run and of at least one repeat (s).
-    pub fn new(threads: usize, cold_s: f64, warm_s: &[f64]) -> Self {
-        let mut sorted = warm_s.to_vec();
+    /// From the times of at least one run (s).
+    pub fn new(threads: usize, seconds: &[f64]) -> Self {
+        let mut sorted = seconds.to_vec();
         sorted.sort_by(f64::total_cmp);
+        let tail = if sorted.len() < 4 { 0.0 } else { 0.25 };
         Self {
             threads,
-            cold_s,
+            cold_s: None,
             median_s: median(sorted.clone()),
-            quartiles_s: [quantile(&sorted, 0.25), quantile(&sorted, 0.75)],
+            quartiles_s: [quantile(&sorted, tail), quantile(&sorted, 1.0 - tail)],
             repeats: sorted.len(),
         }
+    }
+
+    /// Median and spread (s), as [`Ratio::new`] takes them.
+    pub fn with_spread(&self) -> (f64, f64) {
+        (self.median_s, self.spread_s())
     }
 
     /// Half the distance of the quartiles (s): the median's +-.
@@ -56,8 +64,8 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
 /// needs fewer of them for the same trust, and a study has many to measure.
 const BUDGET_S: f64 = 0.5;
 
-/// Runs `work` once cold and up to `repeats` times warm, at least once, on `threads` threads (0: all
-/// of the machine).
+/// Runs `work` once for nothing, so that tables are there, and then up to `repeats` times, at least
+/// once, on `threads` threads (0: all of the machine).
 ///
 /// # Errors
 /// The first error of `work`: no time counts for an answer that was not computed.
@@ -76,12 +84,13 @@ pub fn measure<T: Send, E: Send>(
         })
     };
     let all = || -> Result<Timing, E> {
-        let cold = timed()?;
+        timed()?;
         let mut warm = vec![timed()?];
-        while warm.len() < repeats && warm.iter().sum::<f64>() < BUDGET_S {
+        // One run alone would have no spread.
+        while warm.len() < repeats && (warm.len() < 2 || warm.iter().sum::<f64>() < BUDGET_S) {
             warm.push(timed()?);
         }
-        Ok(Timing::new(rayon::current_num_threads(), cold, &warm))
+        Ok(Timing::new(rayon::current_num_threads(), &warm))
     };
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(all),
@@ -91,7 +100,7 @@ pub fn measure<T: Send, E: Send>(
 }
 
 /// Ratio of two medians with the uncertainty that their spreads give it (first order).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Ratio {
     /// slow / fast.
     pub value: f64,
@@ -113,9 +122,11 @@ mod tests {
 
     #[test]
     fn median_and_quartiles() {
-        let timing = Timing::new(1, 9.0, &[5.0, 1.0, 3.0, 2.0, 4.0]);
+        let timing = Timing::new(1, &[5.0, 1.0, 3.0, 2.0, 4.0]);
         assert_eq!((timing.median_s, timing.quartiles_s), (3.0, [2.0, 4.0]));
-        assert_eq!((timing.cold_s, timing.spread_s(), timing.repeats), (9.0, 1.0, 5));
+        assert_eq!((timing.with_spread(), timing.repeats), ((3.0, 1.0), 5));
+        // Two runs say no more than how far they are apart.
+        assert_eq!(Timing::new(1, &[5.0, 4.0]).with_spread(), (4.5, 0.5));
     }
 
     #[test]
@@ -126,7 +137,7 @@ mod tests {
     }
 
     #[test]
-    fn the_first_run_is_kept_apart_and_errors_stop_the_timing() {
+    fn the_first_run_does_not_count_and_errors_stop_the_timing() {
         let calls = std::sync::atomic::AtomicUsize::new(0);
         let count = || calls.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
         let timing = measure(1, 3, || Ok::<_, ()>(count())).unwrap();
@@ -138,5 +149,10 @@ mod tests {
             Ok::<_, ()>(())
         };
         assert_eq!(measure(1, 50, slow).unwrap().repeats, 2);
+        let slower = || {
+            std::thread::sleep(std::time::Duration::from_millis(600));
+            Ok::<_, ()>(())
+        };
+        assert_eq!(measure(1, 50, slower).unwrap().repeats, 2);
     }
 }

@@ -184,6 +184,9 @@
       parts.push(element("line", { class: "cursor", x1: px(d.x[cursor]), x2: px(d.x[cursor]), y1: box.top, y2: box.bottom }));
     }
     chart.replaceChildren(...parts);
+    const what = `${d.yTitle} over ${d.xTitle}: ${caseData.name}, ${key.replace("/", ", ")}`;
+    chart.setAttribute("aria-label", what);
+    byId("shown").textContent = what;
     readOut(d);
   }
 
@@ -201,6 +204,7 @@
     const fem = curve.values.fem && curve.values.fem[quantity];
     const at = cursor !== null && cursor < d.x.length ? cursor : null;
     const p = at === null ? null : curve.points[at];
+    byId("place").classList.toggle("unset", !p);
     byId("place").textContent = p
       ? `x = ${number(p[0], 3)} C, y = ${number(p[1], 3)} C, z = ${number(p[2], 3)} C`
       : "Move over the chart or use the arrow keys for values";
@@ -339,8 +343,18 @@
   let waiting = 0;
   new ResizeObserver(() => { cancelAnimationFrame(waiting); waiting = requestAnimationFrame(() => { if (Math.round(chart.parentElement.clientWidth) !== size.width) draw(); }); }).observe(chart.parentElement);
 
+  // What scrolls sideways can be reached, and so scrolled, by keyboard.
+  const scrollers = () => {
+    for (const e of document.querySelectorAll(".wide, figure")) {
+      if (e.scrollWidth > e.clientWidth) e.tabIndex = 0; else e.removeAttribute("tabindex");
+    }
+  };
+  addEventListener("resize", scrollers);
+  document.addEventListener("toggle", scrollers, true);
+
   fill(controls.case, data.cases.map((c) => [c.name, c.label]));
   recall();
   draw();
+  scrollers();
   document.documentElement.dataset.ready = "yes";
 })();

@@ -1,0 +1,242 @@
+//! `edgeline bench`: run time against error.
+
+use super::cold::ColdRuns;
+use super::fem::FemOptions;
+use super::solve::{checked_tolerance, edge_model};
+use super::study::{FemSource, Records, command_line, now, processor, progress_bar, solve_all};
+use super::{Outcome, print};
+use crate::base::{Error, Result, prepare_folder};
+use crate::body::EdgeModel;
+use crate::case::{Case, Study};
+use crate::fem::Driver;
+use crate::report::bench as files;
+use crate::report::verdict::{duration, rounded};
+use crate::study::bench::{self, Against, BEST, Bench, FemMeshes, Machine, Origin, Setup, Speedup};
+use clap::{Args, ValueHint};
+use std::path::{Path, PathBuf};
+
+/// Measures run time against error: every model at several tolerances, and FEM on several meshes.
+///
+/// Writes pareto.csv (one row a case and a model's tolerance or FEM's mesh), pareto.svg (run time
+/// against error, both sides) and bench.json into the output folder. Errors are taken against FEM's
+/// finest mesh and against quarter-space at the tightest tolerance. Only with --fem live are times
+/// of FEM and the models divided; recorded ones are shown apart. A mesh that is done in the folder already is not run
+/// again: give a new folder to time both sides anew. Takes a few minutes for the four
+/// default cases; with --fem live some minutes more a case, for the meshes.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// Case or study files, built-in cases, cases of the built-in study or `factorial`, all of it;
+    /// its four corners of the lower load if left out
+    #[arg(value_hint = ValueHint::FilePath, value_name = "CASE")]
+    cases: Vec<PathBuf>,
+    /// Folder for the results; made if it is not there
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+    /// Models to run, separated by commas; all of them if left out
+    #[arg(long, value_delimiter = ',', value_parser = edge_model())]
+    methods: Vec<EdgeModel>,
+    /// Tolerances of the models as fractions of p0; the tightest is the models' limit
+    #[arg(long, value_delimiter = ',', value_name = "T,T", default_values_t = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4])]
+    tolerances: Vec<f64>,
+    /// Errors (fractions of p0) at which the times of FEM and quarter-space are compared
+    #[arg(long, value_delimiter = ',', value_name = "E,E", default_values_t = [0.02, 0.01, 0.005], value_parser = level)]
+    levels: Vec<f64>,
+    /// Repeats of each model's timing
+    #[arg(long, default_value_t = 9, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
+    repeats: u16,
+    /// Where the finite-element times come from; the reference is the finest mesh there is
+    #[arg(long, value_enum, default_value = "recorded")]
+    fem: FemSource,
+    /// Folder of recorded curves, one folder a case, in place of those built into the program
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    reference: Option<PathBuf>,
+    /// Relative element sizes of the meshes with --fem live
+    #[arg(long, value_delimiter = ',', value_name = "S,S", default_values_t = [2.0, 1.4], allow_negative_numbers = true)]
+    sizes: Vec<f64>,
+    /// Runs of each mesh with --fem live
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    fem_repeats: usize,
+    #[command(flatten)]
+    options: FemOptions,
+    /// Print bench.json and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// Parses an error level.
+fn level(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
+        _ => Err("give a fraction of p0, more than 0 and at most 1".into()),
+    }
+}
+
+/// The cases that the arguments name, each once.
+fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
+    let built_in = Study::built_in();
+    let mut all: Vec<Case> = Vec::new();
+    for path in named {
+        let of_study = built_in.cases().find(|c| path.as_os_str() == c.name.as_str());
+        let found: Vec<Case> = if path.as_os_str() == built_in.name.as_str() && !path.exists() {
+            built_in.cases().cloned().collect()
+        } else if let Some(case) = of_study.filter(|_| !path.exists()) {
+            vec![case.clone()]
+        } else if std::fs::read_to_string(path).is_ok_and(|text| text.contains("[factors]")) {
+            Study::read(path)?.cases().cloned().collect()
+        } else {
+            vec![Case::find(path)?]
+        };
+        all.extend(found);
+    }
+    if named.is_empty() {
+        let low = built_in.load_levels.iter().copied().fold(f64::INFINITY, f64::min);
+        let light = |c: &&Case| c.factors().load < 1.01 * low;
+        all.extend(built_in.corners.iter().filter(light).cloned());
+    }
+    for i in 1..all.len() {
+        if all[..i].iter().any(|c| c.name == all[i].name) {
+            return Err(Error::Value {
+                key: "cases".into(),
+                value: all[i].name.clone(),
+                reason: "it is there twice".into(),
+                remedy: "name each case once".into(),
+            });
+        }
+    }
+    Ok(all)
+}
+
+/// Each of some numbers once, the largest first.
+fn descending(values: &[f64]) -> Vec<f64> {
+    let mut all = values.to_vec();
+    all.sort_by(|a, b| b.total_cmp(a));
+    all.dedup();
+    all
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+    let date = now();
+    let cases = find_cases(&arguments.cases)?;
+    let tolerances: Vec<f64> = descending(&arguments.tolerances)
+        .into_iter()
+        .map(checked_tolerance)
+        .collect::<Result<_>>()?;
+    let records = Records::read(arguments.reference.as_deref())?;
+    prepare_folder(&arguments.out)?;
+    let drivers: Vec<(f64, Driver)> = match arguments.fem {
+        FemSource::Recorded => Vec::new(),
+        FemSource::Live => descending(&arguments.sizes)
+            .into_iter()
+            .map(|size| Ok((size, Driver::new(arguments.options.settings(size))?)))
+            .collect::<Result<_>>()?,
+    };
+    // A damaged record is told before the long run.
+    cases.iter().try_for_each(|case| records.find(case).map(|_| ()))?;
+
+    let bar = progress_bar();
+    let cold = ColdRuns::new(&arguments.out);
+    let levels = descending(&arguments.levels);
+    let wanted = |m: &EdgeModel| arguments.methods.is_empty() || arguments.methods.contains(m);
+    let benches = bench::run(
+        &cases,
+        &Setup {
+            methods: EdgeModel::ALL.into_iter().filter(wanted).collect(),
+            tolerances: tolerances.clone(),
+            repeats: usize::from(arguments.repeats),
+            solver: &solve_all,
+            cold: &|case, method, threads| cold.seconds(case, method, threads),
+            fem: &|case| {
+                let recorded = records.find(case).unwrap_or_default();
+                let folder = arguments.out.join("fem").join(&case.name);
+                let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
+                FemMeshes::run(recorded, &drivers, arguments.fem_repeats, case, &folder, &say)
+            },
+            progress: &|done, all, what| {
+                bar.set_length(all as u64);
+                bar.set_position(done as u64);
+                bar.set_message(what.to_string());
+            },
+        },
+    );
+    bar.finish_and_clear();
+    let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
+    for (case, point) in points() {
+        if let Some(message) = &point.err {
+            let name = &case.case.name;
+            eprintln!("warning: {name} by {} at {}: {message}", point.source, point.setting);
+        }
+    }
+    let failed = points().filter(|(_, p)| p.origin == Origin::Model).all(|(_, p)| p.err.is_some());
+    if let Some((_, first)) = points().next().filter(|_| failed) {
+        return Err(Error::Value {
+            key: "bench".into(),
+            value: format!("{} cases", benches.len()),
+            reason: first.err.clone().unwrap_or_default(),
+            remedy: "no case could be solved; try one of them with `edgeline solve`".into(),
+        });
+    }
+    let bench = Bench::new(
+        date,
+        command_line(),
+        Machine { processor: processor(), threads: rayon::current_num_threads() },
+        tolerances.last().copied().unwrap_or(f64::NAN),
+        levels,
+        benches,
+    );
+    files::write(&bench, &arguments.out)?;
+    if arguments.json {
+        print(&files::json(&bench))?;
+    } else {
+        print(&text(&bench, &arguments.out))?;
+    }
+    Ok(Outcome::Done)
+}
+
+/// The short summary for a reader.
+fn text(bench: &Bench, out: &Path) -> String {
+    let mut lines = Vec::new();
+    for &level in &bench.levels {
+        for (against, whose) in [
+            (Against::Limit, "each against its own limit"),
+            (Against::Fem, "both against FEM's finest mesh"),
+        ] {
+            let here: Vec<&Speedup> = bench
+                .speedups
+                .iter()
+                .filter(|s| s.level == level && s.against == against)
+                .collect();
+            lines.extend(at_level(&here, level, whose, bench.cases.len()));
+        }
+    }
+    if lines.is_empty() {
+        lines.push(
+            "no ratio: FEM did not run here, or no answer of it is good enough (--fem live, --sizes, \
+             --levels)"
+                .to_string(),
+        );
+    }
+    lines.push(format!("wrote pareto.csv, pareto.svg and bench.json into {}", out.display()));
+    lines.join("\n") + "\n"
+}
+
+/// What one level says in one line: the range over the cases.
+fn at_level(here: &[&Speedup], level: f64, whose: &str, cases: usize) -> Option<String> {
+    let slowest = here.iter().min_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
+    let fastest = here.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
+    let one = |s: &Speedup| {
+        format!(
+            "{} +- {} ({}: FEM {}, {BEST} {})",
+            rounded(s.ratio.value),
+            rounded(s.ratio.plus_minus),
+            s.case,
+            duration(s.fem_seconds.0),
+            duration(s.model_seconds.0)
+        )
+    };
+    Some(format!(
+        "to {level} p0, {whose}, in {} of {cases} cases: {BEST} is {} to {} times faster",
+        here.len(),
+        one(slowest),
+        one(fastest)
+    ))
+}

@@ -1,0 +1,47 @@
+//! The time of a solve in a process of its own.
+
+use crate::base::write_whole;
+use crate::body::EdgeModel;
+use crate::case::Case;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Runs `edgeline solve` on cases, in a folder that goes with it. Nothing of this process, such as
+/// the tables that it has built, helps there.
+pub(super) struct ColdRuns {
+    folder: PathBuf,
+}
+
+impl ColdRuns {
+    /// Runs in the folder `cold` below `folder`.
+    pub(super) fn new(folder: &Path) -> Self {
+        Self { folder: folder.join("cold") }
+    }
+
+    /// Seconds of the complete answer as that process measures them, start-up and files not
+    /// counted; `None` where it could not run.
+    pub(super) fn seconds(&self, case: &Case, method: EdgeModel, threads: usize) -> Option<f64> {
+        std::fs::create_dir_all(&self.folder).ok()?;
+        let file = self.folder.join("case.toml");
+        write_whole(&file, case.to_toml()).ok()?;
+        let output = Command::new(std::env::current_exe().ok()?)
+            .arg("solve")
+            .arg(&file)
+            .args(["--method", method.name(), "--json", "--out"])
+            .arg(&self.folder)
+            .env("RAYON_NUM_THREADS", threads.to_string())
+            .stdin(Stdio::null())
+            .stderr(Stdio::null())
+            .output()
+            .ok()?;
+        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).ok()?;
+        summary["seconds"]["total"].as_f64()
+    }
+}
+
+impl Drop for ColdRuns {
+    fn drop(&mut self) {
+        // What cannot be removed is in the user's own folder and says what it is.
+        let _ = std::fs::remove_dir_all(&self.folder);
+    }
+}

@@ -1,0 +1,156 @@
+//! `edgeline bench` as a user meets it; finite elements are stood in for. No time is asserted on.
+
+use std::collections::HashMap;
+use std::path::Path;
+use std::process::{Command, Output};
+
+fn edgeline(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+    command.arg("bench").args(arguments).current_dir(folder).env_remove("EDGELINE_PYTHON");
+    command.output().unwrap()
+}
+
+fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+type Row = HashMap<String, String>;
+
+fn rows(folder: &Path) -> Vec<Row> {
+    let path = folder.join("pareto.csv");
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+}
+
+/// What makes a run short: two models, two tolerances, one repeat.
+const SHORT: [&str; 6] =
+    ["--methods", "mirror,quarter-space", "--tolerances", "5e-3,1e-4", "--repeats", "1"];
+
+#[test]
+fn recorded_meshes_are_shown_apart_and_never_divided() {
+    let folder = tempfile::tempdir().unwrap();
+    let done = edgeline(folder.path(), &[&["w1e-4_sl5_lr1", "--json"][..], &SHORT].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let out = folder.path().join("out");
+    let bench: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let file = std::fs::read_to_string(out.join("bench.json")).unwrap();
+    assert_eq!(bench, serde_json::from_str::<serde_json::Value>(&file).unwrap());
+    assert_eq!(bench["cases"][0]["fem_reference"], "recorded, size 1");
+    assert_eq!(bench["limit"], 1e-4);
+    assert_eq!(bench["speedups"], serde_json::json!([]));
+
+    let rows = rows(&out);
+    let of = |source: &str, setting: f64| {
+        let is_it = |r: &&Row| r["source"] == source && number(r, "setting") == setting;
+        rows.iter().find(is_it).unwrap_or_else(|| panic!("{source} at {setting}"))
+    };
+    // Two models at two tolerances, and the three meshes of the record.
+    assert_eq!(rows.len(), 4 + 3);
+    for row in &rows {
+        let recorded = row["origin"] == "recorded-fem";
+        assert_eq!(recorded, row["source"] == "fem");
+        assert_eq!(recorded, row["timed_on"] != "this machine");
+        assert!(row["err"].is_empty() && number(row, "seconds") > 0.0);
+        assert_eq!(recorded, row["seconds_cold"].is_empty(), "{row:?}");
+    }
+    // The physics: the mirror keeps its modelling error at any tolerance, quarter-space does not,
+    // and FEM's meshes close in on the finest.
+    for tolerance in [5e-3, 1e-4] {
+        assert!(number(of("mirror", tolerance), "worst_rms_to_limit") > 0.1);
+        assert!(number(of("quarter-space", tolerance), "worst_rms_to_fem") < 0.025);
+    }
+    assert!(number(of("quarter-space", 5e-3), "worst_rms_to_limit") < 5e-3);
+    assert_eq!(of("quarter-space", 1e-4)["worst_rms_to_limit"], "");
+    let coarse = number(of("fem", 2.0), "worst_rms_to_fem");
+    assert!(coarse > number(of("fem", 1.4), "worst_rms_to_fem") && coarse < 0.1, "{coarse}");
+    // Something is on every front.
+    for origin in ["model", "recorded-fem"] {
+        for front in ["front_fem", "front_limit"] {
+            assert!(rows.iter().any(|r| r["origin"] == origin && r[front] == "yes"), "{front}");
+        }
+    }
+
+    let svg = std::fs::read_to_string(out.join("pareto.svg")).unwrap();
+    for word in [
+        "front of the models",
+        "mirror",
+        "quarter-space",
+        "FEM, recorded on its own machine",
+        "seconds a case (one thread)",
+        "worst RMS error of a curve / p0",
+    ] {
+        assert!(svg.contains(word), "{word}");
+    }
+    assert!(!svg.contains("FEM, this run") && !svg.contains("NaN"));
+    assert!(!out.join("cold").exists(), "what cold starts need is taken away");
+}
+
+#[test]
+fn live_meshes_are_divided_with_their_uncertainty() {
+    let folder = tempfile::tempdir().unwrap();
+    let fake = |name: &str| {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fake").join(name);
+        path.to_str().unwrap().to_string()
+    };
+    let (python, gmsh) = (fake("python3"), fake("gmsh"));
+    let live = ["--fem", "live", "--sizes", "1,2", "--python", &python, "--gmsh", &gmsh];
+    let done = edgeline(folder.path(), &[&["flush-short"][..], &live, &SHORT].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let out = folder.path().join("out");
+    let file = std::fs::read_to_string(out.join("bench.json")).unwrap();
+    let bench: serde_json::Value = serde_json::from_str(&file).unwrap();
+    assert_eq!(bench["cases"][0]["fem_reference"], "live, size 1");
+    let live: Vec<Row> = rows(&out).into_iter().filter(|r| r["origin"] == "live-fem").collect();
+    assert_eq!(live.len(), 2);
+    assert!(live.iter().all(|r| r["repeats"] == "2" && number(r, "seconds_spread") == 0.0));
+    for size in ["size-1", "size-2"] {
+        for run in ["run-1", "run-2"] {
+            assert!(out.join("fem/flush-short").join(size).join(run).join("fem.json").is_file());
+        }
+    }
+
+    // The stand-in takes one second and has no error, so each level has a ratio.
+    let speedups = bench["speedups"].as_array().unwrap();
+    let own: Vec<_> = speedups.iter().filter(|s| s["against"] == "limit").collect();
+    assert_eq!(own.len(), 3, "{speedups:?}");
+    for s in own {
+        let get = |key: &str, i: usize| s[key][i].as_f64().unwrap();
+        let (fem, model) = (get("fem_seconds", 0), get("model_seconds", 0));
+        let (value, pm) = (s["ratio"]["value"].as_f64(), s["ratio"]["plus_minus"].as_f64());
+        assert_eq!(fem, 1.0);
+        assert!((value.unwrap() * model / fem - 1.0).abs() < 1e-9);
+        let expected = value.unwrap() * get("model_seconds", 1) / model;
+        assert!((pm.unwrap() - expected).abs() <= 1e-9 * value.unwrap());
+        assert!(s["model_error"].as_f64() <= s["level"].as_f64());
+    }
+    let text = said(&done);
+    assert!(text.contains("to 0.005 p0, each against its own limit, in 1 of 1 cases"), "{text}");
+}
+
+#[test]
+fn bad_input_ends_with_exit_code_2_and_one_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = folder.path();
+    std::fs::write(at.join("file"), "").unwrap();
+    std::fs::write(at.join("bad.toml"), "name = \"x\"\n[factors]\n").unwrap();
+    for (arguments, wanted) in [
+        (&["nowhere.toml"][..], "nowhere.toml"),
+        (&["bad.toml"], "[roller] is missing"),
+        (&["flush-short", "flush-short"], "twice"),
+        (&["flush-short", "--tolerances", "2"], "--tolerance"),
+        (&["flush-short", "--levels", "0"], "--levels"),
+        (&["flush-short", "--repeats", "0"], "--repeats"),
+        (&["flush-short", "--methods", "mirrors"], "mirrors"),
+        (&["flush-short", "--out", "file"], "cannot create the folder"),
+        (&["flush-short", "--reference", "nowhere"], "nowhere"),
+        (&["flush-short", "--fem", "live", "--sizes", "-1"], "size"),
+    ] {
+        let done = edgeline(at, arguments);
+        assert_eq!(done.status.code(), Some(2), "{arguments:?}: {}", said(&done));
+        assert!(said(&done).contains(wanted), "{arguments:?}: {}", said(&done));
+        assert!(done.stdout.is_empty(), "{arguments:?}");
+    }
+}
