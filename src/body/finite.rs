@@ -330,17 +330,31 @@ impl Body {
         matrix
     }
 
-    /// Amplitudes of the plate's remainder at (`y`, `z`) under face loads with the given
+    /// What the plate's remainder does at `y` per unit of each entry of
     /// [`Body::plate_transform`], in the components of [`plate::remainder`].
-    pub fn plate_stress(&self, k: f64, transform: &[f64], y: f64, z: f64) -> [f64; 6] {
-        let mut sum = [0.0; 6];
+    pub fn plate_kernel(&self, k: f64, y: f64) -> Vec<[f64; 6]> {
+        if !self.plate_matters(k) {
+            return Vec::new();
+        }
         let axis = &self.face_wavenumbers;
-        for ((&l, w), q) in axis.nodes().iter().zip(axis.weights()).zip(transform) {
-            let s = plate::remainder(self.half, self.nu, k, l, y);
-            let (sin, cos) = (l * z).sin_cos();
-            let amplitude = w * q / PI;
+        let terms = axis.nodes().iter().zip(axis.weights());
+        terms
+            .map(|(&l, w)| plate::remainder(self.half, self.nu, k, l, y).map(|s| w / PI * s))
+            .collect()
+    }
+
+    /// Sines and cosines of the plate's wavenumbers at the depth `z`.
+    pub fn plate_phases(&self, z: f64) -> Vec<(f64, f64)> {
+        self.face_wavenumbers.nodes().iter().map(|l| (l * z).sin_cos()).collect()
+    }
+
+    /// Amplitudes of the plate's remainder, from [`Body::plate_kernel`], [`Body::plate_transform`] and
+    /// [`Body::plate_phases`].
+    pub fn plate_stress(kernel: &[[f64; 6]], transform: &[f64], phases: &[(f64, f64)]) -> [f64; 6] {
+        let mut sum = [0.0; 6];
+        for ((s, q), (sin, cos)) in kernel.iter().zip(transform).zip(phases) {
             for (i, (sum, s)) in sum.iter_mut().zip(s).enumerate() {
-                *sum += amplitude * s * if i >= 4 { sin } else { cos };
+                *sum += q * s * if i >= 4 { sin } else { cos };
             }
         }
         sum

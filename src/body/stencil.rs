@@ -164,7 +164,12 @@ impl Stencil {
         shortest: f64,
     ) -> Self {
         let order = sources.axis.order();
-        let mut stencil = Self { order, ..Self::default() };
+        let mut stencil = Self {
+            far: Vec::with_capacity(64),
+            near: Vec::with_capacity(64),
+            near_weights: Vec::with_capacity(64 * order),
+            order,
+        };
         let piece_rule = gauss_legendre(order.max(4));
         let mut basis = vec![0.0; order];
         for image in images {

@@ -215,7 +215,15 @@ pub struct Field<'a> {
     /// A wavenumber's share of a stress that is as good as none (p0).
     negligible: f64,
     counters: Counters,
+    /// [`Body::plate_kernel`] of the items of `central`, for the latest y.
+    plates: Mutex<Vec<(f64, Plates)>>,
 }
+
+/// What a plate's remainder does, for each item of a list.
+type Plates = Arc<Vec<Vec<[f64; 6]>>>;
+
+/// Curves share so many places along y at most that are worth keeping.
+const KEPT_PLATES: usize = 128;
 
 /// After so many negligible fine wavenumbers in a row, more than a period of the oscillation that the
 /// contact's width gives the amplitudes, the rest is left out; of the coarse ones, after a panel.
@@ -254,7 +262,19 @@ impl<'a> Field<'a> {
         let negligible = 0.005 * tolerance;
         let all = Mutex::default();
         let counters = Counters::default();
-        Self { body, pressure, wavenumbers, layers, central, all, gamma, negligible, counters }
+        let plates = Mutex::default();
+        Self {
+            body,
+            pressure,
+            wavenumbers,
+            layers,
+            central,
+            all,
+            gamma,
+            negligible,
+            counters,
+            plates,
+        }
     }
 
     /// The kernel evaluations so far.
@@ -263,6 +283,24 @@ impl<'a> Field<'a> {
         let [done, beyond_reach, ends, faded] =
             [done, beyond_reach, ends, faded].map(|count| count.load(Relaxed));
         Work { done, beyond_reach, ends, faded }
+    }
+
+    /// The plate's kernels in the plane x = 0 at `y`; points below each other share them.
+    fn plates(&self, y: f64) -> Plates {
+        let kept = |plates: &[(f64, Plates)]| {
+            plates.iter().find(|(at, _)| *at == y).map(|(_, plates)| plates.clone())
+        };
+        if let Some(plates) = kept(&self.plates.lock().unwrap_or_else(|e| e.into_inner())) {
+            return plates;
+        }
+        let made: Plates =
+            Arc::new(self.central.iter().map(|loads| self.body.plate_kernel(loads.k, y)).collect());
+        let mut plates = self.plates.lock().unwrap_or_else(|e| e.into_inner());
+        if plates.len() >= KEPT_PLATES {
+            plates.clear();
+        }
+        plates.push((y, made.clone()));
+        made
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
@@ -383,6 +421,8 @@ impl<'a> Field<'a> {
         let on_faces: usize = faces.iter().flatten().map(Stencil::len).sum();
         let on_surface = surface.len() + correction.as_ref().map_or(0, |c| c.0.len());
         let mut work = Work::default();
+        let phases = if complete { body.plate_phases(z) } else { Vec::new() };
+        let plates = (complete && central).then(|| self.plates(y));
         for (number, loads) in items.iter().enumerate() {
             let k = loads.k;
             if fading >= faded {
@@ -403,7 +443,10 @@ impl<'a> Field<'a> {
                     amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
                     done += scratch.offsets.len();
                 }
-                let plate = body.plate_stress(k, &loads.plate, y, z);
+                let plate = match &plates {
+                    Some(plates) => Body::plate_stress(&plates[number], &loads.plate, &phases),
+                    None => Body::plate_stress(&body.plate_kernel(k, y), &loads.plate, &phases),
+                };
                 amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
             }
             let ends = if loads.face.is_empty() { on_faces } else { 0 };
