@@ -28,8 +28,8 @@ BOUNDARY_CONDITIONS = {
     "x = block_width, end face and surface: free of traction",
     "roller": "x = 0 and y = 0: symmetry planes; mid-plane z = R: u_z uniform (the approach), free of "
     "shear; end face and surface: free of traction",
-    "contact": "frictionless; nodal gaps along z are never negative, nodal forces along z never pull, "
-    "their sum is the load",
+    "contact": "frictionless; nodal gaps along z, at fixed x, are never negative, nodal forces are normal to "
+    "the unloaded surfaces and never pull, the sum of their z components is the load",
 }
 
 
@@ -90,6 +90,12 @@ def surface_depth(name, x, radius):
     return np.zeros_like(x) if name == "block" else x**2 / (radius + np.sqrt(radius**2 - x**2))
 
 
+def surface_slope(name, x, radius):
+    """dz/dx of a body's unloaded surface at ``x`` (units of C)."""
+    x = np.asarray(x, dtype=float)
+    return np.zeros_like(x) if name == "block" else x / np.sqrt(radius**2 - x**2)
+
+
 def near_singularity(points, case):
     """Whether ``points`` (n, 3: x, y, depth) lie where stresses are not smooth.
 
@@ -118,7 +124,7 @@ def press_bodies(bodies, grid, case, solver, log):
             numbers = grid.find(nodes)
             return np.where(np.abs(nodes[:, 2] - surface) < 1e-6, numbers, -1)
 
-        body.number_contact_nodes(len(grid), find)
+        body.number_contact_nodes(len(grid), find, lambda x, name=name: surface_slope(name, x, radius))
     flush = case.block_length_m <= case.roller_length_m * (1.0 + 1e-9)
     roller, block = ((1.0 - bodies[n].poisson**2) / bodies[n].young for n in ("roller", "block"))
     gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2)

@@ -141,8 +141,8 @@ def enforce_tractions(points, stress, poisson, end, radius, pressure):
     On the planes of symmetry shear stresses are zero.
 
     ``points`` have z as depth below the body's surface; ``poisson``; ``end``: y of its free end face;
-    ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure per area of the
-    (x, y) plane at the points' x and y. Returns the largest errors of normal traction met on the end face
+    ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure, normal to the
+    surface, at the points' x and y. Returns the largest errors of normal traction met on the end face
     and on the surface.
     """
     xx, yy, zz, xy, xz, yz = stress.T
@@ -165,15 +165,14 @@ def enforce_tractions(points, stress, poisson, end, radius, pressure):
     nn = xx[on] * s**2 - 2.0 * xz[on] * s * c + zz[on] * c**2
     tt = xx[on] * c**2 + 2.0 * xz[on] * s * c + zz[on] * s**2
     along = np.where(edge, 0.0, xy[on] * c + yz[on] * s)
-    # A force p along z per projected area is p c per area: p c^2 along n and p c s along t.
-    normal, shear = -pressure[on] * c**2, -pressure[on] * c * s
+    normal = -pressure[on]
     change = normal - nn
     surface_error = np.abs(change[~edge]).max(initial=0.0)
     tt = tt + np.where(edge, poisson * (change - yy[on]), share * change)
     yy[on] = np.where(edge, 0.0, yy[on] + share * change)
-    xx[on] = tt * c**2 - 2.0 * shear * s * c + normal * s**2
-    zz[on] = tt * s**2 + 2.0 * shear * s * c + normal * c**2
-    xz[on] = (tt - normal) * s * c + shear * (c**2 - s**2)
+    xx[on] = tt * c**2 + normal * s**2
+    zz[on] = tt * s**2 + normal * c**2
+    xz[on] = (tt - normal) * s * c
     xy[on], yz[on] = along * c, along * s
     return float(end_error), float(surface_error)
 

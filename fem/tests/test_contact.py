@@ -11,7 +11,7 @@ from mpi4py import MPI
 from conftest import FEM, run_stage, steel_case
 from edgeline_fem.contact import ContactGrid, half_space_compliance, solve_contact
 from edgeline_fem.meshing import make_axes, make_meshes
-from edgeline_fem.model import build_bodies, press_bodies
+from edgeline_fem.model import build_bodies, press_bodies, surface_depth
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError, MeshOptions
 
@@ -73,14 +73,19 @@ def test_contact_solver_on_a_small_dense_problem():
         solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 2, silent)
 
 
+def plane_slice(load_factor, folder):
+    """A slice of unit length in plane strain: its bodies, contact grid, contact solution, reaction error."""
+    case = steel_case(load_factor, 0.5, 1.0)
+    request = standard_request(case, 1.0, end=1.0, free_end=1.0)
+    meshed = make_meshes(request, folder)
+    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
+    bodies, _ = build_bodies(MPI.COMM_SELF, folder, request, plane_strain=True)
+    return bodies, grid, *press_bodies(bodies, grid, case, request.solver, silent)
+
+
 def test_hertz_line_contact(tmp_path):
     """A slice in plane strain: peak pressure and half-width within half a percent, stresses too."""
-    case = steel_case(2e-5, 0.5, 1.0)
-    request = standard_request(case, 1.0, end=1.0, free_end=1.0)
-    meshed = make_meshes(request, tmp_path)
-    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
-    bodies, _ = build_bodies(MPI.COMM_SELF, tmp_path, request, plane_strain=True)
-    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, silent)
+    bodies, grid, solution, reaction_error = plane_slice(2e-5, tmp_path)
     assert solution.forces.sum() == pytest.approx(math.pi * 0.5 / 4.0, rel=1e-12)
     assert reaction_error < 1e-8
     assert solution.smallest_gap > -1e-7
@@ -102,6 +107,28 @@ def test_hertz_line_contact(tmp_path):
         assert found[:, 2] == pytest.approx(zz, abs=5e-3)
         assert found[:, 0] == pytest.approx(xx, abs=5e-3)
         assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=5e-3)
+
+
+def test_the_contact_presses_along_the_rollers_normal(tmp_path):
+    """A roller of 28 C: its tilted surface carries the pressure, and no shear to 0.2 % of p0.
+
+    Forces along z alone would leave a shear of p x / R, 0.019 p0 at x = 0.75.
+    """
+    bodies, grid, solution, reaction_error = plane_slice(1e-3, tmp_path)
+    assert reaction_error < 1e-8
+    radius = steel_case(1e-3, 0.5, 1.0).scales().radius
+    x = np.array([0.25, 0.5, 0.75])
+    depth = surface_depth("roller", x, radius)
+    xx, _, zz, _, xz, _ = bodies["roller"].stress_field().sample(np.stack([x, 0.2 + 0.0 * x, depth], axis=1)).T
+    sine = x / radius
+    cosine = np.sqrt(1.0 - sine**2)
+    shear = (zz - xx) * sine * cosine + xz * (cosine**2 - sine**2)
+    normal = xx * sine**2 - 2.0 * xz * sine * cosine + zz * cosine**2
+    assert np.abs(shear).max() < 2e-3
+    pressure = grid.sample(grid.pressure(solution.forces), [(v, 0.2) for v in x])
+    assert -normal == pytest.approx(pressure, abs=5e-3)
+    # The contact is Hertz's but for terms of order C / R.
+    assert pressure == pytest.approx(np.sqrt(1.0 - x**2), abs=5e-3)
 
 
 def rows(path):

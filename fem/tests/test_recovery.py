@@ -76,13 +76,12 @@ def test_tractions_that_hold_are_left_alone_and_others_put_right():
     assert stress[1:, 1] == pytest.approx([0.0, 0.0])
 
 
-def test_tractions_on_the_arc_act_along_z():
-    """On a tilted surface the traction is along z: sigma . n has no part across."""
+def test_tractions_on_the_arc_are_normal_to_it():
+    """On a tilted surface sigma . n is the pressure along the normal, and nothing across."""
     points = np.array([[1.0, 0.5, 0.0]])
     stress = np.array([[-0.3, -0.2, -0.4, 0.05, 0.02, 0.01]])
     enforce_tractions(points, stress, 0.3, 5.0, 10.0, np.array([0.5]))
     xx, yy, zz, xy, xz, yz = stress[0]
-    sine, cosine = 0.1, math.sqrt(0.99)
-    normal = np.array([sine, 0.0, -cosine])  # outwards
+    normal = np.array([0.1, 0.0, -math.sqrt(0.99)])  # outwards
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    assert tensor @ normal == pytest.approx([0.0, 0.0, 0.5 * cosine], abs=1e-12)
+    assert tensor @ normal == pytest.approx(-0.5 * normal, abs=1e-12)
