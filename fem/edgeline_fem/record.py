@@ -173,6 +173,37 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
     return found
 
 
+def observed_orders(folder, half_length_m, c_m, p0_pa):
+    """Orders of convergence that say in three numbers whether the meshes of ``folder`` converge.
+
+    ``pressure_half_way``: of the pressure at x = 0, half way between the contact's middle and its end;
+    ``depth_centre_block`` and ``depth_centre_roller``: of the root mean square of all six stress components
+    on that curve. An order is null where the three finest meshes show none.
+    """
+    series = _series(folder, half_length_m, c_m, p0_pa)
+    line = series["contact", "along-y", "pressure"]
+    sizes = sorted(line, reverse=True)[-3:]
+    names = ("pressure_half_way", "depth_centre_block", "depth_centre_roller")
+    if len(sizes) < 3:
+        return dict.fromkeys(names)
+    # The curve leaves out the corner, at its end; its points are as in pressure_lines.
+    y = np.array([point[1] for point in pressure_lines(half_length_m / c_m)["along-y"]])
+    half_way = np.argmin(np.abs(y - 0.5 * y[-1]))
+    values = {names[0]: {size: line[size][half_way : half_way + 1] for size in sizes}}
+    for name, body in zip(names[1:], ("block", "roller")):
+        parts = [series[body, "depth-centre", component] for component in COMPONENTS[:6]]
+        values[name] = {size: np.concatenate([part[size] for part in parts]) for size in sizes}
+    orders = {}
+    for name, found in values.items():
+        first, last = (found[a] - found[b] for a, b in zip(sizes, sizes[1:]))
+        order = None
+        # Steps to and fro are no convergence, however they shrink.
+        if np.sum(first * last) > 0.0:
+            order, _ = order_and_factor((np.linalg.norm(first), np.linalg.norm(last)), sizes)
+        orders[name] = None if order is None else round(order, 3)
+    return orders
+
+
 @dataclasses.dataclass(frozen=True)
 class Run:
     """How stages are run: the linear solver, and for the solve stage the ranks and what starts them.
@@ -280,7 +311,9 @@ def _record(case, size, target, log, run, overrides):
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
     for name in ("curves.csv", "pressure.csv"):
         _merge(target / name, size, work / name)
-    data["errors"] = estimate_errors(target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    measures = (target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    data["orders"] = observed_orders(*measures)
+    data["errors"] = estimate_errors(*measures)
     write_atomically(path, json.dumps(data, indent=1) + "\n")
     shutil.rmtree(work)
     return True

@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from conftest import FEM, STEEL, steel_case
-from edgeline_fem.record import order_and_factor, read_cases, record
+from edgeline_fem.record import observed_orders, order_and_factor, read_cases, record
 from edgeline_fem.request import FemError
 
 
@@ -50,6 +50,8 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
     assert list(data["meshes"]) == ["4", "3"]
     assert data["dimensionless"] == pytest.approx({"W": 5e-4, "S_l": 5.0, "L_r": 1.0})
     assert {e["curve"] for e in data["errors"]} >= {"along-y", "depth-centre"}
+    assert set(data["orders"].values()) == {None}, "two meshes show no order"
+    assert all(0.0 < mesh["cpu_seconds"] for mesh in data["meshes"].values())
     curves = (tmp_path / "test" / "curves.csv").read_text().splitlines()
     assert curves[0].startswith("mesh,body,curve,x_m")
     assert sum(line.startswith("4,") for line in curves) == sum(line.startswith("3,") for line in curves)
@@ -57,6 +59,26 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
     with pytest.raises(FemError, match="holds another case"):
         other = steel_case(6e-4, 5.0, 1.0)
         record(other, 3.0, tmp_path, lines.append)
+
+
+def test_every_case_on_record_converges_to_what_is_promised():
+    """Positive orders, and the finest mesh's errors within 0.5 % of p0 for pressure, 1 % for stresses.
+
+    An error is Richardson's estimate where an order of 1 or more is observed, else the difference itself.
+    """
+    folder = FEM.parent / "results/reference"
+    for name, case in read_cases(folder / "cases.toml").items():
+        data = json.loads((folder / name / "record.json").read_text())
+        assert list(data["meshes"]) == ["2", "1.4", "1"], name
+        assert all(order is not None and order > 0.0 for order in data["orders"].values()), name
+        scales = case.scales()
+        again = observed_orders(folder / name, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+        assert again == data["orders"], name
+        for entry in data["errors"]:
+            trusted = entry["order"] is not None and entry["order"] >= 1.0
+            error = entry["error_max"] if trusted else entry["difference_max"]
+            limit = 0.005 if entry["component"] == "pressure" else 0.01
+            assert error <= limit, (name, entry)
 
 
 def test_two_processes_do_not_record_one_case(tmp_path):
