@@ -147,7 +147,7 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
     ``difference_max`` and ``difference_rms`` compare the two finest meshes; ``order`` is the observed one
     of the root mean square over the three finest, and ``error_max`` and ``error_rms`` are what Richardson
     makes of it; ``factor`` turns any point's difference into its estimated error. The last four are null
-    where the meshes are fewer than three or the order is not observed.
+    where the meshes are fewer than three or no order is observed, the last three also where it is below 1.
     """
     found = []
     for (body, curve, component), meshes in sorted(
@@ -163,6 +163,9 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
         if len(sizes) == 3 and rms > 1e-7:
             first = float(np.sqrt(np.mean((meshes[sizes[0]] - meshes[sizes[1]]) ** 2)))
             order, factor = order_and_factor((first, rms), sizes)
+            # Quadratic elements have no such order: differences this even are too small to extrapolate.
+            if order is not None and order < 1.0:
+                factor = None
         entry = {
             "body": body, "curve": curve, "component": component, "sizes": sizes,
             "difference_max": float(last.max()), "difference_rms": rms, "order": order, "factor": factor,
