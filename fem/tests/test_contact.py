@@ -44,6 +44,7 @@ def test_grid_samples_a_hertz_pressure_up_to_its_edge():
     points = [(0.3, 0.7), (0.83, 0.2), (0.95, 0.1), (1.0, 1.0), (1.04, 0.0), (1.7, 0.5)]
     expected = [math.sqrt(max(0.0, 1.02**2 - x * x)) for x, _ in points]
     assert grid.sample(nodal.ravel(), points) == pytest.approx(expected, abs=1e-7)
+    assert grid.hertz_at(nodal.ravel(), 0.4) == pytest.approx((1.02, 1.02), abs=1e-9)
 
 
 def test_the_half_space_model_is_love_in_the_mean():
@@ -130,6 +131,11 @@ def test_the_contact_presses_along_the_rollers_normal(tmp_path):
     assert -normal == pytest.approx(pressure, abs=5e-3)
     # The contact is Hertz's but for terms of order C / R.
     assert pressure == pytest.approx(np.sqrt(1.0 - x**2), abs=5e-3)
+
+    # Force and sinking are conjugate.
+    one, other = np.random.default_rng(2).uniform(size=(2, len(grid)))
+    press = bodies["roller"].press
+    assert one @ press(other) == pytest.approx(other @ press(one), rel=1e-9)
 
 
 def rows(path):
