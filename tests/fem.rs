@@ -70,8 +70,9 @@ impl Bench {
         let pids = fs::read_dir("/proc").unwrap().flatten();
         pids.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
             .filter(|pid| {
-                fs::read(format!("/proc/{pid}/environ"))
-                    .is_ok_and(|text| text.split(|&b| b == 0).any(|v| v.starts_with(mark.as_bytes())))
+                fs::read(format!("/proc/{pid}/environ")).is_ok_and(|text| {
+                    text.split(|&b| b == 0).any(|v| v.starts_with(mark.as_bytes()))
+                })
             })
             .collect()
     }
@@ -479,4 +480,28 @@ fn live_killed_study_is_completed_and_equals_an_undisturbed_one() {
     bench.assert_no_process_is_left();
     assert_eq!(finished(&bench), 4);
     assert_eq!(results(&bench), results(&undisturbed));
+}
+
+#[test]
+#[ignore = "runs gmsh and FEniCSx"]
+fn live_solvers_and_ranks_agree() {
+    let [direct, other] = [Bench::new(), Bench::new()];
+    succeeded(direct.live("flush-short").args(["--size", "4"]));
+    let iterative = ["--size", "4", "--linear", "iterative", "--ranks", "2"];
+    succeeded(other.live("flush-short").args(iterative));
+    let text = fs::read_to_string(other.out().join("fem.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(summary["ranks"], 2);
+    let iterations = summary["linear_iterations"].as_u64().unwrap();
+    assert!(iterations > 1000, "{iterations} iterations are not an iterative solver's");
+    let p0_pa = summary["hertz"]["p0_pa"].as_f64().unwrap();
+    for (one, two) in direct.results().iter().zip(&other.results()) {
+        assert_eq!(one.lines().count(), two.lines().count());
+        for (a, b) in one.split([',', '\n']).zip(two.split([',', '\n'])) {
+            match (a.parse::<f64>(), b.parse::<f64>()) {
+                (Ok(a), Ok(b)) => assert!((a - b).abs() <= 1e-6 * p0_pa, "{a:e} and {b:e} Pa"),
+                _ => assert_eq!(a, b),
+            }
+        }
+    }
 }

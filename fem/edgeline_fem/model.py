@@ -112,8 +112,8 @@ def near_singularity(points, case):
 def steep_parts(points, case, grid, pressure, poisson, radius):
     """What :meth:`StressField.sample` takes as ``known`` at ``points`` (n, 3: x, y, depth).
 
-    Under the contact line it is the Hertz field that falls to 0 across the contact as the nodal ``pressure``
-    does: stresses have a vertical tangent there, which no polynomial follows. On a longer block the
+    Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure``, at the
+    ``grid``'s Gauss points, does: stresses have a vertical tangent there, which no polynomial follows. On a longer block the
     pressure at the roller's end has no limit, so there it is that of 0.5 C from the end; in the block,
     where the load stops, half of that as far as 0.5 C beyond, and then nothing.
     """
@@ -259,7 +259,8 @@ def solve_case(request, folder, comm, log):
     seconds["sample"] = time.perf_counter() - mark
     seconds["total"] = time.perf_counter() - began + seconds["mesh"]
 
-    peak = int(np.argmax(pressure))
+    along = grid.sample(pressure, [(0.0, y) for y in grid.y])
+    peak = int(np.argmax(along))
     summary = {
         "schema": 1,
         "case": case.name,
@@ -279,9 +280,9 @@ def solve_case(request, folder, comm, log):
         "load_error_rel": abs(4.0 * float(solution.forces.sum()) / (np.pi * case.roller_half_length()) - 1.0),
         "equilibrium_residual": reaction_error,
         "approach_m": solution.approach * scales.c_m,
-        "p_centre_pa": float(pressure[0]) * scales.p0_pa,
-        "p_max_pa": float(pressure[peak]) * scales.p0_pa,
-        "p_max_at_m": [grid.x[peak // grid.shape[1]] * scales.c_m, grid.y[peak % grid.shape[1]] * scales.c_m],
+        "p_centre_pa": float(along[0]) * scales.p0_pa,
+        "p_max_pa": float(along[peak]) * scales.p0_pa,
+        "p_max_at_m": [0.0, grid.y[peak] * scales.c_m],
         "traction_error_before_enforcing": face_errors,
         "seconds": {key: round(value, 3) for key, value in seconds.items()},
         "cpu_seconds": round(meshed["cpu_seconds"] + comm.allreduce(processor_seconds() - used_before), 3),
