@@ -20,8 +20,8 @@ from .meshing import processor_seconds, write_atomically
 from .recovery import enforce_tractions, hertz_stress, invariants
 from .request import FemError
 
-CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m", *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")),
-                "von_mises_pa", "tau_max_pa")
+CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m",
+                *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")), "von_mises_pa", "tau_max_pa")
 PRESSURE_HEADER = ("line", "x_m", "y_m", "p_pa", "p_lumped_pa", "p_stress_pa")
 
 # Nearer than this to a roller's end on a longer block (units of C), stresses belong to the mesh.
@@ -112,14 +112,14 @@ def near_singularity(points, case):
 def steep_parts(points, case, grid, pressure, poisson, radius):
     """What :meth:`StressField.sample` takes as ``known`` at ``points`` (n, 3: x, y, depth).
 
-    Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure``, at the
-    ``grid``'s Gauss points, does: stresses have a vertical tangent there, which no polynomial follows. On a longer block the
-    pressure at the roller's end has no limit, so there it is that of 0.5 C from the end; in the block,
-    where the load stops, half of that as far as 0.5 C beyond, and then nothing.
+    Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure`` does, which
+    is given at the ``grid``'s Gauss points: stresses have a vertical tangent there that no polynomial follows.
+    On a longer block the pressure at the roller's end has no limit, so there it is that of 0.5 C from the end; in
+    the block, where the load stops, half of that as far as 0.5 C beyond, and then nothing.
     """
     length = case.roller_half_length()
     longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)
-    last = length - 0.5 if longer else length
+    last = max(length - 0.5, 0.5 * length) if longer else length
     attached = longer and np.isinf(radius)
 
     @functools.lru_cache(maxsize=None)

@@ -179,31 +179,27 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
 def observed_orders(folder, half_length_m, c_m, p0_pa):
     """Orders of convergence that say in three numbers whether the meshes of ``folder`` converge.
 
-    ``pressure_half_way``: of the pressure at x = 0, half way between the contact's middle and its end;
-    ``depth_centre_block`` and ``depth_centre_roller``: of the root mean square of all six stress components
-    on that curve. An order is null where the three finest meshes show none.
+    Each is that of a root mean square over the three finest meshes, null where they show none.
+    ``pressure_half_way``: of the pressure at x = 0 around half way between the contact's middle and its end,
+    from a quarter to three quarters (at one point two meshes may agree by chance);
+    ``depth_centre_block`` and ``depth_centre_roller``: of all six stress components on that curve.
     """
     series = _series(folder, half_length_m, c_m, p0_pa)
     line = series["contact", "along-y", "pressure"]
     sizes = sorted(line, reverse=True)[-3:]
-    names = ("pressure_half_way", "depth_centre_block", "depth_centre_roller")
-    if len(sizes) < 3:
-        return dict.fromkeys(names)
-    # The curve leaves out the corner, at its end; its points are as in pressure_lines.
+    # The series leaves out the corner, at the line's end; its points are as in pressure_lines.
     y = np.array([point[1] for point in pressure_lines(half_length_m / c_m)["along-y"]])
-    half_way = np.argmin(np.abs(y - 0.5 * y[-1]))
-    values = {names[0]: {size: line[size][half_way : half_way + 1] for size in sizes}}
-    for name, body in zip(names[1:], ("block", "roller")):
+    around = np.flatnonzero(np.abs(y / y[-1] - 0.5) <= 0.25 + 1e-9)
+    values = {"pressure_half_way": [line[size][around] for size in sizes]}
+    for body in ("block", "roller"):
         parts = [series[body, "depth-centre", component] for component in COMPONENTS[:6]]
-        values[name] = {size: np.concatenate([part[size] for part in parts]) for size in sizes}
-    orders = {}
-    for name, found in values.items():
-        first, last = (found[a] - found[b] for a, b in zip(sizes, sizes[1:]))
-        order = None
-        # Steps to and fro are no convergence, however they shrink.
-        if np.sum(first * last) > 0.0:
-            order, _ = order_and_factor((np.linalg.norm(first), np.linalg.norm(last)), sizes)
-        orders[name] = None if order is None else round(order, 3)
+        values[f"depth_centre_{body}"] = [np.concatenate([part[size] for part in parts]) for size in sizes]
+    orders = dict.fromkeys(values)
+    if len(sizes) == 3:
+        for name, (coarse, middle, fine) in values.items():
+            differences = np.linalg.norm(coarse - middle), np.linalg.norm(middle - fine)
+            order, _ = order_and_factor(differences, sizes)
+            orders[name] = None if order is None else round(order, 3)
     return orders
 
 
