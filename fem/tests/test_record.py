@@ -65,7 +65,7 @@ def test_every_case_on_record_converges_to_what_is_promised():
     """Positive orders; the two finest meshes within 0.5 % of p0 in pressure and 1.1 % in stresses.
 
     The finest one's error, Richardson's estimate or, where there is none, that difference: 1 % in stresses and 0.5 %
-    in pressure, but for one curve that converges slowly though it is right (docs/fem.md).
+    in pressure, but for one curve whose order is barely 1 (docs/fem.md).
     """
     folder = FEM.parent / "results/reference"
     beyond = []
