@@ -71,6 +71,16 @@ def geometry_nodes(domain):
     return dofmap if isinstance(dofmap, np.ndarray) else np.asarray(dofmap.array).reshape(-1, 27)
 
 
+def direct_solver(comm):
+    """PETSc's name of the sparse Cholesky factorisation to use on ``comm``.
+
+    CHOLMOD where PETSc has it: it knows better orderings than MUMPS as distributions build it. But it knows
+    one process only.
+    """
+    serial = comm.size == 1 and PETSc.Sys.hasExternalPackage("suitesparse")
+    return "cholmod" if serial else "mumps"
+
+
 def assemble_stiffness(form, conditions):
     """The assembled PETSc matrix of a bilinear form under Dirichlet conditions (unit diagonal there)."""
     matrix = fem_petsc.assemble_matrix(fem.form(form), bcs=conditions)

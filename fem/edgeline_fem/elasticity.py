@@ -34,7 +34,7 @@ def load_mesh(comm, path):
 
 
 class Body:
-    """An elastic body on its supports, loaded by forces along z at its contact nodes.
+    """An elastic body on its supports, loaded by forces normal to its surface at its contact nodes.
 
     ``domain``: its mesh; ``young`` (units of p0) and ``poisson``: its material; ``fixed``: pairs
     ``(component, on)`` that hold a displacement component at zero where ``on(x)`` is true, x being of
@@ -87,6 +87,7 @@ class Body:
         return 2.0 * self._mu * strain + self._lame * ufl.tr(strain) * ufl.Identity(3)
 
     def _make_solver(self, linear, tolerance):
+        self.factorised_by = None
         solver = PETSc.KSP().create(self.comm)
         solver.setOperators(self.matrix)
         prefix = f"body_{id(self)}_"
@@ -97,9 +98,11 @@ class Body:
             solver.setType("preonly")
             preconditioner = solver.getPC()
             preconditioner.setType("cholesky")
-            preconditioner.setFactorSolverType("mumps")
-            # MUMPS underestimates its workspace on stretched meshes.
-            options["mat_mumps_icntl_14"] = 60
+            self.factorised_by = compat.direct_solver(self.comm)
+            preconditioner.setFactorSolverType(self.factorised_by)
+            if self.factorised_by == "mumps":
+                # It underestimates its workspace on stretched meshes.
+                options["mat_mumps_icntl_14"] = 60
         else:
             solver.setType("cg")
             solver.setTolerances(rtol=tolerance, max_it=5000)
@@ -113,19 +116,24 @@ class Body:
             solver.setUp()
         except PETSc.Error as error:
             raise FemError(f"the {linear} solver failed to set up ({error})") from error
-        if linear == "direct" and solver.getPC().getFactorMatrix().getMumpsInfog(1) < 0:
+        factored = solver.getPC().getFactorMatrix() if self.factorised_by == "mumps" else None
+        if factored is not None and factored.getMumpsInfog(1) < 0:
             raise FemError("MUMPS failed to factor a stiffness matrix (out of memory?)")
         return solver
 
-    def number_contact_nodes(self, count, find):
+    def number_contact_nodes(self, count, find, slope=None):
         """Tell the body its contact nodes.
 
         ``find(nodes)`` maps coordinates (n, 3) to numbers in [0, ``count``), or -1 for nodes that are not
-        in the contact. Every number must be found exactly once over all ranks.
+        in the contact. Every number must be found exactly once over all ranks. ``slope(x)`` is dz/dx of the
+        unloaded surface at coordinates x (n,); left out for a plane surface z = 0. Raises
+        :class:`FemError` for numbers that are missing or found twice.
         """
         numbers = find(self.nodes[: self._owned])
         local = np.flatnonzero(numbers >= 0)
-        self._contact = (3 * local + 2, numbers[local], count)
+        tilt = np.zeros(len(local)) if slope is None else slope(self.nodes[local, 0])
+        self._contact = (3 * local, numbers[local], count)
+        self._tilt = tilt
         found = np.zeros(count, dtype=np.int64)
         np.add.at(found, numbers[local], 1)
         self.comm.Allreduce(found.copy(), found)
@@ -136,22 +144,28 @@ class Body:
             )
 
     def _at_contact(self, values):
-        """A whole array over the contact nodes from this rank's values of dofs."""
-        dofs, numbers, count = self._contact
+        """A whole array over the contact nodes from this rank's values, one for each of its own."""
+        _, numbers, count = self._contact
         whole = np.zeros(count)
-        whole[numbers] = values[dofs]
+        whole[numbers] = values
         self.comm.Allreduce(whole.copy(), whole)
         return whole
 
     def contact_coordinates(self, axis):
         """Coordinate ``axis`` of every contact node."""
-        return self._at_contact(np.repeat(self.nodes[: self._owned, axis], 3))
+        return self._at_contact(self.nodes[self._contact[0] // 3, axis])
 
     def press(self, forces):
-        """Displacement into the body (units of C) of its contact nodes under nodal ``forces`` into it."""
-        dofs, numbers, _ = self._contact
+        """Sinking of the surface at its contact nodes (units of C) under nodal ``forces`` normal to it.
+
+        Both are measured along z: a node's force has the z component given and whatever x component makes it
+        normal to the unloaded surface z = h(x), and its sinking is that of the surface at fixed x,
+        u_z - h'(x) u_x. The two are conjugate, so that the compliance is symmetric.
+        """
+        first, numbers, _ = self._contact
         self._load.set(0.0)
-        self._load.array[dofs] = forces[numbers]
+        self._load.array[first] = -self._tilt * forces[numbers]
+        self._load.array[first + 2] = forces[numbers]
         self._solver.solve(self._load, self._answer)
         if self._solver.getConvergedReason() < 0:
             raise FemError(
@@ -160,7 +174,8 @@ class Body:
             )
         self.iterations += self._solver.getIterationNumber()
         self.solves += 1
-        return self._at_contact(self._answer.array)
+        answer = self._answer.array
+        return self._at_contact(answer[first + 2] - self._tilt * answer[first])
 
     def keep(self):
         """Make the last solve the body's state; returns the force that its supports carry along z."""

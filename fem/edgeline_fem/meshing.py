@@ -13,6 +13,7 @@ import dataclasses
 import json
 import math
 import os
+import resource
 import subprocess
 import time
 from pathlib import Path
@@ -105,17 +106,19 @@ def make_axes(case, options):
         return grown(options.depth, z, options.depth_growth)
 
     core_depth = (1.0 - _CORE_SIDE) * radius
-    core = max(2, round(3.0 / scale))
+    core = max(2, round(4.0 / scale))
 
     longer = block_length > length * (1.0 + 1e-9)
     end = options.corner if longer else options.end
     y = graded_axis(0.0, length, lambda v: end + options.growth * (length - v), scale)
     shared_y = len(y) - 1
     if longer:
+        # Stresses change over the ledge's length where that is short.
+        free_end = min(options.free_end, 0.25 * (block_length - length))
 
         def outward(v):
             return min(end + options.beyond * (v - length),
-                       options.free_end + options.beyond * (block_length - v))
+                       free_end + options.beyond * (block_length - v))
 
         y = np.concatenate((y, graded_axis(length, block_length, outward, scale)[1:]))
     return Axes(
@@ -380,6 +383,12 @@ def run_gmsh(program, geo, msh, vtk):
         os.replace(output, final)
 
 
+def processor_seconds():
+    """Processor seconds (float) that this process and its finished children have used."""
+    used = (resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+    return sum(usage.ru_utime + usage.ru_stime for usage in used)
+
+
 def gmsh_version(program):
     """The version that the gmsh program prints; :class:`FemError` if it cannot be run."""
     try:
@@ -392,9 +401,10 @@ def gmsh_version(program):
 def make_meshes(request, folder):
     """Write ``block.msh``, ``roller.msh`` (with their .geo) and then ``mesh.json`` into ``folder``.
 
-    Returns the content of ``mesh.json``: axes, counts, qualities and seconds.
+    Returns the content of ``mesh.json``: axes, counts, qualities, seconds and processor seconds.
     """
     folder = Path(folder)
+    before = processor_seconds()
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "mesh.json").unlink(missing_ok=True)
     version = gmsh_version(request.gmsh)
@@ -436,5 +446,6 @@ def make_meshes(request, folder):
             "groups": groups,
         }
         summary["seconds"][body] = time.perf_counter() - began
+    summary["cpu_seconds"] = processor_seconds() - before
     write_atomically(folder / "mesh.json", json.dumps(summary, indent=1) + "\n")
     return summary

@@ -2,6 +2,7 @@
 
 import csv
 import dataclasses
+import functools
 import io
 import json
 import os
@@ -15,21 +16,24 @@ import numpy as np
 from . import compat
 from .contact import ContactGrid, half_space_compliance, solve_contact
 from .elasticity import Body, load_mesh
-from .meshing import write_atomically
-from .recovery import enforce_tractions, invariants
+from .meshing import processor_seconds, write_atomically
+from .recovery import enforce_tractions, hertz_stress, invariants
 from .request import FemError
 
-CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m", *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")),
-                "von_mises_pa", "tau_max_pa")
+CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m",
+                *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")), "von_mises_pa", "tau_max_pa")
 PRESSURE_HEADER = ("line", "x_m", "y_m", "p_pa", "p_lumped_pa", "p_stress_pa")
+
+# Nearer than this to a roller's end on a longer block (units of C), stresses belong to the mesh.
+SINGULAR_RANGE = 0.099
 
 BOUNDARY_CONDITIONS = {
     "block": "x = 0 and y = 0: symmetry planes; bottom z = block_depth: u_z = 0, free of shear; far side "
     "x = block_width, end face and surface: free of traction",
     "roller": "x = 0 and y = 0: symmetry planes; mid-plane z = R: u_z uniform (the approach), free of "
     "shear; end face and surface: free of traction",
-    "contact": "frictionless; nodal gaps along z are never negative, nodal forces along z never pull, "
-    "their sum is the load",
+    "contact": "frictionless; nodal gaps along z, at fixed x, are never negative, nodal forces are normal to "
+    "the unloaded surfaces and never pull, the sum of their z components is the load",
 }
 
 
@@ -90,17 +94,45 @@ def surface_depth(name, x, radius):
     return np.zeros_like(x) if name == "block" else x**2 / (radius + np.sqrt(radius**2 - x**2))
 
 
-def near_singularity(points, case):
-    """Whether ``points`` (n, 3: x, y, depth) lie where stresses are not smooth.
+def surface_slope(name, x, radius):
+    """dz/dx of a body's unloaded surface at ``x`` (units of C)."""
+    x = np.asarray(x, dtype=float)
+    return np.zeros_like(x) if name == "block" else x / np.sqrt(radius**2 - x**2)
 
-    That is around the edge of contact, where the pressure falls with a vertical tangent, and around the
-    roller's end face on a block that goes on beyond it.
+
+def near_singularity(points, case):
+    """Whether ``points`` (n, 3: x, y, depth) lie where no polynomial over several elements holds.
+
+    That is around the roller's end face, where the block goes on beyond it.
     """
-    depth = points[:, 2]
-    edge = np.hypot(points[:, 0] - 1.0, depth) < 0.25
     longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)
-    end = np.hypot(points[:, 1] - case.roller_half_length(), depth) < 0.3
-    return edge | (end & longer)
+    return longer & (np.hypot(points[:, 1] - case.roller_half_length(), points[:, 2]) < SINGULAR_RANGE)
+
+
+def steep_parts(points, case, grid, pressure, poisson, radius):
+    """What :meth:`StressField.sample` takes as ``known`` at ``points`` (n, 3: x, y, depth).
+
+    Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure`` does, which
+    is given at the ``grid``'s Gauss points: stresses have a vertical tangent there that no polynomial follows.
+    On a longer block the pressure at the roller's end has no limit, so there it is that of 0.5 C from the end; in
+    the block, where the load stops, half of that as far as 0.5 C beyond, and then nothing.
+    """
+    length = case.roller_half_length()
+    longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)
+    last = max(length - 0.5, 0.5 * length) if longer else length
+    attached = longer and np.isinf(radius)
+
+    @functools.lru_cache(maxsize=None)
+    def at(y, share):
+        half_width, peak = grid.hertz_at(pressure, y)
+        return lambda p: hertz_stress(p, half_width, share * peak, poisson, radius)
+
+    def part(y):
+        if attached and y > last:
+            return at(last, 0.5) if y < length + 0.5 else None
+        return at(min(y, last), 1.0)
+
+    return [part(y) for y in points[:, 1]]
 
 
 def press_bodies(bodies, grid, case, solver, log):
@@ -118,7 +150,7 @@ def press_bodies(bodies, grid, case, solver, log):
             numbers = grid.find(nodes)
             return np.where(np.abs(nodes[:, 2] - surface) < 1e-6, numbers, -1)
 
-        body.number_contact_nodes(len(grid), find)
+        body.number_contact_nodes(len(grid), find, lambda x, name=name: surface_slope(name, x, radius))
     flush = case.block_length_m <= case.roller_length_m * (1.0 + 1e-9)
     roller, block = ((1.0 - bodies[n].poisson**2) / bodies[n].young for n in ("roller", "block"))
     gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2)
@@ -163,7 +195,7 @@ def solve_case(request, folder, comm, log):
 
     Returns the content of fem.json. Works on any number of ranks; rank 0 writes.
     """
-    began = time.perf_counter()
+    began, used_before = time.perf_counter(), processor_seconds()
     folder = Path(folder)
     case, scales = request.case, request.case.scales()
     try:
@@ -202,10 +234,11 @@ def solve_case(request, folder, comm, log):
         points = np.array(curve.points_m) / scales.c_m
         inside = points.copy()
         inside[:, 2] += surface_depth(curve.body, points[:, 0], scales.radius)
-        stress = fields[curve.body].sample(inside, near_singularity(points, case))
+        poisson, radius = bodies[curve.body].poisson, radii[curve.body]
+        steep = steep_parts(points, case, grid, pressure, poisson, radius)
+        stress = fields[curve.body].sample(inside, near_singularity(points, case), steep)
         end_error, surface_error = enforce_tractions(
-            points, stress, bodies[curve.body].poisson, ends[curve.body], radii[curve.body],
-            grid.sample(pressure, points[:, :2]),
+            points, stress, poisson, ends[curve.body], radius, grid.sample(pressure, points[:, :2])
         )
         met = face_errors[curve.body]
         met["end"], met["surface"] = max(met["end"], end_error), max(met["surface"], surface_error)
@@ -218,14 +251,16 @@ def solve_case(request, folder, comm, log):
     for line, points in request.pressure_points_m.items():
         at = np.array(points) / scales.c_m
         at_surface = np.column_stack([at, np.zeros(len(at))])
-        raised = -fields["block"].sample(at_surface, near_singularity(at_surface, case))[:, 2]
+        steep = steep_parts(at_surface, case, grid, pressure, bodies["block"].poisson, np.inf)
+        raised = -fields["block"].sample(at_surface, near_singularity(at_surface, case), steep)[:, 2]
         columns = np.stack([grid.sample(pressure, at), grid.sample(lumped, at), raised], axis=1)
         for point, row in zip(points, columns * scales.p0_pa):
             writer.writerow([line, *(f"{v:.9g}" for v in point + list(row))])
     seconds["sample"] = time.perf_counter() - mark
     seconds["total"] = time.perf_counter() - began + seconds["mesh"]
 
-    peak = int(np.argmax(pressure))
+    along = grid.sample(pressure, [(0.0, y) for y in grid.y])
+    peak = int(np.argmax(along))
     summary = {
         "schema": 1,
         "case": case.name,
@@ -233,7 +268,7 @@ def solve_case(request, folder, comm, log):
         "ranks": comm.size,
         "hertz": {"c_m": scales.c_m, "p0_pa": scales.p0_pa},
         "mesh": {key: meshed[key] for key in ("options", "smallest_c", "bodies")},
-        "solver": dataclasses.asdict(request.solver),
+        "solver": {**dataclasses.asdict(request.solver), "factorised_by": bodies["block"].factorised_by},
         "boundary_conditions": BOUNDARY_CONDITIONS,
         "unknowns": sum(body["unknowns"] for body in meshed["bodies"].values()),
         "contact_nodes": len(grid),
@@ -245,11 +280,12 @@ def solve_case(request, folder, comm, log):
         "load_error_rel": abs(4.0 * float(solution.forces.sum()) / (np.pi * case.roller_half_length()) - 1.0),
         "equilibrium_residual": reaction_error,
         "approach_m": solution.approach * scales.c_m,
-        "p_centre_pa": float(pressure[0]) * scales.p0_pa,
-        "p_max_pa": float(pressure[peak]) * scales.p0_pa,
-        "p_max_at_m": [grid.x[peak // grid.shape[1]] * scales.c_m, grid.y[peak % grid.shape[1]] * scales.c_m],
+        "p_centre_pa": float(along[0]) * scales.p0_pa,
+        "p_max_pa": float(along[peak]) * scales.p0_pa,
+        "p_max_at_m": [0.0, grid.y[peak] * scales.c_m],
         "traction_error_before_enforcing": face_errors,
         "seconds": {key: round(value, 3) for key, value in seconds.items()},
+        "cpu_seconds": round(meshed["cpu_seconds"] + comm.allreduce(processor_seconds() - used_before), 3),
         "peak_memory_mib": round(peak_memory(comm), 1),
     }
     if comm.rank == 0:

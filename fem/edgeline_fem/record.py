@@ -147,7 +147,7 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
     ``difference_max`` and ``difference_rms`` compare the two finest meshes; ``order`` is the observed one
     of the root mean square over the three finest, and ``error_max`` and ``error_rms`` are what Richardson
     makes of it; ``factor`` turns any point's difference into its estimated error. The last four are null
-    where the meshes are fewer than three or the order is not observed.
+    where the meshes are fewer than three or no order is observed, the last three also where it is below 1.
     """
     found = []
     for (body, curve, component), meshes in sorted(
@@ -163,6 +163,9 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
         if len(sizes) == 3 and rms > 1e-7:
             first = float(np.sqrt(np.mean((meshes[sizes[0]] - meshes[sizes[1]]) ** 2)))
             order, factor = order_and_factor((first, rms), sizes)
+            # Quadratic elements have no such order: differences this even are too small to extrapolate.
+            if order is not None and order < 1.0:
+                factor = None
         entry = {
             "body": body, "curve": curve, "component": component, "sizes": sizes,
             "difference_max": float(last.max()), "difference_rms": rms, "order": order, "factor": factor,
@@ -171,6 +174,33 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
         }
         found.append({k: round(v, 6) if isinstance(v, float) else v for k, v in entry.items()})
     return found
+
+
+def observed_orders(folder, half_length_m, c_m, p0_pa):
+    """Orders of convergence that say in three numbers whether the meshes of ``folder`` converge.
+
+    Each is that of a root mean square over the three finest meshes, null where they show none.
+    ``pressure_half_way``: of the pressure at x = 0 around half way between the contact's middle and its end,
+    from a quarter to three quarters (at one point two meshes may agree by chance);
+    ``depth_centre_block`` and ``depth_centre_roller``: of all six stress components on that curve.
+    """
+    series = _series(folder, half_length_m, c_m, p0_pa)
+    line = series["contact", "along-y", "pressure"]
+    sizes = sorted(line, reverse=True)[-3:]
+    # The series leaves out the corner, at the line's end; its points are as in pressure_lines.
+    y = np.array([point[1] for point in pressure_lines(half_length_m / c_m)["along-y"]])
+    around = np.flatnonzero(np.abs(y / y[-1] - 0.5) <= 0.25 + 1e-9)
+    values = {"pressure_half_way": [line[size][around] for size in sizes]}
+    for body in ("block", "roller"):
+        parts = [series[body, "depth-centre", component] for component in COMPONENTS[:6]]
+        values[f"depth_centre_{body}"] = [np.concatenate([part[size] for part in parts]) for size in sizes]
+    orders = dict.fromkeys(values)
+    if len(sizes) == 3:
+        for name, (coarse, middle, fine) in values.items():
+            differences = np.linalg.norm(coarse - middle), np.linalg.norm(middle - fine)
+            order, _ = order_and_factor(differences, sizes)
+            orders[name] = None if order is None else round(order, 3)
+    return orders
 
 
 @dataclasses.dataclass(frozen=True)
@@ -280,7 +310,9 @@ def _record(case, size, target, log, run, overrides):
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
     for name in ("curves.csv", "pressure.csv"):
         _merge(target / name, size, work / name)
-    data["errors"] = estimate_errors(target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    measures = (target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    data["orders"] = observed_orders(*measures)
+    data["errors"] = estimate_errors(*measures)
     write_atomically(path, json.dumps(data, indent=1) + "\n")
     shutil.rmtree(work)
     return True

@@ -3,8 +3,10 @@
 The stress of a quadratic hexahedron is a full order more accurate at its 2 x 2 x 2 Gauss points than
 anywhere else. Around every inner vertex of the mesh a triquadratic polynomial is fitted to those values in
 the elements that share the vertex (Zienkiewicz and Zhu, Int. J. Numer. Meth. Engng. 33 (1992) 1331-1364);
-between vertices the fits are blended linearly. Planes of symmetry are crossed with mirror images. A
-polynomial over several elements smears a singularity, so next to one the elements are asked one by one.
+between vertices the fits are blended linearly. Planes of symmetry are crossed with mirror images. A part
+of the stress that is known and steep, the Hertz field of the load on the line, is left out of the fits and put
+back at the end. A polynomial over several elements smears a singularity, so next to one the elements are
+asked one by one.
 """
 
 import itertools
@@ -76,20 +78,25 @@ class StressField:
         self._box = low.min(axis=0), high.max(axis=0)
         self._fits = {}
 
-    def _fit(self, vertex):
+    def _rest(self, elements, known):
+        """Values at the points of ``elements``, less the stress ``known`` there: (8 a piece, 6)."""
+        values = self._stress[elements].reshape(-1, 6)
+        return values if known is None else values - known(self._points[elements].reshape(-1, 3))
+
+    def _fit(self, vertex, known):
         """Coefficients (27, 6) of a vertex's polynomial in coordinates scaled by its patch."""
-        if vertex not in self._fits:
+        if (vertex, known) not in self._fits:
             elements = self._members[vertex]
             at = self._local(vertex, self._points[elements].reshape(-1, 3))
-            values = self._stress[elements].reshape(-1, 6)
-            self._fits[vertex] = np.linalg.lstsq(_terms(at), values, rcond=None)[0]
-        return self._fits[vertex]
+            values = self._rest(elements, known)
+            self._fits[vertex, known] = np.linalg.lstsq(_terms(at), values, rcond=None)[0]
+        return self._fits[vertex, known]
 
     def _local(self, vertex, points):
         scale = 0.5 * (self._high[vertex] - self._low[vertex])
         return (points - self._vertices[vertex]) / scale
 
-    def _by_patch(self, point):
+    def _by_patch(self, point, known):
         """Stress at a point from the fits around the vertices near it."""
         away = point - self._vertices
         relative = np.maximum(away / self._high, away / self._low)
@@ -99,10 +106,10 @@ class StressField:
         if not weight.any():
             weight[np.argmin(relative.max(axis=1))] = 1.0
         chosen = np.flatnonzero(weight > _RIM * weight.max())
-        parts = [weight[v] * (_terms(self._local(v, point[None, :])) @ self._fit(v)) for v in chosen]
+        parts = [weight[v] * (_terms(self._local(v, point[None, :])) @ self._fit(v, known)) for v in chosen]
         return sum(parts)[0] / weight[chosen].sum()
 
-    def _by_element(self, point):
+    def _by_element(self, point, known):
         """Stress at a point, trilinear through its element's points; a mean where elements meet."""
         size = self._element_high - self._element_low
         outside = np.maximum(self._element_low - point, point - self._element_high) / size
@@ -112,15 +119,16 @@ class StressField:
             middle = self._points[element].mean(axis=0)
             half = 0.5 * np.ptp(self._points[element], axis=0)
             at = (self._points[element] - middle) / half
-            coefficients = np.linalg.lstsq(_linear_terms(at), self._stress[element], rcond=None)[0]
+            coefficients = np.linalg.lstsq(_linear_terms(at), self._rest([element], known), rcond=None)[0]
             values.append(_linear_terms((point - middle)[None, :] / half)[0] @ coefficients)
         return np.mean(values, axis=0)
 
-    def sample(self, points, singular=None):
+    def sample(self, points, singular=None, known=None):
         """Stress at ``points`` (n, 3) in the body, (n, 6).
 
-        ``singular`` (n,): true for points next to a singularity of the stress. Raises :class:`FemError` for
-        a point outside the body.
+        ``singular`` (n,): true for points next to a singularity of the stress. ``known`` (n,): for each
+        point a function from points (m, 3) to stresses (m, 6) that has the stress's steep part; polynomials
+        are fitted to what is left. Raises :class:`FemError` for a point outside the body.
         """
         found = np.empty((len(points), 6))
         slack = 1e-3 * (self._box[1] - self._box[0])
@@ -128,8 +136,47 @@ class StressField:
             if np.any(point < self._box[0] - slack) or np.any(point > self._box[1] + slack):
                 raise FemError(f"the point {point.tolist()} (units of C, z is depth) lies outside the body")
             alone = singular is not None and singular[number]
-            found[number] = self._by_element(point) if alone else self._by_patch(point)
+            steep = None if known is None else known[number]
+            found[number] = (self._by_element if alone else self._by_patch)(point, steep)
+            if steep is not None:
+                found[number] += steep(point[None, :])[0]
         return found
+
+
+def hertz_stress(points, half_width, peak, poisson, radius):
+    """Stress (n, 6) at ``points`` (n, 3) of a body in plane strain under a Hertz pressure along y.
+
+    McEwen's form (Johnson, Contact Mechanics, 1985, Eqs. 4.49). ``half_width`` (C) and ``peak`` (p0) are the
+    pressure's. On a surface of finite ``radius`` (C) depth runs along its normals.
+    """
+    x, _, z = np.asarray(points, dtype=float).T
+    if np.isinf(radius):
+        sine, depth = np.zeros_like(x), z
+    else:
+        distance = np.hypot(x, radius - z)
+        sine, depth = x / distance, radius - distance
+        x = radius * sine
+    cosine = np.sqrt(1.0 - sine**2)
+    # Rounding puts points of the surface a little above it.
+    depth = np.maximum(depth, 0.0)
+    half = half_width**2 - x**2 + depth**2
+    root = np.hypot(half, 2.0 * x * depth)
+    m = np.sqrt(0.5 * np.maximum(root + half, 0.0))
+    n = np.sign(x) * np.sqrt(0.5 * np.maximum(root - half, 0.0))
+    # root is 0 at the contact's edge alone, where all stresses are.
+    share = (depth**2 + n**2) / np.maximum(root, 1e-300)
+    scale = -peak / half_width
+    along, normal = scale * (m * (1.0 + share) - 2.0 * depth), scale * m * (1.0 - share)
+    shear = scale * n * (m**2 - depth**2) / np.maximum(root, 1e-300)
+    zero = np.zeros_like(x)
+    return np.stack([
+        along * cosine**2 - 2.0 * shear * sine * cosine + normal * sine**2,
+        poisson * (along + normal),
+        along * sine**2 + 2.0 * shear * sine * cosine + normal * cosine**2,
+        zero,
+        (along - normal) * sine * cosine + shear * (cosine**2 - sine**2),
+        zero,
+    ], axis=1)
 
 
 def enforce_tractions(points, stress, poisson, end, radius, pressure):
@@ -141,8 +188,8 @@ def enforce_tractions(points, stress, poisson, end, radius, pressure):
     On the planes of symmetry shear stresses are zero.
 
     ``points`` have z as depth below the body's surface; ``poisson``; ``end``: y of its free end face;
-    ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure per area of the
-    (x, y) plane at the points' x and y. Returns the largest errors of normal traction met on the end face
+    ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure, normal to the
+    surface, at the points' x and y. Returns the largest errors of normal traction met on the end face
     and on the surface.
     """
     xx, yy, zz, xy, xz, yz = stress.T
@@ -165,15 +212,14 @@ def enforce_tractions(points, stress, poisson, end, radius, pressure):
     nn = xx[on] * s**2 - 2.0 * xz[on] * s * c + zz[on] * c**2
     tt = xx[on] * c**2 + 2.0 * xz[on] * s * c + zz[on] * s**2
     along = np.where(edge, 0.0, xy[on] * c + yz[on] * s)
-    # A force p along z per projected area is p c per area: p c^2 along n and p c s along t.
-    normal, shear = -pressure[on] * c**2, -pressure[on] * c * s
+    normal = -pressure[on]
     change = normal - nn
     surface_error = np.abs(change[~edge]).max(initial=0.0)
     tt = tt + np.where(edge, poisson * (change - yy[on]), share * change)
     yy[on] = np.where(edge, 0.0, yy[on] + share * change)
-    xx[on] = tt * c**2 - 2.0 * shear * s * c + normal * s**2
-    zz[on] = tt * s**2 + 2.0 * shear * s * c + normal * c**2
-    xz[on] = (tt - normal) * s * c + shear * (c**2 - s**2)
+    xx[on] = tt * c**2 + normal * s**2
+    zz[on] = tt * s**2 + normal * c**2
+    xz[on] = (tt - normal) * s * c
     xy[on], yz[on] = along * c, along * s
     return float(end_error), float(surface_error)
 

@@ -106,18 +106,21 @@ class MeshOptions:
     size: float = 1.0
     across: float = 0.16
     """Element size across the contact as far as ``contact_reach`` (size 1)."""
-    edge: float = 0.03
+    edge: float = 0.02
     """The same at the contact's edge x = 1, where the pressure has a vertical tangent."""
-    depth: float = 0.05
+    depth: float = 0.02
     """Element size at the surface, along z (size 1)."""
     end: float = 0.06
     """Element size at the roller's end, along y, if the block ends there as well (size 1)."""
-    corner: float = 0.02
+    corner: float = 0.015
     """The same if the block goes on: the pressure is singular then (size 1)."""
-    beyond: float = 0.6
+    beyond: float = 0.5
     """Increase of element size per unit of distance along y, in the block beyond the roller's end."""
     free_end: float = 2.0
-    """Element size at the end of a block that is longer than the roller, along y (size 1)."""
+    """Element size at the end of a block that is longer than the roller, along y (size 1).
+
+    Never more than a quarter of what the block is longer at that end.
+    """
     growth: float = 0.42
     """Increase of element size per unit of distance along x and y, near the contact (size 1).
 

@@ -17,14 +17,17 @@ _NEAR = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.
          3.0, 4.0, 5.0, 6.5, 8.0)
 _DECADE = (1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
 _OUTWARD = 3.0
+# Lengths that differ by less than this part are the same: those of a case come out of divisions.
+_SAME = 1e-9
 
 
 def end_distances(half_length):
     """Distances from the roller's end, ascending from 0 to ``half_length`` (> 0)."""
-    distances = [s for s in _NEAR if s < half_length]
+    below = half_length * (1.0 - _SAME)
+    distances = [s for s in _NEAR if s < below]
     decade = 10.0
-    while decade < half_length:
-        distances += [decade * step for step in _DECADE if decade * step < half_length]
+    while decade < below:
+        distances += [decade * step for step in _DECADE if decade * step < below]
         decade *= 10.0
     return distances + [half_length]
 
@@ -53,10 +56,9 @@ def standard_curves(half_length, body_half_length):
     """
     y = contact_line(half_length)
     ledge = body_half_length - half_length
-    # A flush block's two lengths may differ by rounding; that is no ledge.
-    if ledge > 1e-9 * half_length:
+    if ledge > _SAME * half_length:
         reach = min(ledge, _OUTWARD)
-        y += [half_length + s for s in _NEAR if 0.0 < s < reach] + [half_length + reach]
+        y += [half_length + s for s in _NEAR if 0.0 < s < reach * (1.0 - _SAME)] + [half_length + reach]
     x = across_contact() + [1.75, 2.0, 2.5, 3.0]
 
     def along_y(depth):

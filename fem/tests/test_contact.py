@@ -11,7 +11,7 @@ from mpi4py import MPI
 from conftest import FEM, run_stage, steel_case
 from edgeline_fem.contact import ContactGrid, half_space_compliance, solve_contact
 from edgeline_fem.meshing import make_axes, make_meshes
-from edgeline_fem.model import build_bodies, press_bodies
+from edgeline_fem.model import build_bodies, press_bodies, surface_depth
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError, MeshOptions
 
@@ -22,28 +22,42 @@ def silent(*_):
 
 def test_grid_recovers_smooth_pressures():
     grid = ContactGrid([0.0, 0.2, 0.5, 1.0], [0.0, 1.0, 1.5])
-    x, y = (v.ravel() for v in np.meshgrid(grid.x, grid.y, indexing="ij"))
     assert grid.weights.sum() == pytest.approx(1.5, rel=1e-12)
     assert np.all(grid.weights > 0.0)
-    pressure = np.cos(0.8 * x) * (1.0 - 0.3 * y**2)
-    forces = (grid._mass_x @ pressure.reshape(grid.shape) @ grid._mass_y).ravel()
-    error = np.abs(grid.pressure(forces) - pressure).max()
-    assert error < 0.6 * np.abs(grid.lumped_pressure(forces) - pressure).max()
+    assert grid.gauss_x[:2] == pytest.approx([0.1 - 0.1 / math.sqrt(3.0), 0.1 + 0.1 / math.sqrt(3.0)])
+
+    def smooth(x, y):
+        return np.cos(0.8 * x)[:, None] * (1.0 - 0.3 * y**2)
+
+    forces = (grid._mass_x @ smooth(grid.x, grid.y) @ grid._mass_y).ravel()
+    expected = smooth(grid.gauss_x, grid.gauss_y)
+    error = np.abs(grid.pressure(forces) - expected).max()
+    assert error < 0.6 * np.abs(grid.lumped_pressure(forces) - expected).max()
     found = grid.find(np.array([[0.35, 1.25, 0.0], [0.2, 1.0, 0.0], [0.3, 1.0, 0.0]]))
     assert found.tolist() == [3 * 5 + 3, 2 * 5 + 2, -1]
 
 
+def test_grid_does_not_see_what_corner_nodes_carry_too_much():
+    grid = ContactGrid(np.linspace(0.0, 1.0, 6), [0.0, 1.0])
+    nodal = np.ones(grid.shape)
+    nodal[0::2] += 0.02
+    nodal[1::2] -= 0.01
+    forces = (grid._mass_x @ nodal @ grid._mass_y).ravel()
+    assert grid.pressure(forces) == pytest.approx(np.ones((10, 2)), abs=1e-12)
+
+
 def test_grid_samples_a_hertz_pressure_up_to_its_edge():
-    """The square of a Hertz pressure is quadratic, so its samples are exact, between nodes as well.
+    """The square of a Hertz pressure is quadratic, so its samples are exact, between points as well.
 
     Wrong values next to the edge, as a cut element has them, do not matter.
     """
     grid = ContactGrid(np.linspace(0.0, 1.5, 16), [0.0, 1.0])
-    nodal = np.sqrt(np.maximum(0.0, 1.02**2 - grid.x**2))[:, None] * np.ones(grid.shape[1])
-    nodal[(grid.x > 0.95) & (grid.x < 1.02)] *= 1.05
+    pressure = np.sqrt(np.maximum(0.0, 1.02**2 - grid.gauss_x**2))[:, None] * np.ones(len(grid.gauss_y))
+    pressure[(grid.gauss_x > 0.9) & (grid.gauss_x < 1.1)] *= 1.05
     points = [(0.3, 0.7), (0.83, 0.2), (0.95, 0.1), (1.0, 1.0), (1.04, 0.0), (1.7, 0.5)]
     expected = [math.sqrt(max(0.0, 1.02**2 - x * x)) for x, _ in points]
-    assert grid.sample(nodal.ravel(), points) == pytest.approx(expected, abs=1e-7)
+    assert grid.sample(pressure, points) == pytest.approx(expected, abs=1e-7)
+    assert grid.hertz_at(pressure, 0.4) == pytest.approx((1.02, 1.02), abs=1e-9)
 
 
 def test_the_half_space_model_is_love_in_the_mean():
@@ -73,25 +87,32 @@ def test_contact_solver_on_a_small_dense_problem():
         solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 2, silent)
 
 
+def plane_slice(load_factor, folder):
+    """A slice of unit length in plane strain: its bodies, contact grid, contact solution, reaction error."""
+    case = steel_case(load_factor, 0.5, 1.0)
+    request = standard_request(case, 1.0, end=1.0, free_end=1.0)
+    meshed = make_meshes(request, folder)
+    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
+    bodies, _ = build_bodies(MPI.COMM_SELF, folder, request, plane_strain=True)
+    return bodies, grid, *press_bodies(bodies, grid, case, request.solver, silent)
+
+
 def test_hertz_line_contact(tmp_path):
     """A slice in plane strain: peak pressure and half-width within half a percent, stresses too."""
-    case = steel_case(2e-5, 0.5, 1.0)
-    request = standard_request(case, 1.0, end=1.0, free_end=1.0)
-    meshed = make_meshes(request, tmp_path)
-    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
-    bodies, _ = build_bodies(MPI.COMM_SELF, tmp_path, request, plane_strain=True)
-    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, silent)
+    bodies, grid, solution, reaction_error = plane_slice(2e-5, tmp_path)
     assert solution.forces.sum() == pytest.approx(math.pi * 0.5 / 4.0, rel=1e-12)
     assert reaction_error < 1e-8
     assert solution.smallest_gap > -1e-7
 
-    pressure = grid.pressure(solution.forces).reshape(grid.shape)
-    assert pressure[0] == pytest.approx(1.0, abs=5e-3)
-    assert np.abs(pressure - pressure[:, :1]).max() < 1e-6
+    pressure = grid.pressure(solution.forces)
+    assert grid.sample(pressure, [(0.0, 0.0), (0.0, 0.5)]) == pytest.approx(1.0, abs=5e-3)
+    # The element that the edge cuts magnifies what the solver leaves.
+    assert np.abs(pressure - pressure[:, :1]).max() < 5e-6
     # p^2 = p0^2 (1 - x^2 / a^2): the half-width from a straight line through the contact's inside.
     inside = pressure[:, 0] > 0.3
-    slope, level = np.polyfit(grid.x[inside] ** 2, pressure[inside, 0] ** 2, 1)
+    slope, level = np.polyfit(grid.gauss_x[inside] ** 2, pressure[inside, 0] ** 2, 1)
     assert math.sqrt(-level / slope) == pytest.approx(1.0, abs=5e-3)
+    assert grid.hertz_at(pressure, 0.2) == pytest.approx((1.0, 1.0), abs=5e-3)
 
     z = np.array([0.2, 0.5, 0.78, 1.0, 2.0])
     s = np.sqrt(1.0 + z**2)
@@ -102,6 +123,33 @@ def test_hertz_line_contact(tmp_path):
         assert found[:, 2] == pytest.approx(zz, abs=5e-3)
         assert found[:, 0] == pytest.approx(xx, abs=5e-3)
         assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=5e-3)
+
+
+def test_the_contact_presses_along_the_rollers_normal(tmp_path):
+    """A roller of 28 C: its tilted surface carries the pressure, and no shear to 0.2 % of p0.
+
+    Forces along z alone would leave a shear of p x / R, 0.019 p0 at x = 0.75.
+    """
+    bodies, grid, solution, reaction_error = plane_slice(1e-3, tmp_path)
+    assert reaction_error < 1e-8
+    radius = steel_case(1e-3, 0.5, 1.0).scales().radius
+    x = np.array([0.25, 0.5, 0.75])
+    depth = surface_depth("roller", x, radius)
+    xx, _, zz, _, xz, _ = bodies["roller"].stress_field().sample(np.stack([x, 0.2 + 0.0 * x, depth], axis=1)).T
+    sine = x / radius
+    cosine = np.sqrt(1.0 - sine**2)
+    shear = (zz - xx) * sine * cosine + xz * (cosine**2 - sine**2)
+    normal = xx * sine**2 - 2.0 * xz * sine * cosine + zz * cosine**2
+    assert np.abs(shear).max() < 2e-3
+    pressure = grid.sample(grid.pressure(solution.forces), [(v, 0.2) for v in x])
+    assert -normal == pytest.approx(pressure, abs=5e-3)
+    # The contact is Hertz's but for terms of order C / R.
+    assert pressure == pytest.approx(np.sqrt(1.0 - x**2), abs=5e-3)
+
+    # Force and sinking are conjugate.
+    one, other = np.random.default_rng(2).uniform(size=(2, len(grid)))
+    press = bodies["roller"].press
+    assert one @ press(other) == pytest.approx(other @ press(one), rel=1e-9)
 
 
 def rows(path):

@@ -8,6 +8,8 @@ from edgeline_fem.standard_points import CURVES, contact_line, depths, end_dista
 def test_distances_from_the_end():
     assert end_distances(5.0) == [0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0,
                                   1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0]
+    # Lengths come out of divisions: rounding must not make two points of one.
+    assert len(end_distances(5.0 * (1.0 + 1e-12))) == len(end_distances(5.0))
     assert end_distances(20.0)[20:] == [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]
     assert end_distances(120.0)[22:] == [10.0, 13.0, 16.0, 20.0, 25.0, 32.0, 40.0, 50.0, 64.0, 80.0, 100.0,
                                          120.0]
@@ -28,6 +30,8 @@ def test_curves_of_a_longer_block_go_past_the_roller():
     assert y[:20] == contact_line(5.0)
     assert y[20] == 5.02 and y[-1] == 8.0 and len(y) == 37
     assert [p[1] for p in standard_curves(5.0, 6.0)["along-y-0.5C"]][-2:] == [5.8, 6.0]
+    rounded = standard_curves(5.0, 7.0 * (1.0 + 1e-12))["along-y-0.5C"]
+    assert [p[1] for p in rounded][-2:] == pytest.approx([6.5, 7.0])
 
 
 def test_curves_of_a_flush_block_end_with_the_roller():

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from edgeline_fem.recovery import StressField, enforce_tractions, invariants
+from edgeline_fem.recovery import StressField, enforce_tractions, hertz_stress, invariants
 from edgeline_fem.request import FemError
 
 
@@ -49,6 +49,47 @@ def test_elements_alone_reproduce_trilinear_fields():
     assert field.sample(POINTS, alone) == pytest.approx(trilinear(np.array(POINTS)), abs=1e-12)
 
 
+def test_a_known_steep_part_is_reproduced_exactly():
+    """A quadratic field and a Hertz field with its vertical tangent at x = 0.4, in elements 0.2 wide."""
+
+    def steep(points):
+        return hertz_stress(points, 0.4, 1.3, 0.3, np.inf)
+
+    field = box_field(lambda points: quadratic(points) + steep(points))
+    expected = quadratic(np.array(POINTS)) + steep(np.array(POINTS))
+    assert field.sample(POINTS, known=[steep] * len(POINTS)) == pytest.approx(expected, abs=1e-10)
+    assert np.abs(field.sample(POINTS) - expected).max() > 0.01
+
+
+def test_hertz_stress_against_integrated_line_loads():
+    """Johnson, Contact Mechanics, 1985, Eqs. 2.23: line loads p ds, integrated over the contact."""
+    a, peak, poisson = 1.3, 0.9, 0.25
+    angles = (np.arange(2000) + 0.5) * math.pi / 2000
+    s, load = a * np.cos(angles), peak * np.sin(angles) * a * np.sin(angles) * math.pi / 2000
+    points = np.array([[0.0, 0.0, 0.5], [0.7, 1.0, 0.3], [1.3, 0.0, 0.2], [-2.0, 0.0, 1.0]])
+    found = hertz_stress(points, a, peak, poisson, np.inf)
+    for (x, _, z), row in zip(points, found):
+        r4 = ((x - s) ** 2 + z**2) ** 2
+        xx, zz, xz = (-2.0 / math.pi * np.sum(load * part / r4)
+                      for part in ((x - s) ** 2 * z, z**3, (x - s) * z**2))
+        assert row == pytest.approx([xx, poisson * (xx + zz), zz, 0.0, xz, 0.0], abs=1e-6)
+    # On the surface: the pressure both ways within the contact, nothing outside, no shear.
+    surface = hertz_stress([[0.5, 0.0, 0.0], [a, 0.0, 0.0], [1.5, 0.0, 0.0]], a, peak, poisson, np.inf)
+    pressure = peak * math.sqrt(1.0 - (0.5 / a) ** 2)
+    assert surface[0, [0, 2, 4]] == pytest.approx([-pressure, -pressure, 0.0], abs=1e-12)
+    assert surface[1:] == pytest.approx(np.zeros((2, 6)), abs=1e-12)
+
+
+def test_hertz_stress_under_an_arc_is_turned_with_it():
+    """On a roller's surface the traction is the pressure along the normal."""
+    radius, x = 10.0, 0.6
+    depth = radius - math.sqrt(radius**2 - x**2)
+    xx, _, zz, _, xz, _ = hertz_stress([[x, 0.0, depth]], 1.0, 1.0, 0.3, radius)[0]
+    sine, cosine = x / radius, math.sqrt(1.0 - (x / radius) ** 2)
+    assert xx * sine - xz * cosine == pytest.approx(-0.8 * sine, abs=1e-7)
+    assert xz * sine - zz * cosine == pytest.approx(0.8 * cosine, abs=1e-7)
+
+
 def test_a_point_outside_is_named():
     with pytest.raises(FemError, match="outside the body"):
         box_field(quadratic).sample([(0.5, 0.5, 1.5)])
@@ -76,13 +117,12 @@ def test_tractions_that_hold_are_left_alone_and_others_put_right():
     assert stress[1:, 1] == pytest.approx([0.0, 0.0])
 
 
-def test_tractions_on_the_arc_act_along_z():
-    """On a tilted surface the traction is along z: sigma . n has no part across."""
+def test_tractions_on_the_arc_are_normal_to_it():
+    """On a tilted surface sigma . n is the pressure along the normal, and nothing across."""
     points = np.array([[1.0, 0.5, 0.0]])
     stress = np.array([[-0.3, -0.2, -0.4, 0.05, 0.02, 0.01]])
     enforce_tractions(points, stress, 0.3, 5.0, 10.0, np.array([0.5]))
     xx, yy, zz, xy, xz, yz = stress[0]
-    sine, cosine = 0.1, math.sqrt(0.99)
-    normal = np.array([sine, 0.0, -cosine])  # outwards
+    normal = np.array([0.1, 0.0, -math.sqrt(0.99)])  # outwards
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
-    assert tensor @ normal == pytest.approx([0.0, 0.0, 0.5 * cosine], abs=1e-12)
+    assert tensor @ normal == pytest.approx(-0.5 * normal, abs=1e-12)
