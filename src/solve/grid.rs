@@ -1,7 +1,8 @@
 //! Stresses on a grid of points, in SI units.
 
-use super::scene::{Scene, SolvedScene, diametral_tension};
-use crate::base::{Error, Result, StressTensor};
+use super::roller::RollerShape;
+use super::scene::{Scene, SolvedScene};
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::grid::on_grid;
@@ -38,11 +39,11 @@ pub fn solve_on_grid(
     let grid = Grid { x: in_c(&grid_m.x), y, z: in_c(&grid_m.z) };
     let solved = SolvedScene::new(&scene)?;
     let mut stress = on_grid(&solved.field(body), &grid);
-    let shift = match body {
-        BodyKind::Block => StressTensor::default(),
-        BodyKind::Roller => diametral_tension(&hertz, case.roller.radius_m),
-    };
-    stress.scale(&shift, hertz.p0_pa);
+    let shape = RollerShape::new(&hertz, case.roller.radius_m);
+    stress.map(&grid, |at, s| match body {
+        BodyKind::Block => *s * hertz.p0_pa,
+        BodyKind::Roller => shape.stress(&solved.pressure, at, s) * hertz.p0_pa,
+    });
     Ok(stress)
 }
 

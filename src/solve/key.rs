@@ -1,7 +1,8 @@
 //! The key results of many cases that are one problem in units of C and p0, without the curves and
 //! cells of a whole solution.
 
-use super::scene::{Scene, SolvedScene, diametral_tension};
+use super::roller::RollerShape;
+use super::scene::{Scene, SolvedScene};
 use super::{Critical, pressure_cells};
 use crate::base::{HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
@@ -74,7 +75,10 @@ pub fn key_results(
                 p_max_pa: top.p_pa * p0,
                 p_max_at_m: [top.x_m.abs() * c, top.y_m.abs() * c],
                 p_at_pa: at_end.map(|p| p.map(|p| p * p0)),
-                critical: critical(&samples, &diametral_tension(&hertz, radius), c, p0),
+                critical: {
+                    let shape = RollerShape::new(&hertz, radius);
+                    critical(&samples, &solved, &shape, c, p0)
+                },
             },
         );
     }
@@ -82,12 +86,18 @@ pub fn key_results(
 }
 
 /// The largest von Mises stress of the samples.
-fn critical(samples: &[Sample], tension: &StressTensor, c: f64, p0: f64) -> Critical {
+fn critical(
+    samples: &[Sample],
+    solved: &SolvedScene,
+    shape: &RollerShape,
+    c: f64,
+    p0: f64,
+) -> Critical {
     let mut best = (BodyKind::Block, [0.0; 3], f64::NEG_INFINITY);
     for (kind, at, stress) in samples {
         let value = match kind {
             BodyKind::Block => stress.von_mises(),
-            BodyKind::Roller => (*stress + *tension).von_mises(),
+            BodyKind::Roller => shape.stress(&solved.pressure, *at, stress).von_mises(),
         };
         if value > best.2 {
             best = (*kind, *at, value);

@@ -3,6 +3,7 @@
 pub mod edge;
 mod grid;
 mod key;
+mod roller;
 mod scene;
 
 use crate::base::{Error, HertzScales, Result, StressTensor};
@@ -17,7 +18,8 @@ use std::time::Instant;
 
 pub use grid::solve_on_grid;
 pub use key::{END_DISTANCES, KeyResults, key_results};
-pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, diametral_tension, guilbault_psi};
+pub use roller::RollerShape;
+pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, guilbault_psi};
 
 /// What to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -240,10 +242,11 @@ impl SceneAnswer {
     fn scaled(&self, case: &Case, options: &Options) -> Solution {
         let hertz = case.hertz();
         let (c, p0) = (hertz.c_m, hertz.p0_pa);
-        let tension = diametral_tension(&hertz, case.roller.radius_m);
-        let stress = |body: BodyKind, s: &StressTensor| match body {
+        let shape = RollerShape::new(&hertz, case.roller.radius_m);
+        let pressure = &self.solved.pressure;
+        let stress = |body: BodyKind, at: [f64; 3], s: &StressTensor| match body {
             BodyKind::Block => *s * p0,
-            BodyKind::Roller => (*s + tension) * p0,
+            BodyKind::Roller => shape.stress(pressure, at, s) * p0,
         };
         let curves: Vec<Curve> = self
             .curves
@@ -252,7 +255,12 @@ impl SceneAnswer {
                 body: curve.body,
                 name: curve.name,
                 at_m: curve.at_m.iter().map(|at| at.map(|v| v * c)).collect(),
-                stress_pa: curve.stress_pa.iter().map(|s| stress(curve.body, s)).collect(),
+                stress_pa: curve
+                    .at_m
+                    .iter()
+                    .zip(&curve.stress_pa)
+                    .map(|(at, s)| stress(curve.body, *at, s))
+                    .collect(),
             })
             .collect();
         let lines = self
@@ -298,7 +306,7 @@ impl SceneAnswer {
                 .points
                 .iter()
                 .zip(&options.points)
-                .map(|(s, point)| stress(point.body, s))
+                .map(|(s, point)| stress(point.body, point.at_m.map(|v| v / c), s))
                 .collect(),
             details: json!({
                 "tolerance": case.tolerance,
@@ -323,7 +331,7 @@ impl SceneAnswer {
                     },
                 },
                 "approach_reference_m": reference,
-                "roller_diametral_tension_pa": tension.xx * p0,
+                "roller_diametral_tension_pa": shape.diametral_tension() * p0,
             }),
             cells,
             lines,

@@ -1,6 +1,6 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
-use crate::base::{HertzScales, Result, StressTensor, Wavenumbers};
+use crate::base::{Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer, Resolution};
 use crate::case::Case;
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
@@ -195,12 +195,4 @@ impl SolvedScene {
         let compliance = Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances };
         self.contact.approach - contact::reference(&compliance, &self.contact, depth)
     }
-}
-
-/// The roller's diametral tension (p0): a disc squeezed by line loads across its diameter carries,
-/// besides the two half-plane fields, an even sigma_xx of 2 w' / (pi 2 R) with w' the load per
-/// length (Timoshenko and Goodier, Theory of Elasticity, 1970, article 41), which is p0 C / (2 R).
-/// It is uniform, so free ends leave it as it is.
-pub fn diametral_tension(hertz: &HertzScales, radius_m: f64) -> StressTensor {
-    StressTensor { xx: hertz.c_m / (2.0 * radius_m), ..StressTensor::default() }
 }

@@ -69,15 +69,21 @@ impl GridStress {
         StressTensor::from_components(std::array::from_fn(|c| self.component(c)[index]))
     }
 
-    /// Adds `shift` everywhere and multiplies by `factor`: from units of p0 to pascals, with what
-    /// the roller's own shape adds.
-    pub fn scale(&mut self, shift: &StressTensor, factor: f64) {
-        if self.is_empty() {
-            return;
-        }
-        let shifts = shift.components();
-        for (part, shift) in self.values.chunks_exact_mut(self.points).zip(shifts) {
-            part.par_iter_mut().for_each(|v| *v = (*v + shift) * factor);
+    /// Replaces the stress at every point x, y, z of `grid` by what `change` makes of it.
+    pub fn map(
+        &mut self,
+        grid: &Grid,
+        change: impl Fn([f64; 3], &StressTensor) -> StressTensor + Sync,
+    ) {
+        let (nx, ny) = (grid.x.len(), grid.y.len());
+        let changed: Vec<StressTensor> = (0..self.points)
+            .into_par_iter()
+            .map(|i| {
+                change([grid.x[i % nx], grid.y[i / nx % ny], grid.z[i / (nx * ny)]], &self.at(i))
+            })
+            .collect();
+        for (component, part) in self.values.chunks_exact_mut(self.points.max(1)).enumerate() {
+            part.iter_mut().zip(&changed).for_each(|(v, s)| *v = s.components()[component]);
         }
     }
 }
