@@ -40,6 +40,9 @@ class Body:
     ``(component, on)`` that hold a displacement component at zero where ``on(x)`` is true, x being of
     shape (3, n), on the body's surface. Together they must exclude rigid motion, so that the stiffness is
     positive definite. ``linear`` is ``direct`` or ``iterative``, ``tolerance`` the latter's.
+
+    Attributes: ``seconds`` by stage; ``factorised_by``, the direct solver's name or ``None``; ``iterations``
+    and ``solves`` so far.
     """
 
     def __init__(self, domain, young, poisson, fixed, linear="direct", tolerance=1e-10):

@@ -144,7 +144,7 @@ class MeshOptions:
 
 @dataclasses.dataclass(frozen=True)
 class SolverOptions:
-    """``linear``: ``direct`` (MUMPS Cholesky) or ``iterative`` (CG with algebraic multigrid).
+    """``linear``: ``direct`` (sparse Cholesky) or ``iterative`` (CG with algebraic multigrid).
 
     ``tolerance`` bounds the contact's relative residual, ``linear_tolerance`` that of an iterative
     linear solve, ``max_iterations`` the number of contact iterations.
