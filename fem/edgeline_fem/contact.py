@@ -72,8 +72,8 @@ class ContactGrid:
     the consistent mass matrix; all are positive, which is what bounds on nodal forces need.
 
     Pressures are handled at the elements' 2 x 2 Gauss points, ``gauss_x`` times ``gauss_y``. Where no pair of
-    nodes may penetrate, corner nodes carry a little too much and middle ones too little (0.1 to 0.2 % of p0 on the
-    meshes in use); to second degree that vanishes at the Gauss points, where the stress is best as well.
+    nodes may penetrate, corner nodes carry a little too much and middle ones too little (0.1 to 0.2 % of p0 on
+    the meshes in use); to second degree that vanishes at the Gauss points, where the stress is best as well.
     """
 
     def __init__(self, x, y):

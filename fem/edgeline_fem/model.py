@@ -114,8 +114,8 @@ def steep_parts(points, case, grid, pressure, poisson, radius):
 
     Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure`` does, which
     is given at the ``grid``'s Gauss points: stresses have a vertical tangent there that no polynomial follows.
-    On a longer block the pressure at the roller's end has no limit, so there it is that of 0.5 C from the end; in
-    the block, where the load stops, half of that as far as 0.5 C beyond, and then nothing.
+    On a longer block the pressure at the roller's end has no limit, so there it is that of 0.5 C from the end;
+    in the block, where the load stops, half of that as far as 0.5 C beyond, and then nothing.
     """
     length = case.roller_half_length()
     longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)

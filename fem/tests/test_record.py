@@ -64,8 +64,8 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
 def test_every_case_on_record_converges_to_what_is_promised():
     """Positive orders; the two finest meshes within 0.5 % of p0 in pressure and 1.1 % in stresses.
 
-    The finest one's error, Richardson's estimate or, where there is none, that difference: 1 % in stresses and 0.5 %
-    in pressure, but for one curve whose order is barely 1 (docs/fem.md).
+    The finest one's error, Richardson's estimate or, where there is none, that difference: 1 % in stresses and
+    0.5 % in pressure, but for one curve whose order is barely 1 (docs/fem.md).
     """
     folder = FEM.parent / "results/reference"
     beyond = []
