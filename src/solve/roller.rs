@@ -13,9 +13,10 @@
 //! - xz: -(p ds / (pi R)) 4 u^3 z^3 / r^6,
 //!
 //! from the load's tilt u / R and from the surface's fall u^2 / (2 R). So on the surface itself the
-//! even tension is gone, and some C below it is all that is left. Along the line the
-//! pressure's local value is taken, and no stress along y: ends and middle are off by what
-//! Poisson's ratio makes of these terms, some 0.1 C / R.
+//! even tension is gone, and some C below it is all that is left. These terms are taken alike all
+//! along the line, under the Hertz pressure: near an end the loads of about a C on either side of a
+//! point make them up, and p varies there by what the second order is worth. No stress along y goes
+//! with them; of plane strain that would leave out some 0.1 C / R.
 
 use crate::base::{HertzScales, StressTensor};
 use crate::kernels::strip;
@@ -33,7 +34,7 @@ const STEP: f64 = 1e-4;
 pub struct RollerShape {
     /// C / R.
     curvature: f64,
-    /// Nodes t of the rule on [-1, 1], and weights that include sqrt(1 - t^2).
+    /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
     rule: Vec<(f64, f64)>,
 }
 
@@ -42,7 +43,7 @@ impl RollerShape {
     pub fn new(hertz: &HertzScales, radius_m: f64) -> Self {
         let rule = (1..=POINTS).map(|i| {
             let angle = PI * i as f64 / (POINTS + 1) as f64;
-            (angle.cos(), PI / (POINTS + 1) as f64 * angle.sin())
+            (angle.cos(), PI / (POINTS + 1) as f64 * angle.sin().powi(2))
         });
         Self { curvature: hertz.c_m / radius_m, rule: rule.collect() }
     }
@@ -59,17 +60,16 @@ impl RollerShape {
         let [x, y, z] = at;
         let mut s = *flat;
         s.xx += self.diametral_tension();
-        let Some((a, c)) = pressure.modes(y) else { return s };
         let mut sums = [0.0; 3];
         for &(t, w) in &self.rule {
-            let (u, load) = (x - a * t, w * a * strip::pressure(a, &c, a * t));
+            let u = x - t;
             let (u2, z2) = (u * u, z * z);
             let r4 = (u2 + z2).powi(2);
             let r6 = r4 * (u2 + z2);
             if r6 > 0.0 {
-                sums[0] -= load * (u2 * u2 / r4 + 4.0 * u2 * u2 * z2 / r6);
-                sums[1] += load * (u2 * z2 / r4 - 4.0 * u2 * z2 * z2 / r6);
-                sums[2] -= load * 4.0 * u2 * u * z2 * z / r6;
+                sums[0] -= w * (u2 * u2 / r4 + 4.0 * u2 * u2 * z2 / r6);
+                sums[1] += w * (u2 * z2 / r4 - 4.0 * u2 * z2 * z2 / r6);
+                sums[2] -= w * 4.0 * u2 * u * z2 * z / r6;
             }
         }
         let [xx, zz, xz] = sums.map(|sum| self.curvature / PI * sum);
@@ -84,7 +84,7 @@ impl RollerShape {
             s.xz += tilt * (flat.xx - flat.zz);
             s.xy -= tilt * flat.yz;
             s.yz += tilt * flat.xy;
-            if z > 0.0 {
+            if let Some((a, c)) = pressure.modes(y).filter(|_| z > 0.0) {
                 let [before, after] = [x - STEP, x + STEP].map(|x| strip::stress(a, &c, x, z));
                 let shift = tilt * z / (2.0 * STEP);
                 s.xx += shift * (after[0] - before[0]);
