@@ -115,7 +115,7 @@ fn main() {
     let options = Options::new(model);
     let nodes = |case: &Case| {
         let solved = SolvedScene::new(&Scene::new(case, model, None)).expect("it converges");
-        solved.pressure.axis().len() * solved.wavenumbers.len()
+        solved.pressure.axis().len() * solved.wavenumbers.coarse().len()
     };
 
     let title =
@@ -139,8 +139,8 @@ fn main() {
     let scene = Scene::new(&case(1e-4, 5.0, 1e-2), model, None);
     let mut resolution = Resolution::for_tolerance(scene.tolerance);
     for halved in 0..3 {
-        let cells =
-            resolution.contact_axis(scene.half_length).len() * resolution.wavenumbers().len();
+        let cells = resolution.contact_axis(scene.half_length).len()
+            * resolution.wavenumbers(scene.bodies[0].half).coarse().len();
         let work = || SolvedScene::with_resolution(&scene, &resolution).expect("it converges");
         growth.row(&halved.to_string(), cells, cost(work));
         resolution = resolution.refined();

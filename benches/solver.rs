@@ -8,8 +8,8 @@ use edgeline::base::Material;
 use edgeline::body::{Body, EdgeModel, Layer, Resolution};
 use edgeline::case::{Case, Factors};
 use edgeline::contact::{self, Compliance, ContactSettings};
-use edgeline::kernels::wave::{self, WaveTable};
-use edgeline::kernels::{deflection, love};
+use edgeline::kernels::wave::WaveTable;
+use edgeline::kernels::{deflection, line_load, love};
 use edgeline::solve::{Options, Scene, SolvedScene, guilbault_psi, solve};
 use edgeline::stress::grid::on_grid;
 use edgeline::stress::{BodyKind, Grid};
@@ -53,7 +53,7 @@ fn kernels(c: &mut Criterion) {
             },
         );
         group.bench_with_input(BenchmarkId::new("line_load_exact", n), &places, |b, places| {
-            b.iter(|| places.iter().map(|&u| wave::exact(1.3, NU, u, 0.5).xx).sum::<f64>());
+            b.iter(|| places.iter().map(|&u| line_load::exact(1.3, NU, u, 0.5).xx).sum::<f64>());
         });
         group.bench_with_input(BenchmarkId::new("line_load_table", n), &places, |b, places| {
             b.iter(|| places.iter().map(|&u| table.line_load(1.3, u, 0.5).xx).sum::<f64>());
@@ -71,7 +71,8 @@ fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let [block, _] = scene.bodies;
     let (half_length, psi) = (scene.half_length, guilbault_psi(block.nu));
     let body = Body::new(half_length, block.half, block.nu, scene.model, psi, resolution);
-    let layers = resolution.wavenumbers().nodes().iter().map(|&k| body.layer(k)).collect();
+    let wavenumbers = resolution.wavenumbers(block.half);
+    let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)
 }
 
@@ -86,14 +87,14 @@ fn compliance_and_contact(c: &mut Criterion) {
             |b, scene| b.iter(|| layers(scene, &resolution)),
         );
         let (wavenumbers, axis) =
-            (resolution.wavenumbers(), resolution.contact_axis(scene.half_length));
+            (resolution.wavenumbers(slenderness), resolution.contact_axis(scene.half_length));
         let (_, layers) = layers(&scene, &resolution);
         let matrices: Vec<_> = layers.into_iter().map(|l| l.compliance).collect();
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
         let settings = ContactSettings {
             modes: resolution.modes,
-            end_zone: resolution.end_zone(),
-            tolerance: 1e-3 * scene.tolerance,
+            spacing: resolution.spacing,
+            tolerance: 1e-2 * scene.tolerance,
             max_iterations: 40,
         };
         c.bench_function(&format!("contact/flush, S_l/{slenderness}"), |b| {
