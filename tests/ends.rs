@@ -63,7 +63,8 @@ fn strengths_do_not_depend_on_the_mesh() {
         let flush = scene(slenderness, 1.0, 0.3, EdgeModel::QuarterSpace);
         let limits = [usual.clone(), usual.refined()].map(|r| match strength(&flush, &r) {
             Some(EdgeStrength::Finite { limit, residual, .. }) => {
-                assert!(residual < 2e-3, "{residual}");
+                // Next to the last free half-width p is good to some 0.002 p0.
+                assert!(residual < 3e-3, "{residual}");
                 limit
             }
             other => panic!("{other:?}"),
