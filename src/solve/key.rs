@@ -40,7 +40,7 @@ type Sample = (BodyKind, [f64; 3], StressTensor);
 /// Key results of `cases`, which are all of one [`Scene`] by `method`; `each` gets them one after the
 /// other. The contact is solved once, and only the stresses that the critical one needs are
 /// evaluated: on all standard curves for tolerances below 5e-3, and by a search along them
-/// otherwise, which finds the largest within 2e-3 p0 (`tests/sweep.rs` holds it to that).
+/// otherwise, which finds the largest within 2e-3 p0 (a test of this module holds it to that).
 ///
 /// # Errors
 /// [`crate::base::Error::NotConverged`] when the contact does not settle.
@@ -222,5 +222,38 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
             add(y - 2.0 * step, z, all);
         }
         step *= 0.5;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Options, solve};
+    use super::*;
+    use crate::base::Material;
+    use crate::case::Factors;
+
+    #[test]
+    fn the_search_finds_the_largest_stress_of_the_curves() {
+        for (slenderness, length_ratio, poisson) in [
+            (5.0, 1.0, 0.3),
+            (5.0, 0.5, 0.3),
+            (20.0, 0.9, 0.3),
+            (2.0, 0.3, 0.1),
+            (40.0, 1.0, 0.45),
+            (1.0, 0.99, 0.25),
+        ] {
+            let material = Material { young_pa: 210e9, poisson };
+            let factors = Factors { load: 5e-4, slenderness, length_ratio };
+            let case = Case::from_factors("case", 0.01, material, material, factors);
+            let case = Case { tolerance: 1e-2, ..case };
+            let method = EdgeModel::QuarterSpace;
+            let whole = solve(&case, &Options::new(method)).unwrap();
+            let (p0, all) = (whole.hertz.p0_pa, whole.critical.unwrap());
+            let mut found = None;
+            key_results(&[case], method, |_, results| found = Some(results.critical)).unwrap();
+            let found = found.unwrap();
+            let less = (all.value_pa - found.value_pa) / p0;
+            assert!(less < 2e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
+        }
     }
 }
