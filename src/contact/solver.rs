@@ -61,7 +61,7 @@ const DISTURBED: f64 = 1.0;
 const INNER_MODES: usize = 3;
 
 /// Iterations of an attempt that is not the last.
-const ATTEMPT: usize = 12;
+const ATTEMPT: usize = 26;
 
 /// Points across the contact at which a pressure's sign is looked at.
 const SHAPE_POINTS: i32 = 8;
