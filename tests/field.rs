@@ -105,8 +105,9 @@ fn a_real_reader_finds_the_right_values() {
         }
         assert_eq!(v.len(), 3 + s.len());
         for (got, want) in v[3..].iter().zip(&s) {
-            // 32-bit numbers, sums in single precision besides, and a p0 of 1.5 GPa.
-            assert!((got - want).abs() <= 1e-6 * want.abs() + 7e3, "{name} {v:?}: {got} {want}");
+            // The farthest point of a line decides how fine its wavenumbers are: a line of the grid and a
+            // point alone differ by their quadrature's errors, below 1e-4 of a p0 of 1.5 GPa.
+            assert!((got - want).abs() <= 1.5e5, "{name} {v:?}: {got} {want}");
             largest = largest.max(want.abs());
             compared += 1;
         }
