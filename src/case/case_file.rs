@@ -56,8 +56,8 @@ impl Case {
         let radius_m = radius(&roller)?;
         let (roller_material, block_material) = (material(&roller)?, material(&block)?);
 
-        let mut case = match (root.get("dimensionless"), root.get("load")) {
-            (Some(dimensionless), None) => {
+        let mut case = match given_load(&root)? {
+            GivenLoad::Dimensionless(table) => {
                 for table in [&roller, &block] {
                     if let Some(length) = table.get("length_m") {
                         return Err(length.refuse(
@@ -66,7 +66,6 @@ impl Case {
                         ));
                     }
                 }
-                let table = dimensionless.table()?;
                 table.only(&["W", "S_l", "L_r"])?;
                 let factors = Factors {
                     load: load_factor(&table.require("W", "W = 5e-4")?)?,
@@ -75,8 +74,7 @@ impl Case {
                 };
                 Case::from_factors(name, radius_m, roller_material, block_material, factors)
             }
-            (None, Some(load)) => {
-                let table = load.table()?;
+            GivenLoad::Force(table) => {
                 table.only(&["force_n"])?;
                 let force = table.require("force_n", "force_n = 1000.0")?;
                 let of_roller = roller.require("length_m", "length_m = 10e-3")?;
@@ -98,21 +96,33 @@ impl Case {
                 check_factors(&case, &force, &of_roller, &of_block)?;
                 case
             }
-            (Some(_), Some(load)) => {
-                return Err(load.table()?.error(
-                    "the load is given twice, by [dimensionless] and by [load]",
-                    "keep one of the two",
-                ));
-            }
-            (None, None) => {
-                return Err(root.error(
-                    "there is no load: neither [dimensionless] nor [load]",
-                    "add [dimensionless] with W, S_l and L_r, or [load] with force_n and both lengths",
-                ));
-            }
         };
         case.tolerance = tolerance(&root)?;
         Ok(case)
+    }
+}
+
+/// The table that gives the load.
+pub(super) enum GivenLoad<'d> {
+    /// `[dimensionless]`: by the three factors.
+    Dimensionless(Table<'d>),
+    /// `[load]`: by its force, and by lengths elsewhere.
+    Force(Table<'d>),
+}
+
+/// Finds the one table that gives the load.
+pub(super) fn given_load<'d>(root: &Table<'d>) -> Result<GivenLoad<'d>> {
+    match (root.get("dimensionless"), root.get("load")) {
+        (Some(dimensionless), None) => Ok(GivenLoad::Dimensionless(dimensionless.table()?)),
+        (None, Some(load)) => Ok(GivenLoad::Force(load.table()?)),
+        (Some(_), Some(load)) => Err(load.table()?.error(
+            "the load is given twice, by [dimensionless] and by [load]",
+            "keep one of the two",
+        )),
+        (None, None) => Err(root.error(
+            "there is no load: neither [dimensionless] nor [load]",
+            "add [dimensionless] with W, S_l and L_r, or [load] with force_n and both lengths",
+        )),
     }
 }
 

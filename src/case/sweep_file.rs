@@ -5,6 +5,7 @@
 //! file is an error; what is wrong with a row belongs to that row.
 
 use super::Case;
+use super::case_file::{GivenLoad, given_load};
 use super::document::{Document, Entry, edit_distance, read_text};
 use crate::base::{Error, Result};
 use std::path::Path;
@@ -122,23 +123,10 @@ impl Sweep {
             fixed: [None; PARAMETERS.len()],
             rows: Rows::Grid(Vec::new()),
         };
-        let dimensionless = match (root.get("dimensionless"), root.get("load")) {
-            (Some(_), None) => true,
-            (None, Some(_)) => false,
-            (Some(_), Some(load)) => {
-                return Err(load.table()?.error(
-                    "the load is given twice, by [dimensionless] and by [load]",
-                    "keep one of the two",
-                ));
-            }
-            (None, None) => {
-                return Err(root.error(
-                    "there is no load: neither [dimensionless] nor [load]",
-                    "add [dimensionless] with W, S_l and L_r, or [load] with force_n and both lengths",
-                ));
-            }
+        let lengths: &[&str] = match given_load(&root)? {
+            GivenLoad::Dimensionless(_) => &[],
+            GivenLoad::Force(_) => &["length_m"],
         };
-        let lengths: &[&str] = if dimensionless { &[] } else { &["length_m"] };
         let tables: [(&str, &[&str], &[&str]); 5] = [
             ("roller", &["radius_m", "young_pa", "poisson"], lengths),
             ("block", &["young_pa", "poisson"], lengths),
