@@ -1,24 +1,15 @@
 //! The strength of the contact's end, and the one number of the `guilbault` model that is fitted.
 //! Lengths are in units of C, stresses in units of p0.
 
+mod common;
+
+use common::scene;
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::solve::edge::{self, EdgeStrength};
 use edgeline::solve::{GAMMA, Scene, SceneBody, SolvedScene};
 use edgeline::stress::BodyKind;
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::field::transition;
-
-/// A contact of equal bodies: slenderness, length ratio, Poisson's ratio.
-fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
-    let body = |half| SceneBody { half, nu, share: 0.5 };
-    Scene {
-        half_length: slenderness,
-        bodies: [body(slenderness / length_ratio), body(slenderness)],
-        model,
-        psi: None,
-        tolerance: 1e-3,
-    }
-}
 
 /// The strength of the end at a resolution.
 fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {

@@ -1,12 +1,14 @@
 //! The solver against known solutions, an independent one, its own refinement and the laws that any
 //! solution keeps. Lengths are in units of C, stresses in units of p0.
 
+mod common;
+
 use std::f64::consts::PI;
 
+use common::scene;
 use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
-use edgeline::contact::ContactSolution;
 use edgeline::kernels::{hertz, love, strip};
 use edgeline::solve::{Options, Point, RollerShape, Scene, SceneBody, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
@@ -15,18 +17,6 @@ use nalgebra::DVector;
 
 /// Distance from the roller's corner within which nothing is compared (C).
 const CORNER: f64 = 0.1;
-
-/// A contact of equal bodies: slenderness, length ratio, Poisson's ratio.
-fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
-    let body = |half| SceneBody { half, nu, share: 0.5 };
-    Scene {
-        half_length: slenderness,
-        bodies: [body(slenderness / length_ratio), body(slenderness)],
-        model,
-        psi: None,
-        tolerance: 1e-3,
-    }
-}
 
 fn solved(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> SolvedScene {
     SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap()
@@ -297,16 +287,8 @@ fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor
     let wavenumbers = resolution.wavenumbers(4.0);
     let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     let axis = resolution.contact_axis(3.0);
-    let solution = ContactSolution {
-        half_widths: vec![1.0; axis.len()],
-        coefficients: axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect(),
-        approach: 0.0,
-        iterations: 0,
-        spacing: 0.0,
-        residual: 0.0,
-        load_error: 0.0,
-    };
-    let pressure = Pressure::new(&axis, &solution);
+    let amplitudes = axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect();
+    let pressure = Pressure::new(axis.clone(), vec![1.0; axis.len()], amplitudes);
     move |place| at(&Field::new(&body, &wavenumbers, &layers, &pressure, 1.0, 1e-3), place)
 }
 

@@ -493,11 +493,6 @@ fn stresses(
             }
         }
     }
-    let work = fields.iter().map(|(_, field)| field.work()).fold(Work::default(), |sum, w| Work {
-        done: sum.done + w.done,
-        beyond_reach: sum.beyond_reach + w.beyond_reach,
-        ends: sum.ends + w.ends,
-        faded: sum.faded + w.faded,
-    });
+    let work = fields.iter().map(|(_, field)| field.work()).sum();
     (out, points, work)
 }

@@ -104,9 +104,8 @@ impl RollerShape {
 mod tests {
     use super::*;
     use crate::base::Panels;
-    use crate::contact::ContactSolution;
 
-    /// A disc of radius 20 under opposite semi-elliptic pressures of half-width 1: the sum of the
+    /// A disc under opposite semi-elliptic pressures of half-width 1: the sum of the
     /// radial fields behind the tangents and of the uniform tension, in the frame of the axes.
     fn disc(radius: f64, x: f64, depth: f64) -> [f64; 3] {
         let top = radius - (radius * radius - x * x).sqrt() + depth;
@@ -137,16 +136,7 @@ mod tests {
     #[test]
     fn first_order_of_a_disc_that_is_squeezed() {
         let axis = Panels::new(vec![0.0, 1.0], 2);
-        let solution = ContactSolution {
-            half_widths: vec![1.0; 2],
-            coefficients: vec![vec![1.0]; 2],
-            approach: 0.0,
-            iterations: 0,
-            spacing: 0.0,
-            residual: 0.0,
-            load_error: 0.0,
-        };
-        let pressure = Pressure::new(&axis, &solution);
+        let pressure = Pressure::new(axis, vec![1.0; 2], vec![vec![1.0]; 2]);
         let hertz = HertzScales { c_m: 1.0, p0_pa: 1.0, e_star_pa: 1.0 };
         let off = |radius: f64| {
             let shape = RollerShape::new(&hertz, radius);

@@ -150,7 +150,8 @@ impl SolvedScene {
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
         let contact = contact::solve(&compliance, &axis, &settings)?;
-        let pressure = Pressure::new(&axis, &contact);
+        let pressure =
+            Pressure::new(axis, contact.half_widths.clone(), contact.coefficients.clone());
         let total = start.elapsed().as_secs_f64();
         Ok(Self {
             scene: scene.clone(),

@@ -10,11 +10,9 @@
 use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::stencil::{LineLoads, Stencil};
 use crate::body::{Body, EdgeModel, Layer};
-use crate::contact::ContactSolution;
 use crate::kernels::strip;
 use crate::kernels::wave::{surface_spread, surface_spread_shear};
 use nalgebra::DVector;
-use serde::Serialize;
 use std::f64::consts::PI;
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
@@ -28,19 +26,12 @@ pub struct Pressure {
 }
 
 impl Pressure {
-    /// The pressure of a contact solution on its axis.
-    pub fn new(axis: &Panels, solution: &ContactSolution) -> Self {
-        let most = solution.coefficients.iter().map(Vec::len).max().unwrap_or(0);
-        let pad = |c: &Vec<f64>| {
-            let mut c = c.clone();
-            c.resize(most, 0.0);
-            c
-        };
-        Self {
-            axis: axis.clone(),
-            half_widths: solution.half_widths.clone(),
-            coefficients: solution.coefficients.iter().map(pad).collect(),
-        }
+    /// The pressure whose half-width and coefficients of the modes are given at the nodes of `axis`;
+    /// modes that a node lacks are zero there.
+    pub fn new(axis: Panels, half_widths: Vec<f64>, mut coefficients: Vec<Vec<f64>>) -> Self {
+        let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
+        coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
+        Self { axis, half_widths, coefficients }
     }
 
     /// Axis along the contact.
@@ -55,11 +46,7 @@ impl Pressure {
 
     /// Half-width and modes at `y`; none outside the contact.
     pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
-        let y = y.abs();
-        if y > self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12) {
-            return None;
-        }
-        let (first, weights) = self.axis.interpolation(y);
+        let (first, weights) = self.neighbours(y.abs())?;
         let mut coefficients = vec![0.0; self.coefficients[0].len()];
         let mut half_width = 0.0;
         for (j, w) in (first..).zip(&weights) {
@@ -160,7 +147,7 @@ impl Loads {
 
 /// Kernel evaluations for stresses: those done, and those that a sum of all sources over all
 /// wavenumbers would have taken besides.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
     /// Evaluations done.
     pub done: u64,
@@ -170,6 +157,17 @@ pub struct Work {
     pub ends: u64,
     /// Spared: wavenumbers behind those that add nothing any more.
     pub faded: u64,
+}
+
+impl std::iter::Sum for Work {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, w| Self {
+            done: sum.done + w.done,
+            beyond_reach: sum.beyond_reach + w.beyond_reach,
+            ends: sum.ends + w.ends,
+            faded: sum.faded + w.faded,
+        })
+    }
 }
 
 /// [`Work`] that several threads add to.
