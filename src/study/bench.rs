@@ -122,6 +122,22 @@ pub struct Point {
 }
 
 impl Point {
+    /// A point that neither was timed nor compared.
+    fn new(source: &str, origin: Origin, setting: f64) -> Self {
+        Self {
+            source: source.to_string(),
+            origin,
+            setting,
+            unknowns: None,
+            timing: None,
+            all_threads: None,
+            machine: None,
+            to_fem: None,
+            to_limit: None,
+            err: None,
+        }
+    }
+
     /// Median seconds.
     pub fn seconds(&self) -> Option<f64> {
         Some(self.timing.as_ref()?.median_s)
@@ -463,16 +479,10 @@ fn models_at(cases: &[Case], tolerance: f64, setup: &Setup, stage: usize) -> Vec
         // No time counts for an answer that was not computed.
         let timing = |i: usize| sampled.as_ref().and(m.timing.get(i)).copied();
         let point = Point {
-            source: m.method.name().to_string(),
-            origin: Origin::Model,
-            setting: tolerance,
-            unknowns: None,
             timing: timing(0),
             all_threads: timing(1),
-            machine: None,
-            to_fem: None,
-            to_limit: None,
             err,
+            ..Point::new(m.method.name(), Origin::Model, tolerance)
         };
         (point, sampled)
     };
@@ -481,28 +491,19 @@ fn models_at(cases: &[Case], tolerance: f64, setup: &Setup, stage: usize) -> Vec
 
 /// The points of FEM, live meshes first.
 fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
-    let point = |origin, setting, err: Option<String>| Point {
-        source: "fem".to_string(),
-        origin,
-        setting,
-        unknowns: None,
-        timing: None,
-        all_threads: None,
-        machine: None,
-        to_fem: None,
-        to_limit: None,
-        err,
-    };
+    let point = |origin, setting| Point::new("fem", origin, setting);
     let live = meshes.live.iter().map(|(size, mesh)| match mesh {
         Ok(mesh) => (
             Point {
                 unknowns: Some(mesh.result.summary.unknowns as u64),
                 timing: Some(mesh.timing),
-                ..point(Origin::LiveFem, *size, None)
+                ..point(Origin::LiveFem, *size)
             },
             Some(sampled(case, &mesh.result, "live")),
         ),
-        Err(message) => (point(Origin::LiveFem, *size, Some(message.clone())), None),
+        Err(message) => {
+            (Point { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
+        }
     });
     let recorded = meshes.recorded.iter().flat_map(|r| &r.meshes).map(|mesh| {
         let seconds = mesh.summary.total_seconds();
@@ -510,7 +511,7 @@ fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
             unknowns: Some(mesh.summary.unknowns as u64),
             timing: Some(Timing::new(mesh.summary.ranks, &[seconds])),
             machine: Some(mesh.summary.processor().to_string()),
-            ..point(Origin::RecordedFem, mesh.size, None)
+            ..point(Origin::RecordedFem, mesh.size)
         };
         (point, Some(sampled(case, mesh, "recorded")))
     });
