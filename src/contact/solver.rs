@@ -50,7 +50,7 @@ pub struct ContactSolution {
 
 /// Distance at which the closed logarithmic kernel of the local, plane part is screened, so that
 /// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
-const SCREEN: f64 = 2.0;
+pub(super) const SCREEN: f64 = 2.0;
 
 /// Entries of the collocation matrix per wavenumber that are as good as none, relative to the
 /// tolerance of the singularity.
@@ -67,7 +67,7 @@ const ATTEMPT: usize = 26;
 const SHAPE_POINTS: i32 = 8;
 
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
-const SCREEN_POINTS: usize = 12;
+pub(super) const SCREEN_POINTS: usize = 12;
 
 /// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
 ///
@@ -129,8 +129,7 @@ fn solve_once(
             *slope = own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
         }
         let mut worst: f64 = 0.0;
-        // Relative changes of the squared half-widths.
-        let moves: Vec<f64> = layout
+        let wanted: Vec<f64> = layout
             .free
             .iter()
             .map(|&j| {
@@ -168,7 +167,7 @@ fn solve_once(
             });
         }
         for (a, shares) in half_widths.iter_mut().zip(&layout.shares) {
-            *a = shares.iter().map(|(free, share)| share * moves[*free]).sum::<f64>().max(0.05);
+            *a = shares.iter().map(|(free, share)| share * wanted[*free]).sum::<f64>().max(0.05);
         }
     }
     Err(Error::NotConverged {
@@ -191,14 +190,12 @@ struct Layout {
     shares: Vec<[(usize, f64); 2]>,
     /// Modes of each node.
     counts: Vec<usize>,
-    all_modes: usize,
-    is_free: Vec<bool>,
+    /// The first unknown of each node, and one more for the end.
     starts: Vec<usize>,
 }
 
 impl Layout {
     fn new(axis: &Panels, settings: &ContactSettings) -> Self {
-        let n = axis.len();
         let mut limit = axis.breaks()[axis.panel_count()] - settings.spacing;
         let mut free = Vec::new();
         for (j, &y) in axis.nodes().iter().enumerate().rev() {
@@ -214,7 +211,7 @@ impl Layout {
             .enumerate()
             .map(|(j, y)| {
                 let after = free.partition_point(|f| *f < j);
-                if after == 0 || after == free.len() && free.len() == 1 {
+                if after == 0 || free.len() == 1 {
                     return [(0, 1.0), (0, 0.0)];
                 }
                 let before = after.min(free.len() - 1) - 1;
@@ -227,10 +224,7 @@ impl Layout {
         let modes_at =
             |y: &f64| if *y < inner { settings.modes.min(INNER_MODES) } else { settings.modes };
         let counts = axis.nodes().iter().map(modes_at).collect();
-        let mut is_free = vec![false; n];
-        free.iter().for_each(|j| is_free[*j] = true);
-        let all_modes = settings.modes;
-        let mut layout = Self { free, shares, counts, all_modes, is_free, starts: Vec::new() };
+        let mut layout = Self { free, shares, counts, starts: Vec::new() };
         layout.number();
         layout
     }
@@ -239,11 +233,15 @@ impl Layout {
     fn number(&mut self) {
         let mut next = 0;
         self.starts.clear();
-        for (modes, free) in self.counts.iter().zip(&self.is_free) {
+        for (j, modes) in self.counts.iter().enumerate() {
             self.starts.push(next);
-            next += modes + usize::from(*free);
+            next += modes + usize::from(self.is_free(j));
         }
         self.starts.push(next);
+    }
+
+    fn is_free(&self, j: usize) -> bool {
+        self.free.binary_search(&j).is_ok()
     }
 
     /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is free.
@@ -284,7 +282,7 @@ impl Layout {
     /// those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
     fn points(&self, j: usize) -> impl Iterator<Item = f64> {
         let count = self.unknowns(j).len();
-        let free = self.is_free[j];
+        let free = self.is_free(j);
         (0..count).map(move |l| {
             let angle = if free {
                 PI * (2 * l + 1) as f64 / (4 * count) as f64
@@ -327,17 +325,17 @@ impl Layout {
 
 /// C(k) at one fine wavenumber, less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the
 /// diagonal.
-struct Remainder {
-    matrix: DMatrix<f64>,
+pub(super) struct Remainder {
+    pub matrix: DMatrix<f64>,
     /// Rows of each column that matter: where waves are short, only those near the line's end.
-    rows: Vec<Range<usize>>,
+    pub rows: Vec<Range<usize>>,
     /// Rows and columns that matter.
-    nodes: Range<usize>,
+    pub nodes: Range<usize>,
 }
 
 /// The remainders at the fine wavenumbers, interpolated from the coarse ones; `negligible` is the
 /// displacement that one entry may leave out.
-fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> Vec<Remainder> {
+pub(super) fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> Vec<Remainder> {
     let numbers = compliance.wavenumbers;
     let coarse: Vec<_> = numbers
         .coarse()
@@ -451,7 +449,8 @@ impl Linear<'_> {
     /// Adds the plane, screened part, the approach, the gap and the load's equation.
     fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
         let (layout, last) = (self.layout, self.layout.size() - 1);
-        let mut local = vec![0.0; layout.all_modes];
+        let most = layout.counts.iter().copied().max().unwrap_or(0);
+        let mut local = vec![0.0; most];
         for (i, &a) in self.half_widths.iter().enumerate() {
             let modes = layout.modes(i);
             let singular: Vec<(usize, f64)> = layout.singular_parts(i, self.slopes).collect();
