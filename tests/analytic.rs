@@ -77,6 +77,27 @@ fn love_equals_high_precision_values() {
     worst.assert_at_most(RELATIVE);
 }
 
+/// Distances of 1e-9 to 1e9 sides, sides as 1 to 1e-6 to 1e6, every octant, plane, edge and corner: each
+/// component to 1e-12 of itself, or to 1e-14 of the largest one.
+#[test]
+fn love_and_deflection_equal_high_precision_values_at_all_scales() {
+    let rows = table("love_extremes.csv");
+    assert_eq!(rows.len(), 900);
+    let (mut stresses, mut deflections) = (Worst::default(), Worst::default());
+    for (kind, n) in &rows {
+        let got = love::stress(n[0], n[1], n[2], n[3], n[4], n[5]);
+        let largest = n[6..12].iter().fold(0.0, |m: f64, s| m.max(s.abs()));
+        for (g, w) in got.components().into_iter().zip(&n[6..12]) {
+            let off = error(g, *w).min(1e2 * (g - w).abs() / largest);
+            stresses.record(kind, off, format!("{:?}: {g:e}, want {w:e}", &n[..6]));
+        }
+        let got = deflection::rectangle(n[0], n[1], n[3], n[4]);
+        deflections.record(kind, error(got, n[12]), format!("{:?}", &n[..5]));
+    }
+    stresses.assert_at_most(RELATIVE);
+    deflections.assert_at_most(RELATIVE);
+}
+
 #[test]
 fn love_gives_the_check_value() {
     let s = love::stress(0.3, 0.9, 0.5, 0.7, 0.4, 0.3);

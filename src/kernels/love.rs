@@ -254,7 +254,9 @@ impl Cell {
             // cancellation: (v1 + i u1)(v2 + i u2) and (v1 + i u2)(v2 + i u1) share a real part.
             let real = v1 * v2 - u1 * u2;
             let (xy, ab) = (self.x.at * self.y.at, self.x.half * self.y.half);
-            let lateral = (-4.0 * ab * real).atan2(real * real + 4.0 * (xy - ab) * (xy + ab));
+            // x y - a b from the distances to the edges, which next to the corner keep their digits.
+            let beyond = u2 * self.y.at + self.x.half * v2;
+            let lateral = (-4.0 * ab * real).atan2(real * real + 4.0 * beyond * (xy + ab));
             return Sums { lateral, ..Default::default() };
         }
         // Inside and on the boundary every term has one sign; an edge's two sides average to 0.
@@ -345,8 +347,9 @@ fn reach(across: f64, along: f64, z: f64, half: f64, half_along: f64) -> f64 {
 }
 
 /// Sums for z > 0 by Gauss's rule over lines along y, `half` the half-width in x; a rectangle too
-/// wide for its distance is halved. Ends because the point is off the surface: the integrand is
-/// analytic within the distance [`reach`] measures.
+/// wide for its distance is cut in two, at first below the point, so that parts next to it keep the
+/// digits of their distance. Ends because the point is off the surface: the integrand is analytic
+/// within the distance [`reach`] measures.
 fn strip(x: f64, y: f64, z: f64, half: f64, half_along: f64) -> Sums {
     let distance = reach(x, y, z, half, half_along);
     let mut sums = Sums::default();
@@ -357,9 +360,12 @@ fn strip(x: f64, y: f64, z: f64, half: f64, half_along: f64) -> Sums {
             }
         }
         None => {
-            let quarter = 0.5 * half;
-            sums.add_scaled(strip(x - quarter, y, z, quarter, half_along), 1.0);
-            sums.add_scaled(strip(x + quarter, y, z, quarter, half_along), 1.0);
+            let (first, last) = (x - half, x + half);
+            let cut = if first < 0.0 && last > 0.0 { 0.0 } else { x };
+            for (a, b) in [(first, cut), (cut, last)] {
+                let part = strip(0.5 * (a + b), y, z, 0.5 * (b - a), half_along);
+                sums.add_scaled(part, 1.0);
+            }
         }
     }
     sums

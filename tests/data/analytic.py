@@ -6,9 +6,11 @@ writes next to itself
 
 - love.csv: stresses under, and surface influence f of, a unit pressure on a rectangle, by the
   textbook formulas in 220-digit arithmetic, where their cancellation does no harm. Points on the
-  surface, on edges and on the planes of edges are taken as limits: z = 1e-30 and a shift of 1e-60.
+  surface, on edges and on the planes of edges are taken as limits: z = 1e-60 and a shift of 1e-90.
   Some of the values are checked here against quadrature of the point load, which uses none of
   these formulas.
+- love_extremes.csv: the same at distances from the centre, edges and corners of 1e-9 to 1e9 sides, for
+  sides as 1 to 1e-6 to 1e6, in every octant and on every plane, edge and corner.
 - point_load.csv: Boussinesq's stresses from the components in cylindrical coordinates.
 - hertz_line.csv: stresses of the line contact by quadrature of Flamant's line load.
 - hertz_point.csv: f of the circular contact, by quadrature of the influence of a ring.
@@ -24,13 +26,13 @@ import mpmath as mp
 HERE = pathlib.Path(__file__).parent
 STRESSES = ["xx", "yy", "zz", "xy", "xz", "yz"]
 # Below this a value is a trace of the limits above and means zero.
-ZERO = mp.mpf(10) ** -25
+ZERO = mp.mpf(10) ** -45
 
 
 def love(x, y, z, a, b, nu):
     """The six stresses: Love 1929, as sums over the four corners."""
-    x, y = x + mp.mpf(10) ** -60, y + mp.mpf(10) ** -60 * mp.sqrt(2)
-    z = z if z > 0 else mp.mpf(10) ** -30
+    x, y = x + mp.mpf(10) ** -90, y + mp.mpf(10) ** -90 * mp.sqrt(2)
+    z = z if z > 0 else mp.mpf(10) ** -60
 
     def corner(x, y):
         rho = mp.sqrt(x * x + y * y + z * z)
@@ -56,7 +58,7 @@ def love(x, y, z, a, b, nu):
 
 def influence(x, y, a, b):
     """f of the rectangle: Johnson 1985, Eq. 3.25."""
-    x, y = x + mp.mpf(10) ** -60, y + mp.mpf(10) ** -60 * mp.sqrt(2)
+    x, y = x + mp.mpf(10) ** -90, y + mp.mpf(10) ** -90 * mp.sqrt(2)
     r = lambda u, v: mp.sqrt(u * u + v * v)
     up, um, vp, vm = x + a, x - a, y + b, y - b
     return (
@@ -228,6 +230,43 @@ def rectangle_points():
     return points
 
 
+def extreme_points():
+    """(kind, x, y, z, a, b, nu) over all scales: from a place of the rectangle, in a direction."""
+    rng = random.Random(20261121)
+    log = lambda low, high: float(f"{10 ** rng.uniform(low, high):.12g}")
+    points = []
+    for k in range(900):
+        b = log(-6, 6)
+        a = 1.0
+        if k % 2:
+            a, b = b, a
+        kind, u, v = (
+            ("from the centre", 0.0, 0.0),
+            ("from an edge", a, b * rng.choice((0.0, 0.5))),
+            ("from an edge", a * rng.choice((0.0, 0.5)), b),
+            ("from a corner", a, b),
+            ("from an edge's line", a, b * (1 + log(-9, 3))),
+        )[k % 5]
+        size = rng.choice((a, b))
+        # A direction in the body, on the surface, straight down, or in a plane of an edge.
+        d = [rng.uniform(-1, 1), rng.uniform(-1, 1), rng.uniform(0, 1)]
+        for i in rng.choice(((), (), (), (2,), (0, 1), (0,), (1,), (0, 2), (1, 2))):
+            d[i] = 0.0
+        # Or next to such a plane.
+        if k % 3 == 0:
+            d[rng.randrange(3)] *= log(-9, 0)
+        r = log(-9, 9) * size
+        x, y, z = u + r * d[0], v + r * d[1], r * d[2]
+        sx, sy = rng.choice((-1, 1)), rng.choice((-1, 1))
+        # What a coordinate of a surface point has within four units in the last place of an edge is on it.
+        x, y = (e if abs(p - e) <= 2e-15 * e else p for p, e in ((x, a), (y, b)))
+        # In the corner itself the shear has no limit.
+        if (x, y, z) == (a, b, 0.0):
+            z = 1e-3 * size
+        points.append((kind, sx * x, sy * y, z, a, b, rng.choice((0.0, 0.25, 0.3, 0.49, 0.5))))
+    return points
+
+
 def write(name, header, rows):
     with open(HERE / name, "w", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
@@ -241,25 +280,27 @@ def text(value):
 
 def main():
     mp.mp.dps = 220
-    rows, general = [], 0
-    for kind, *numbers in rectangle_points():
-        x, y, z, a, b, nu = (mp.mpf(n) for n in numbers)
-        stress = love(x, y, z, a, b, nu)
-        if z == 0:
-            stress[2] = stress[2] if abs(stress[2]) > ZERO else mp.mpf(0)
-            stress[4] = stress[5] = mp.mpf(0)
-        symmetric = [(3, x == 0 or y == 0), (4, x == 0), (5, y == 0)]
-        for i, vanishes in symmetric:
-            if vanishes:
-                stress[i] = mp.mpf(0)
-        # On the surface outside the rectangle nothing but 1 - 2 nu is left.
-        if z == 0:
-            stress = [s if abs(s) > ZERO else mp.mpf(0) for s in stress]
-        if kind == "check" or kind == "general" and z > 0.5 and general < 5:
-            general += kind == "general"
-            check_by_quadrature(x, y, z, a, b, nu, stress)
-        rows.append([kind, *map(repr, numbers), *map(text, stress), text(influence(x, y, a, b))])
-    write("love.csv", ["kind", "x", "y", "z", "a", "b", "nu", *STRESSES, "f"], rows)
+    general = 0
+    for name, points in (("love.csv", rectangle_points()), ("love_extremes.csv", extreme_points())):
+        rows = []
+        for kind, *numbers in points:
+            x, y, z, a, b, nu = (mp.mpf(n) for n in numbers)
+            stress = love(x, y, z, a, b, nu)
+            if z == 0:
+                stress[2] = stress[2] if abs(stress[2]) > ZERO else mp.mpf(0)
+                stress[4] = stress[5] = mp.mpf(0)
+            symmetric = [(3, x == 0 or y == 0), (4, x == 0), (5, y == 0)]
+            for i, vanishes in symmetric:
+                if vanishes:
+                    stress[i] = mp.mpf(0)
+            # On the surface outside the rectangle nothing but 1 - 2 nu is left.
+            if z == 0:
+                stress = [s if abs(s) > ZERO else mp.mpf(0) for s in stress]
+            if kind == "check" or kind == "general" and z > 0.5 and general < 5:
+                general += kind == "general"
+                check_by_quadrature(x, y, z, a, b, nu, stress)
+            rows.append([kind, *map(repr, numbers), *map(text, stress), text(influence(x, y, a, b))])
+        write(name, ["kind", "x", "y", "z", "a", "b", "nu", *STRESSES, "f"], rows)
 
     mp.mp.dps = 60
     rng = random.Random(7)
