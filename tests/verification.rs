@@ -10,10 +10,10 @@ use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
 use edgeline::kernels::{hertz, love, strip};
-use edgeline::solve::{Options, Point, RollerShape, Scene, SceneBody, SolvedScene, solve};
+use edgeline::solve::{Options, Point, RollerShape, Scene, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, Field, Pressure};
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 /// Distance from the roller's corner within which nothing is compared (C).
 const CORNER: f64 = 0.1;
@@ -277,6 +277,48 @@ fn compliance_is_reciprocal() {
             }
         }
     }
+}
+
+/// No pressure gives work back, whatever weight the images have: contacts have one solution. (It takes
+/// images that push, psi < -1, to break that; the field's own range is 0 to 2.)
+#[test]
+fn compliance_is_positive_definite() {
+    for (model, psi) in [
+        (EdgeModel::HalfSpace, 1.0),
+        (EdgeModel::Mirror, 1.0),
+        (EdgeModel::Guilbault, 1.5),
+        (EdgeModel::Guilbault, 2.0),
+        (EdgeModel::Guilbault, 10.0),
+        (EdgeModel::QuarterSpace, 1.0),
+    ] {
+        for (slenderness, length_ratio) in
+            [(0.5, 1.0), (0.5, 0.99), (2.0, 1.0), (5.0, 1.0), (5.0, 0.9), (20.0, 1.0), (200.0, 1.0)]
+        {
+            let smallest = smallest_energy(slenderness, length_ratio, model, psi);
+            assert!(smallest > 0.0, "{model} {psi} {slenderness} {length_ratio}: {smallest:e}");
+        }
+    }
+    assert!(smallest_energy(0.5, 1.0, EdgeModel::Guilbault, -1.2) < 0.0);
+}
+
+/// Smallest eigenvalue of the symmetric part of a body's compliance at any wavenumber, for pressures
+/// whose mean square along the line is one, relative to the largest.
+fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f64) -> f64 {
+    let resolution = Resolution::for_tolerance(1e-2);
+    let half = slenderness / length_ratio;
+    let body = Body::new(slenderness, half, 0.3, model, psi, &resolution);
+    let axis = resolution.contact_axis(slenderness);
+    let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
+    let wavenumbers = resolution.wavenumbers(half);
+    let energies = wavenumbers.coarse().nodes().iter().map(|&k| {
+        let c = body.layer(k).compliance;
+        let energy = DMatrix::from_fn(root.len(), root.len(), |i, j| {
+            0.5 * (c[(i, j)] * root[i] / root[j] + c[(j, i)] * root[j] / root[i])
+        });
+        let values = energy.symmetric_eigenvalues();
+        values.min() / values.max()
+    });
+    energies.fold(f64::INFINITY, f64::min)
 }
 
 /// The field of a body under a pressure of half-width 1 and one mode, given by its amplitude

@@ -49,6 +49,18 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
+    /// A solution breaks a law that it has to satisfy.
+    #[error("the solution is not sound: {law} is {value:.1e}, more than {limit:.1e}; {remedy}")]
+    Unsound {
+        /// What was measured, with its unit.
+        law: &'static str,
+        /// Its value.
+        value: f64,
+        /// The largest value that passes.
+        limit: f64,
+        /// What to do.
+        remedy: String,
+    },
     /// A child process failed, hung or wrote nonsense.
     #[error("{program}: {message}\n{log_tail}\n{remedy}")]
     Child {

@@ -49,6 +49,9 @@ pub struct Resolution {
 }
 
 impl Resolution {
+    /// The tightest tolerance that has a resolution of its own.
+    pub const FINEST: f64 = 1e-4;
+
     /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
     /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. How far each of them keeps to its
     /// tolerance is measured by its own refinement.

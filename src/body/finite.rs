@@ -61,6 +61,9 @@ pub struct Layer {
     pub surface: Option<DMatrix<f64>>,
     /// q at the face nodes per P at the surface nodes; none where the end is not felt.
     pub face: Option<DMatrix<f64>>,
+    /// Condition number of the system that `surface` solves, in the column-sum norm over the contact's
+    /// columns; 1 without one, infinite where it could not be solved.
+    pub condition: f64,
 }
 
 impl Body {
@@ -257,17 +260,25 @@ impl Body {
         // An end face that is too far from the contact for this wavenumber carries nothing.
         if self.model != EdgeModel::QuarterSpace || self.ledge > self.reach(k) {
             let compliance = displacement.columns(0, self.contact).into_owned();
-            return Layer { compliance, surface: None, face: None };
+            return Layer { compliance, surface: None, face: None, condition: 1.0 };
         }
         let to_face = self.surface_matrix(k);
         let from_face = self.faces_matrix(k, to_face.nrows());
         let system = DMatrix::identity(n, n) - from_face * &to_face;
+        let norm = column_sum(&system);
         let contact_columns = DMatrix::identity(n, self.contact);
-        let surface = linear::solve(system, contact_columns).expect("I - T T is regular for k > 0");
+        let (surface, condition) = match linear::solve(system, contact_columns) {
+            Some(surface) => {
+                let condition = norm * column_sum(&surface);
+                (surface, condition)
+            }
+            None => (DMatrix::identity(n, self.contact), f64::INFINITY),
+        };
         Layer {
             compliance: displacement * &surface,
             face: Some(-(to_face * &surface)),
             surface: Some(surface),
+            condition,
         }
     }
 
@@ -369,6 +380,11 @@ impl Body {
         let q = nalgebra::DVector::from_column_slice(q);
         (self.cosines.columns(0, q.len()) * q).data.into()
     }
+}
+
+/// The largest sum of the magnitudes in a column.
+fn column_sum(matrix: &DMatrix<f64>) -> f64 {
+    matrix.column_iter().map(|c| c.iter().map(|v| v.abs()).sum()).fold(0.0, f64::max)
 }
 
 /// Rows over the nodes of sources, filled one after the other.

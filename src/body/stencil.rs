@@ -48,8 +48,9 @@ const CLUSTER_DISTANCE: f64 = 3.3;
 /// A panel's own Gauss nodes serve from here on, r = 3.3.
 const PANEL_DISTANCE: f64 = 1.8;
 
-/// The four Gauss nodes or more of a piece of a panel, r = 2.6.
-const PIECE_DISTANCE: f64 = 1.5;
+/// The four Gauss nodes or more of a piece of a panel, r = 2.6. Panels that double have their middle
+/// nodes at a distance of 1.5 from their neighbours, and rounding would decide.
+const PIECE_DISTANCE: f64 = 1.49;
 
 impl Sources {
     /// Clusters of an axis's panels.
@@ -142,8 +143,9 @@ pub struct Stencil {
 
 /// For a target on the axis's line pieces are not cut below this part of their panel: what an
 /// integrable singularity of ln r leaves in such a piece is below 1e-4 of the panel's own share.
-/// Off the line the depth bounds the pieces by itself.
-const SMALLEST_PIECE: f64 = 1.0 / 512.0;
+/// Off the line the depth bounds the pieces by itself. No power of two, which halves of a panel would
+/// meet but for rounding.
+const SMALLEST_PIECE: f64 = 1.0 / 500.0;
 
 /// Nor in a long panel below this length (C), a tenth of the shortest wave at least.
 const SHORTEST_PIECE: f64 = 0.004;

@@ -10,6 +10,8 @@
 //! C the compliance of both bodies together (sum of e_b times each body's f; a half-space's f is
 //! 2 K0(k|y|), whose row sums are 2 pi / k) and p^ the Fourier transform int p cos(k x) dx.
 
+mod check;
 mod solver;
 
+pub use check::gaps;
 pub use solver::{Compliance, ContactSettings, ContactSolution, reference, solve};

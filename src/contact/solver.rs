@@ -1,3 +1,4 @@
+use super::check::check;
 use crate::base::{Error, Panels, Result, Wavenumbers, linear};
 use crate::kernels::strip;
 use nalgebra::{DMatrix, DVector};
@@ -26,6 +27,9 @@ pub struct ContactSettings {
     pub tolerance: f64,
     /// Iterations after which it gives up.
     pub max_iterations: usize,
+    /// How far a solution may break the laws of contact: penetration and gap under the pressure
+    /// (C^2 / (2 R)), and pull (p0).
+    pub soundness: f64,
 }
 
 /// Contact pressure of the whole line.
@@ -78,7 +82,8 @@ pub(super) const SCREEN_POINTS: usize = 12;
 /// a sqrt(1 + 2 b / S) does, so the update is Newton's and converges quadratically.
 ///
 /// # Errors
-/// [`Error::NotConverged`] when the boundary does not settle.
+/// [`Error::NotConverged`] when the boundary does not settle, [`Error::Unsound`] when the solution breaks a
+/// law of contact.
 pub fn solve(
     compliance: &Compliance,
     axis: &Panels,
@@ -88,15 +93,20 @@ pub fn solve(
     // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
+    let checked = |attempt: &ContactSettings| {
+        let solution = solve_once(compliance, &remainders, axis, attempt)?;
+        check(compliance, &remainders, axis, &solution, settings.soundness)?;
+        Ok(solution)
+    };
     for _ in 0..3 {
-        let answer = solve_once(compliance, &remainders, axis, &attempt);
+        let answer = checked(&attempt);
         if answer.is_ok() {
             return answer;
         }
         attempt.spacing *= 2.0;
     }
     attempt.max_iterations = settings.max_iterations;
-    solve_once(compliance, &remainders, axis, &attempt)
+    checked(&attempt)
 }
 
 /// [`solve`] with the spacing as it is given.
@@ -357,9 +367,9 @@ pub(super) fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> 
         let rows: Vec<Range<usize>> = matrix
             .column_iter()
             .map(|column| {
-                let mut strong = (0..n).filter(|i| column[*i].abs() > limit);
-                let first = strong.next().unwrap_or(0);
-                first..strong.next_back().map_or(first, |last| last + 1)
+                let strong = |value: &f64| value.abs() > limit;
+                let first = column.iter().position(strong).unwrap_or(0);
+                first..n - column.iter().rev().position(strong).unwrap_or(n - first)
             })
             .collect();
         let used = || rows.iter().enumerate().filter(|(_, r)| !r.is_empty());

@@ -110,16 +110,21 @@ pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
     PI * half_width * j0
 }
 
-/// -int ln|x - x'| p(x') dx' at x = `t` `half_width`, |t| <= 1, of each mode with unit coefficient,
-/// into `out`; returns that of the mode 1/sqrt(1 - t^2).
+/// -int ln|x - x'| p(x') dx' at x = `t` `half_width` of each mode with unit coefficient, into `out`;
+/// returns that of the mode 1/sqrt(1 - t^2).
 ///
 /// From -int ln|t - t'| T_n(t') / sqrt(1 - t'^2) dt' = (pi / n) T_n(t), pi ln 2 for n = 0
 /// (Mason and Handscomb 2003, section 9.5.2) and sqrt(1-t^2) U_n = (T_n - T_(n+2)) / (2 sqrt(1-t^2)).
+/// For |t| > 1 and even n it is (pi / n) w^n, w = |t| - sqrt(t^2 - 1), and pi ln(2 w) for n = 0:
+/// the expansion of the logarithm in powers of w.
 pub fn logarithmic(half_width: f64, t: f64, out: &mut [f64]) -> f64 {
     let angle = t.clamp(-1.0, 1.0).acos();
+    let outside = t.abs().max(1.0) + (t * t - 1.0).max(0.0).sqrt();
     let potential = |n: usize| {
         if n == 0 {
-            PI * (LN_2 - half_width.ln())
+            PI * (LN_2 - (half_width * outside).ln())
+        } else if outside > 1.0 {
+            PI / n as f64 * outside.powi(-(n as i32))
         } else {
             PI / n as f64 * (n as f64 * angle).cos()
         }
@@ -197,6 +202,13 @@ mod tests {
             let got: f64 = out.iter().zip(MODES).map(|(o, c)| o * c).sum();
             let want = integrate(a, &MODES, |x| (k * x).cos());
             assert!((got - want).abs() < 1e-10, "k = {k}: {got} {want}");
+        }
+        for t in [1.02, 3.0] {
+            let mut out = [0.0; 3];
+            logarithmic(a, t, &mut out);
+            let got: f64 = out.iter().zip(MODES).map(|(o, c)| o * c).sum();
+            let want = integrate(a, &MODES, |s| -(t * a - s).ln());
+            assert!((got - want).abs() < 1e-10, "at {t}: {got} {want}");
         }
         let mut out = [0.0; 3];
         logarithmic(a, 0.4, &mut out);

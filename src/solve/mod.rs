@@ -315,6 +315,7 @@ impl SceneAnswer {
                 "contact_nodes": solved.pressure.axis().len(),
                 "edge": edge::edge_strength(solved),
                 "edge_residual": solved.contact.residual,
+                "condition": solved.condition,
                 "bodies_shared": solved.bodies_shared(),
                 "work": {
                     "done": self.work.done,

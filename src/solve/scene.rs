@@ -1,6 +1,6 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
-use crate::base::{Result, Wavenumbers};
+use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer, Resolution};
 use crate::case::Case;
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
@@ -17,6 +17,15 @@ pub const GAMMA: f64 = 2.03;
 pub fn guilbault_psi(nu: f64) -> f64 {
     1.29 - (0.08 - 0.5 * nu) / (1.0 - nu)
 }
+
+/// How many tolerances a solution may break the laws of contact by. Answers over the whole range of
+/// scenes stay within 2 (docs/robustness.md), errors of the solver exceed it by far.
+const SOUNDNESS: f64 = 5.0;
+
+/// Condition number of a body's equations up to which rounding does not matter: it costs this many
+/// units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
+/// (docs/robustness.md).
+const WORST_CONDITION: f64 = 1e7;
 
 /// One of the two bodies of a [`Scene`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -99,6 +108,8 @@ pub struct SolvedScene {
     pub contact: ContactSolution,
     /// Seconds of set-up and contact.
     pub seconds: Seconds,
+    /// The largest condition number of the bodies' equations, see [`Layer::condition`].
+    pub condition: f64,
     bodies: Vec<(Body, Vec<Layer>)>,
     compliances: Vec<nalgebra::DMatrix<f64>>,
 }
@@ -107,7 +118,8 @@ impl SolvedScene {
     /// Solves a scene at the resolution that its tolerance asks for.
     ///
     /// # Errors
-    /// [`crate::base::Error::NotConverged`] when the contact does not settle.
+    /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
+    /// breaks a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
         Self::with_resolution(scene, &Resolution::for_tolerance(scene.tolerance))
     }
@@ -115,7 +127,8 @@ impl SolvedScene {
     /// Solves a scene at a given resolution.
     ///
     /// # Errors
-    /// [`crate::base::Error::NotConverged`] when the contact does not settle.
+    /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
+    /// breaks a law of contact or the equations are ill-conditioned.
     pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
         let start = Instant::now();
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
@@ -135,6 +148,19 @@ impl SolvedScene {
                 (body, layers)
             })
             .collect();
+        let condition = bodies
+            .iter()
+            .flat_map(|(_, layers)| layers)
+            .map(|l| l.condition)
+            .fold(1.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
+        if condition > WORST_CONDITION {
+            return Err(Error::Unsound {
+                law: "the condition number of the end faces' equations",
+                value: condition,
+                limit: WORST_CONDITION,
+                remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
+            });
+        }
         let compliances: Vec<_> = (0..coarse.len())
             .map(|i| {
                 let of = |body: usize| &bodies[body.min(bodies.len() - 1)].1[i].compliance;
@@ -147,6 +173,7 @@ impl SolvedScene {
             spacing: resolution.spacing,
             tolerance: 1e-2 * scene.tolerance,
             max_iterations: 40,
+            soundness: SOUNDNESS * scene.tolerance.max(Resolution::FINEST),
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
         let contact = contact::solve(&compliance, &axis, &settings)?;
@@ -160,6 +187,7 @@ impl SolvedScene {
             pressure,
             contact,
             seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
+            condition,
             bodies,
             compliances,
         })
@@ -191,9 +219,19 @@ impl SolvedScene {
         Field::new(body, &self.wavenumbers, layers, &self.pressure, gamma, tolerance)
     }
 
+    /// The compliance of both bodies together.
+    fn compliance(&self) -> Compliance<'_> {
+        Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances }
+    }
+
+    /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of `places`,
+    /// distances from x = 0 in half-widths of each node.
+    pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
+        contact::gaps(&self.compliance(), self.pressure.axis(), &self.contact, places)
+    }
+
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
     pub fn approach(&self, depth: f64) -> f64 {
-        let compliance = Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances };
-        self.contact.approach - contact::reference(&compliance, &self.contact, depth)
+        self.contact.approach - contact::reference(&self.compliance(), &self.contact, depth)
     }
 }

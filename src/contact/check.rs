@@ -1,0 +1,177 @@
+//! What a solved contact has to satisfy, evaluated away from the points where it was solved.
+
+use super::solver::{Compliance, ContactSolution, Remainder, SCREEN, SCREEN_POINTS, remainders};
+use crate::base::{Error, Panels, Result};
+use crate::kernels::strip;
+
+use std::f64::consts::PI;
+
+/// Places of the check across the contact, in half-widths of each node: none of them is a
+/// collocation point.
+const PLACES: [f64; 6] = [0.31, 0.73, 0.97, 1.05, 1.3, 2.2];
+
+/// Distance from the line's end (C) within which half-widths that follow their neighbours leave gaps
+/// that say nothing about the rest.
+const END: f64 = 0.2;
+
+/// Refuses a solution that breaks a law of contact by more than `tolerance`: the bodies touch where
+/// they press and do not penetrate elsewhere (in units of C^2 / (2 R)), and the pressure does not pull
+/// (p0).
+///
+/// # Errors
+/// [`Error::Unsound`] with the law that is broken worst.
+pub(super) fn check(
+    compliance: &Compliance,
+    remainders: &[Remainder],
+    axis: &Panels,
+    solution: &ContactSolution,
+    tolerance: f64,
+) -> Result<()> {
+    let mut broken: [(f64, &'static str); 3] = [
+        (0.0, "the deepest penetration (C^2 / 2 R)"),
+        (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
+        (0.0, "the largest pull (p0)"),
+    ];
+    let end = axis.breaks()[axis.panel_count()];
+    let counted = axis.nodes().partition_point(|y| *y <= end - END).max(1);
+    for (t, gaps) in PLACES.iter().zip(gaps_of(compliance, remainders, axis, solution, &PLACES)) {
+        for (gap, coefficients) in gaps[..counted].iter().zip(&solution.coefficients) {
+            // A number that is none must not pass as small.
+            let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+            broken[0].0 = worse(broken[0].0, -gap);
+            if *t < 1.0 && !coefficients.is_empty() {
+                broken[1].0 = worse(broken[1].0, *gap);
+                broken[2].0 = worse(broken[2].0, -strip::pressure(1.0, coefficients, *t));
+            }
+        }
+    }
+    let worst = broken.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("three laws");
+    if worst.0 <= tolerance {
+        return Ok(());
+    }
+    Err(Error::Unsound {
+        law: worst.1,
+        value: worst.0,
+        limit: tolerance,
+        remedy: "another [accuracy] tolerance or another model may do".into(),
+    })
+}
+
+/// Gaps between the bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places` from
+/// x = 0 in half-widths of each node: a row of all nodes for each place. Where a node carries no
+/// pressure its half-width is the one that its neighbours led to.
+pub fn gaps(
+    compliance: &Compliance,
+    axis: &Panels,
+    solution: &ContactSolution,
+    places: &[f64],
+) -> Vec<Vec<f64>> {
+    gaps_of(compliance, &remainders(compliance, axis.len(), 0.0), axis, solution, places)
+}
+
+/// [`gaps`] with the compliance's remainders at hand.
+fn gaps_of(
+    compliance: &Compliance,
+    remainders: &[Remainder],
+    axis: &Panels,
+    solution: &ContactSolution,
+    places: &[f64],
+) -> Vec<Vec<f64>> {
+    let n = axis.len();
+    let mut gaps = vec![vec![0.0; n]; places.len()];
+    let most = solution.coefficients.iter().map(Vec::len).max().unwrap_or(0);
+    let mut modes = vec![0.0; most];
+    let mut amplitudes = vec![0.0; n];
+    let fine = compliance.wavenumbers.fine();
+    for ((&k, w), remainder) in fine.nodes().iter().zip(fine.weights()).zip(remainders) {
+        amplitudes.fill(0.0);
+        for j in remainder.nodes.clone() {
+            let rows = remainder.rows[j].clone();
+            let c = &solution.coefficients[j];
+            if rows.is_empty() || c.is_empty() {
+                continue;
+            }
+            let own = &mut modes[..c.len()];
+            strip::transforms(solution.half_widths[j], k, own);
+            let transform: f64 = own.iter().zip(c).map(|(t, c)| t * c).sum();
+            let entries = remainder.matrix.column(j);
+            for i in rows {
+                amplitudes[i] += entries[i] * transform;
+            }
+        }
+        for (row, t) in gaps.iter_mut().zip(places) {
+            for i in remainder.nodes.clone() {
+                row[i] += w / (PI * PI) * amplitudes[i] * (k * t * solution.half_widths[i]).cos();
+            }
+        }
+    }
+    for (row, &t) in gaps.iter_mut().zip(places) {
+        for (i, gap) in row.iter_mut().enumerate() {
+            let (a, c) = (solution.half_widths[i], &solution.coefficients[i]);
+            let own = &mut modes[..c.len()];
+            strip::logarithmic(a, t, own);
+            *gap += 2.0 / PI * own.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
+            for q in 0..SCREEN_POINTS {
+                let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
+                let offset = a * (t - angle.cos());
+                let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
+                let p = angle.sin() * strip::pressure(1.0, c, angle.cos());
+                *gap += 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64 * p;
+            }
+            *gap += (a * t).powi(2) - solution.approach;
+        }
+    }
+    gaps
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::Wavenumbers;
+    use crate::contact::{ContactSettings, solve};
+    use nalgebra::DMatrix;
+
+    /// Endless bodies: C(k) = 2 pi / k.
+    fn compliance(numbers: &Wavenumbers, n: usize) -> Vec<DMatrix<f64>> {
+        let one = |k: &f64| DMatrix::identity(n, n) * (2.0 * PI / k);
+        numbers.coarse().nodes().iter().map(one).collect()
+    }
+
+    #[test]
+    fn what_breaks_a_law_is_refused() {
+        let axis = Panels::new(vec![0.0, 2.0, 4.0], 3);
+        let breaks = (0..=24).map(|i| if i == 0 { 0.0 } else { 1e-3 * 1.6f64.powi(i) });
+        let numbers = Wavenumbers::new(Panels::new(breaks.collect(), 5), 2.0);
+        let matrices = compliance(&numbers, axis.len());
+        let compliance = Compliance { wavenumbers: &numbers, matrices: &matrices };
+        let settings = ContactSettings {
+            modes: 3,
+            spacing: 0.1,
+            tolerance: 1e-6,
+            max_iterations: 20,
+            soundness: 1e-3,
+        };
+        let solution = solve(&compliance, &axis, &settings).unwrap();
+        // Hertz: no gap within, and x sqrt(x^2 - 1) - ln(x + sqrt(x^2 - 1)) beyond.
+        let places = [0.2, 0.8, 1.1, 3.0];
+        for (x, row) in places.iter().zip(gaps(&compliance, &axis, &solution, &places)) {
+            let root = (x * x - 1.0).max(0.0).sqrt();
+            let want = if *x < 1.0 { 0.0 } else { x * root - (x + root).ln() };
+            assert!(row.iter().all(|gap| (gap - want).abs() < 1e-4), "at {x}: {row:?}, {want}");
+        }
+
+        let all = remainders(&compliance, axis.len(), 0.0);
+        let law = |change: &dyn Fn(&mut ContactSolution)| {
+            let mut changed = solution.clone();
+            change(&mut changed);
+            match check(&compliance, &all, &axis, &changed, 1e-3) {
+                Err(Error::Unsound { law, value, .. }) => (law, value),
+                other => panic!("{other:?}"),
+            }
+        };
+        assert!(law(&|s| s.approach += 0.01).0.contains("penetration"));
+        assert!(law(&|s| s.approach -= 0.01).0.contains("gap"));
+        assert!(law(&|s| s.coefficients[1] = vec![0.5, -2.0]).1 > 0.5);
+        assert_eq!(law(&|s| s.half_widths[0] = f64::NAN).1, f64::INFINITY);
+    }
+}

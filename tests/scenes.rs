@@ -1,0 +1,405 @@
+//! Scenes from all over the legal range and beyond it: each ends in an answer that keeps every law of
+//! contact, or in an error that says why.
+//!
+//! `EDGELINE_SCENES=20000 cargo test --release --test scenes -- --nocapture` runs as many and writes
+//! `results/scenes/`; without the variable some hundred of them run, and nothing is written.
+
+use edgeline::base::{Error, Material, StressTensor};
+use edgeline::body::{EdgeModel, Resolution};
+use edgeline::case::{Case, Factors};
+use edgeline::kernels::strip;
+use edgeline::solve::{Scene, SolvedScene};
+use edgeline::stress::BodyKind;
+use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+use std::fmt::Write;
+use std::path::Path;
+use std::time::Instant;
+
+/// Scenes when the environment does not say.
+const FEW: usize = 400;
+
+/// Every so many answers are compared with those of a finer grid.
+const COMPARED: usize = 97;
+
+/// Distance from the contact's end within which pressure and gap are not looked at (C).
+const CORNER: f64 = 0.2;
+
+/// Distance from the contact's end within which stresses of the loose tolerances are less accurate (C).
+const NEAR: f64 = 0.5;
+
+/// Drawn numbers of a scene.
+const DIMENSIONS: usize = 8;
+
+/// One place of the sequence.
+#[derive(Debug, Clone)]
+struct Draw {
+    index: usize,
+    model: EdgeModel,
+    factors: Factors,
+    roller: Material,
+    block: Material,
+    radius_m: f64,
+    tolerance: f64,
+}
+
+impl Draw {
+    /// The `index`-th point of Kronecker's sequence for the powers of the root of
+    /// x^(d + 1) = x + 1, which leaves no large holes in any dimension.
+    fn new(index: usize) -> Self {
+        let mut root = 1.5f64;
+        for _ in 0..60 {
+            root = (1.0 + root).powf(1.0 / (DIMENSIONS + 1) as f64);
+        }
+        let u: [f64; DIMENSIONS] = std::array::from_fn(|d| {
+            (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract()
+        });
+        let log = |u: f64, low: f64, high: f64| low * (high / low).powf(u);
+        // A quarter flush, a quarter next to it, and ratios of all sizes.
+        let length_ratio = match u[1] {
+            u if u < 0.25 => 1.0,
+            u if u < 0.5 => 1.0 - log(4.0 * u - 1.0, 1e-9, 0.1),
+            u => log(2.0 * u - 1.0, 0.01, 1.0),
+        };
+        let young_pa = 210e9;
+        Self {
+            index,
+            model: EdgeModel::ALL[index % EdgeModel::ALL.len()],
+            factors: Factors {
+                load: log(u[2], 1e-9, 0.1),
+                slenderness: log(u[0], 0.5, 1e3),
+                length_ratio,
+            },
+            roller: Material { young_pa, poisson: 0.499 * u[3] },
+            block: Material { young_pa: young_pa * log(u[5], 1e-3, 1e3), poisson: 0.499 * u[4] },
+            radius_m: log(u[6], 1e-6, 10.0),
+            tolerance: match u[7] {
+                u if u < 0.8 => 1e-2,
+                u if u < 0.97 => 5e-3,
+                _ => 1e-3,
+            },
+        }
+    }
+
+    /// The case as its file gives it, if it may.
+    fn case(&self) -> edgeline::base::Result<Case> {
+        let mut case =
+            Case::from_factors("scene", self.radius_m, self.roller, self.block, self.factors);
+        case.tolerance = self.tolerance;
+        Case::parse(&case.to_toml(), Path::new("scene.toml"))
+    }
+
+    fn row(&self) -> String {
+        format!(
+            "{},{},{:e},{:e},{:e},{:e},{:e},{:e},{:e},{:e}",
+            self.index,
+            self.model.name(),
+            self.factors.load,
+            self.factors.slenderness,
+            self.factors.length_ratio,
+            self.roller.poisson,
+            self.block.poisson,
+            self.block.young_pa / self.roller.young_pa,
+            self.radius_m,
+            self.tolerance
+        )
+    }
+}
+
+/// What a law is broken by, each in units of what is allowed.
+const LAWS: [(&str, f64); 12] = [
+    ("load (relative)", 1e-9),
+    ("pull (tolerances)", 1.0),
+    ("gap under the pressure (tolerances)", 3.0),
+    ("penetration (tolerances)", 1.0),
+    ("mirror symmetry (p0)", 1e-9),
+    ("exchange of the bodies (p0)", 1e-8),
+    ("units (relative)", 2e-12),
+    ("inputs 1e-12 off (p0)", 1e-6),
+    ("traction on the end faces (tolerances)", 8.0),
+    ("approach against the load", 0.0),
+    ("finer grid (tolerances)", 3.0),
+    ("finer grid near the end (tolerances)", 12.0),
+];
+
+/// What became of a scene.
+enum Outcome {
+    Answer { broken: [f64; LAWS.len()], iterations: usize, condition: f64, seconds: f64 },
+    Error(&'static str, String),
+}
+
+fn kind(error: &Error) -> &'static str {
+    match error {
+        Error::File { .. } | Error::Value { .. } => "refused",
+        Error::NotConverged { .. } => "not converged",
+        Error::Unsound { .. } => "unsound",
+        _ => "other",
+    }
+}
+
+/// The larger one; a NaN wins.
+fn worse(a: f64, b: f64) -> f64 {
+    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
+}
+
+fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
+    a.components().into_iter().zip(b.components()).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+}
+
+/// Distances from the end of the line at which pressures are compared.
+fn stations(half_length: f64) -> Vec<f64> {
+    let inside = [CORNER, 0.4, 0.8, 1.6, 4.0, 20.0].into_iter().filter(|s| *s < half_length);
+    inside.map(|s| half_length - s).chain([0.0, 0.4 * half_length]).collect()
+}
+
+/// Largest difference of the pressures of two solutions, relative to p0 and to the pressure.
+fn pressures_apart(a: &SolvedScene, b: &SolvedScene) -> f64 {
+    let mut off = 0.0;
+    for y in stations(a.scene.half_length) {
+        for x in [0.0, 0.5] {
+            let (p, q) = (a.pressure.at(x, y), b.pressure.at(x, y));
+            off = worse(off, (p - q).abs() / q.max(1.0));
+        }
+    }
+    off
+}
+
+/// Largest differences of two solutions' stresses at places in the depth of both bodies: those at
+/// least [`NEAR`] from the contact's end, and the others.
+fn stresses_apart(a: &SolvedScene, b: &SolvedScene) -> [f64; 2] {
+    let mut off = [0.0; 2];
+    for kind in BodyKind::ALL {
+        let (left, right) = (a.field(kind), b.field(kind));
+        for y in stations(a.scene.half_length).into_iter().chain([a.scene.half_length]) {
+            for z in [0.3, 0.8, 2.0] {
+                for (s, t) in left.at(y, z, &[0.0]).iter().zip(right.at(y, z, &[0.0])) {
+                    let near = usize::from((a.scene.half_length - y).hypot(z) < NEAR);
+                    off[near] = worse(off[near], apart(s, &t));
+                }
+            }
+        }
+    }
+    off
+}
+
+fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
+    let case = draw.case()?;
+    let scene = Scene::new(&case, draw.model, None);
+    let start = Instant::now();
+    let solved = SolvedScene::new(&scene)?;
+    let seconds = start.elapsed().as_secs_f64();
+    let half_length = scene.half_length;
+    let axis = solved.pressure.axis();
+    let mut broken = [0.0; LAWS.len()];
+
+    let line = |j: usize| {
+        let (a, c) = solved.pressure.at_node(j);
+        axis.weights()[j] * strip::cumulative(a, c, a)
+    };
+    let carried: f64 = (0..axis.len()).map(line).sum();
+    broken[0] = (carried / (0.5 * PI * half_length) - 1.0).abs();
+
+    let places = [0.2, 0.55, 0.9, 1.1, 1.4, 2.5, 5.0];
+    let outside = |j: &usize| half_length - axis.nodes()[*j] >= CORNER;
+    for (t, gaps) in places.into_iter().zip(solved.gaps(&places)) {
+        for j in (0..axis.len()).filter(outside) {
+            let (a, c) = solved.pressure.at_node(j);
+            let pressed = c.iter().any(|c| *c != 0.0);
+            broken[1] = worse(broken[1], -strip::pressure(a, c, a * t) / draw.tolerance);
+            broken[3] = worse(broken[3], -gaps[j] / draw.tolerance);
+            if t < 1.0 && pressed {
+                broken[2] = worse(broken[2], gaps[j].abs() / draw.tolerance);
+            }
+        }
+    }
+
+    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies) {
+        let field = solved.field(kind);
+        let (y, z) = (0.7 * half_length, 0.6);
+        let [s, t] = [field.at(y, z, &[0.4])[0], field.at(-y, z, &[-0.4])[0]];
+        let mirrored = StressTensor { xz: -t.xz, yz: -t.yz, ..t };
+        broken[4] = worse(broken[4], apart(&s, &mirrored));
+        if draw.model == EdgeModel::QuarterSpace {
+            // On the face itself zero is put in; so near to it the field says what it is.
+            let y = body.half * (1.0 - 2e-9);
+            for z in [0.2, 0.7, 2.0, 6.0] {
+                for s in field.at(y, z, &[0.0, 0.7, 1.5]) {
+                    let traction = worse(s.yy.abs(), worse(s.xy.abs(), s.yz.abs()));
+                    broken[8] = worse(broken[8], traction / draw.tolerance);
+                }
+            }
+        }
+    }
+
+    if draw.factors.length_ratio == 1.0 {
+        let mut exchanged = scene.clone();
+        exchanged.bodies.swap(0, 1);
+        broken[5] = pressures_apart(&solved, &SolvedScene::new(&exchanged)?);
+    }
+
+    // Other units of length and of stress.
+    let (length, stress) = (7.3, 3.1);
+    let mut other = case.clone();
+    other.roller.radius_m *= length;
+    other.roller.length_m *= length;
+    other.block.length_m *= length;
+    other.roller.material.young_pa *= stress;
+    other.block.material.young_pa *= stress;
+    other.force_n *= length * length * stress;
+    let rescaled = Scene::new(&other, draw.model, None);
+    // A scene has twelve digits of the case: the same ones, but where rounding takes the other side.
+    if rescaled != scene {
+        broken[7] = pressures_apart(&solved, &SolvedScene::new(&rescaled)?);
+    }
+    for (a, b) in scene.bodies.iter().zip(rescaled.bodies) {
+        let pairs =
+            [(a.half, b.half), (a.share, b.share), (scene.half_length, rescaled.half_length)];
+        let off = pairs.into_iter().map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, worse);
+        broken[6] = worse(broken[6], off);
+    }
+
+    // One part in 10^12 of every number.
+    if draw.index % 8 < EdgeModel::ALL.len() {
+        let mut other = scene.clone();
+        other.half_length *= 1.0 + 1e-12;
+        for body in &mut other.bodies {
+            body.half *= 1.0 + 1e-12;
+            body.nu *= 1.0 + 1e-12;
+        }
+        broken[7] = worse(broken[7], pressures_apart(&solved, &SolvedScene::new(&other)?));
+    }
+
+    // More load, more approach.
+    let mut heavier = case.clone();
+    heavier.force_n *= 1.05;
+    let pressed = SolvedScene::new(&Scene::new(&heavier, draw.model, None))?;
+    let approach = |case: &Case, solved: &SolvedScene| {
+        let (c, r) = (case.hertz().c_m, case.roller.radius_m);
+        solved.approach(r / c) * c * c
+    };
+    let more = approach(&heavier, &pressed) - approach(&case, &solved);
+    broken[9] = if more > 0.0 { 0.0 } else { 1.0 };
+
+    if compare {
+        let tolerance = if draw.tolerance > 2e-3 { 1e-3 } else { 1e-4 };
+        let finer = Resolution::for_tolerance(tolerance);
+        let finer = SolvedScene::with_resolution(&scene, &finer)?;
+        let [far, near] = stresses_apart(&solved, &finer);
+        broken[10] = worse(pressures_apart(&solved, &finer), far) / draw.tolerance;
+        broken[11] = near / draw.tolerance;
+    }
+    let (iterations, condition) = (solved.contact.iterations, solved.condition);
+    Ok(Outcome::Answer { broken, iterations, condition, seconds })
+}
+
+/// Answers and errors of scenes of one kind.
+#[derive(Default)]
+struct Group {
+    counts: BTreeMap<&'static str, usize>,
+    worst: [f64; LAWS.len()],
+    iterations: usize,
+    condition: f64,
+    seconds: f64,
+}
+
+#[test]
+fn every_scene_ends_in_a_sound_answer_or_says_why() {
+    let wanted = std::env::var("EDGELINE_SCENES").ok();
+    let count = wanted.as_ref().map_or(FEW, |n| n.parse().expect("a number of scenes"));
+    // The few are spread over the many.
+    let stride = if wanted.is_some() { 1 } else { 53 };
+    let outcomes: Vec<(Draw, Outcome)> = (0..count)
+        .into_par_iter()
+        .map(|i| {
+            let draw = Draw::new(stride * i);
+            let outcome = std::panic::catch_unwind(|| run(&draw, i % COMPARED == 0));
+            let outcome = match outcome {
+                Ok(Ok(outcome)) => outcome,
+                Ok(Err(error)) => Outcome::Error(kind(&error), error.to_string()),
+                Err(_) => Outcome::Error("panic", String::new()),
+            };
+            (draw, outcome)
+        })
+        .collect();
+
+    let mut groups: BTreeMap<(usize, &str, &str), Group> = BTreeMap::new();
+    let (mut errors, mut wrong) = (String::new(), String::new());
+    for (draw, outcome) in &outcomes {
+        let slenderness = match draw.factors.slenderness {
+            s if s < 5.0 => "0.5 to 5",
+            s if s < 50.0 => "5 to 50",
+            _ => "50 to 1000",
+        };
+        let ends = match draw.factors.length_ratio {
+            1.0 => "flush",
+            l if l > 0.9 => "nearly flush",
+            _ => "longer block",
+        };
+        let model = EdgeModel::ALL.iter().position(|m| *m == draw.model).expect("one of all");
+        let group = groups.entry((model, slenderness, ends)).or_default();
+        let name = match outcome {
+            Outcome::Answer { broken, iterations, condition, seconds } => {
+                group.condition = group.condition.max(*condition);
+                group.iterations = group.iterations.max(*iterations);
+                group.seconds = group.seconds.max(*seconds);
+                let mut sound = true;
+                for (i, (law, limit)) in LAWS.iter().enumerate() {
+                    group.worst[i] = worse(group.worst[i], broken[i]);
+                    if broken[i].is_nan() || broken[i] > *limit {
+                        sound = false;
+                        writeln!(wrong, "{},{law},{:.2e}", draw.row(), broken[i]).unwrap();
+                    }
+                }
+                if sound { "answer" } else { "wrong" }
+            }
+            Outcome::Error(kind, message) => {
+                let message = message.replace('"', "'").replace('\n', " ");
+                writeln!(errors, "{},{kind},\"{message}\"", draw.row()).unwrap();
+                kind
+            }
+        };
+        *group.counts.entry(name).or_default() += 1;
+    }
+    const NAMES: [&str; 6] = ["answer", "refused", "not converged", "unsound", "wrong", "panic"];
+    let laws: Vec<&str> = LAWS.iter().map(|l| l.0).collect();
+    let mut table = format!(
+        "model,S_l,ends,{},{},iterations,condition,seconds\n",
+        NAMES.join(","),
+        laws.join(",")
+    );
+    for ((model, slenderness, ends), group) in &groups {
+        let counts: Vec<String> =
+            NAMES.iter().map(|n| group.counts.get(n).unwrap_or(&0).to_string()).collect();
+        let worst: Vec<String> = group.worst.iter().map(|w| format!("{w:.1e}")).collect();
+        writeln!(
+            table,
+            "{},{slenderness},{ends},{},{},{},{:.1e},{:.3}",
+            EdgeModel::ALL[*model].name(),
+            counts.join(","),
+            worst.join(","),
+            group.iterations,
+            group.condition,
+            group.seconds
+        )
+        .unwrap();
+    }
+    println!("{table}");
+    let total = |name: &str| -> usize { groups.values().filter_map(|g| g.counts.get(name)).sum() };
+    for name in NAMES {
+        println!("{name}: {}", total(name));
+    }
+    println!("{wrong}");
+    if wanted.is_some() {
+        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/scenes");
+        std::fs::create_dir_all(&folder).unwrap();
+        let head = "index,model,W,S_l,L_r,nu_roller,nu_block,E_block/E_roller,radius_m,tolerance";
+        std::fs::write(folder.join("outcomes.csv"), table).unwrap();
+        std::fs::write(folder.join("errors.csv"), format!("{head},outcome,message\n{errors}"))
+            .unwrap();
+    }
+    assert_eq!(groups.values().map(|g| g.counts.values().sum::<usize>()).sum::<usize>(), count);
+    assert_eq!(total("panic") + total("wrong"), 0, "{wrong}");
+    // Errors are for what cannot be answered, not a way out.
+    assert!(total("answer") * 10 > count * 6, "{errors}");
+}
