@@ -138,6 +138,18 @@ fn kind(error: &Error) -> &'static str {
     }
 }
 
+/// Why, without the file's place and without the value at hand.
+fn reason(message: &str) -> String {
+    let tail = message.split_once("is not valid: ").map_or(message, |(_, tail)| tail);
+    let words = tail.split(';').next().unwrap_or(tail).split(' ');
+    let mut after_becomes = false;
+    let words = words.map(|word| {
+        let value = std::mem::replace(&mut after_becomes, word == "becomes");
+        if value { "a value" } else { word }
+    });
+    words.collect::<Vec<_>>().join(" ").replace('"', "'").replace('\n', " ")
+}
+
 /// The larger one; a NaN wins.
 fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
@@ -324,7 +336,8 @@ fn every_scene_ends_in_a_sound_answer_or_says_why() {
         .collect();
 
     let mut groups: BTreeMap<(usize, &str, &str), Group> = BTreeMap::new();
-    let (mut errors, mut wrong) = (String::new(), String::new());
+    let mut reasons: BTreeMap<(&str, String), (usize, usize)> = BTreeMap::new();
+    let mut wrong = String::new();
     for (draw, outcome) in &outcomes {
         let slenderness = match draw.factors.slenderness {
             s if s < 5.0 => "0.5 to 5",
@@ -354,8 +367,8 @@ fn every_scene_ends_in_a_sound_answer_or_says_why() {
                 if sound { "answer" } else { "wrong" }
             }
             Outcome::Error(kind, message) => {
-                let message = message.replace('"', "'").replace('\n', " ");
-                writeln!(errors, "{},{kind},\"{message}\"", draw.row()).unwrap();
+                let found = reasons.entry((*kind, reason(message))).or_insert((0, draw.index));
+                found.0 += 1;
                 kind
             }
         };
@@ -390,13 +403,16 @@ fn every_scene_ends_in_a_sound_answer_or_says_why() {
         println!("{name}: {}", total(name));
     }
     println!("{wrong}");
+    let mut errors = String::from("outcome,scenes,first,reason\n");
+    for ((kind, reason), (scenes, first)) in &reasons {
+        writeln!(errors, "{kind},{scenes},{first},\"{reason}\"").unwrap();
+    }
+    println!("{errors}");
     if wanted.is_some() {
         let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("results/scenes");
         std::fs::create_dir_all(&folder).unwrap();
-        let head = "index,model,W,S_l,L_r,nu_roller,nu_block,E_block/E_roller,radius_m,tolerance";
         std::fs::write(folder.join("outcomes.csv"), table).unwrap();
-        std::fs::write(folder.join("errors.csv"), format!("{head},outcome,message\n{errors}"))
-            .unwrap();
+        std::fs::write(folder.join("errors.csv"), &errors).unwrap();
     }
     assert_eq!(groups.values().map(|g| g.counts.values().sum::<usize>()).sum::<usize>(), count);
     assert_eq!(total("panic") + total("wrong"), 0, "{wrong}");

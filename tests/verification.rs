@@ -279,6 +279,42 @@ fn compliance_is_reciprocal() {
     }
 }
 
+/// Rounding costs a few hundred units of 1e-16 at most, however fine the grading, long the body, near
+/// its end, small the wavenumber or incompressible the material.
+#[test]
+fn equations_of_the_end_faces_are_well_conditioned() {
+    let usual = Resolution::for_tolerance(1e-3);
+    let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
+        Body::new(slenderness, half, nu, EdgeModel::QuarterSpace, 1.0, resolution)
+            .layer(k)
+            .condition
+    };
+    let say = |what: &str, values: Vec<f64>| {
+        println!(
+            "{what}: {}",
+            values.iter().map(|v| format!("{v:.3}")).collect::<Vec<_>>().join(" ")
+        );
+        for value in values {
+            assert!((1.0..1e3).contains(&value), "{what}: {value:e}");
+        }
+    };
+    let wavenumbers = [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0, 10.0, 100.0];
+    say("k", wavenumbers.map(|k| at(5.0, 5.0, 0.3, &usual, k)).to_vec());
+    say("k, longer", wavenumbers.map(|k| at(5.0, 10.0, 0.3, &usual, k)).to_vec());
+    say("nu", [0.0, 0.1, 0.3, 0.45, 0.499].map(|nu| at(5.0, 5.0, nu, &usual, 0.1)).to_vec());
+    let graded = |corner: f64| Resolution { corner, ..usual.clone() };
+    let corners = [0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
+    say("corner", corners.map(|c| at(5.0, 5.0, 0.3, &graded(c), 1.0)).to_vec());
+    let ratio = |ratio: f64| Resolution { ratio, ..usual.clone() };
+    say("ratio", [3.0, 2.0, 1.5, 1.3].map(|r| at(5.0, 5.0, 0.3, &ratio(r), 1.0)).to_vec());
+    let reach = |face_reach: f64| Resolution { face_reach, ..usual.clone() };
+    say("depth", [7.0, 14.0, 28.0, 56.0].map(|r| at(5.0, 5.0, 0.3, &reach(r), 0.1)).to_vec());
+    let lengths = [0.5, 5.0, 50.0, 500.0];
+    say("length", lengths.map(|s| at(s, s, 0.3, &usual, 0.25 / s)).to_vec());
+    let ledges = [1e-8, 1e-4, 1e-2, 0.1, 1.0, 100.0];
+    say("ledge", ledges.map(|l| at(5.0, 5.0 + l, 0.3, &usual, 0.1)).to_vec());
+}
+
 /// No pressure gives work back, whatever weight the images have: contacts have one solution. (It takes
 /// images that push, psi < -1, to break that; the field's own range is 0 to 2.)
 #[test]
