@@ -28,7 +28,7 @@ pub enum Error {
         remedy: String,
     },
     /// Reading or writing failed.
-    #[error("cannot {action} {}: {source}", path.display())]
+    #[error("cannot {action} {}: {source}{}", path.display(), remedy(source))]
     Io {
         /// What was tried, e.g. `read` or `create`.
         action: &'static str,
@@ -36,6 +36,18 @@ pub enum Error {
         path: PathBuf,
         /// What the system said.
         source: std::io::Error,
+    },
+    /// A request that would take more memory than there is.
+    #[error("{what} takes about {} GiB of memory, but only {free_gib:.1} GiB are free; {remedy}", gib(*needed_gib))]
+    Memory {
+        /// What was asked for.
+        what: String,
+        /// Estimate of what it takes (GiB).
+        needed_gib: f64,
+        /// What is free (GiB).
+        free_gib: f64,
+        /// What to ask for instead.
+        remedy: String,
     },
     /// The contact solver did not converge.
     #[error(
@@ -97,6 +109,28 @@ pub enum Error {
         /// What to install.
         remedy: String,
     },
+}
+
+/// What to do about a failure of the system, where the system's own words leave that open.
+fn remedy(source: &std::io::Error) -> &'static str {
+    use std::io::ErrorKind;
+    match source.kind() {
+        ErrorKind::StorageFull | ErrorKind::QuotaExceeded => {
+            "; make room there, or give a folder on another disk, then run again"
+        }
+        ErrorKind::FileTooLarge => "; allow larger files (ulimit -f), then run again",
+        ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => {
+            "; give another path, or see to the permissions there"
+        }
+        ErrorKind::NotFound => "; check the path, and that nobody removed it meanwhile",
+        ErrorKind::IsADirectory => "; give a file, not a folder",
+        _ => "",
+    }
+}
+
+/// A size in words: a few digits, however large it is.
+fn gib(size: f64) -> String {
+    if size < 1e4 { format!("{size:.1}") } else { format!("{size:.1e}") }
 }
 
 /// The library's result.

@@ -1,6 +1,9 @@
-//! Files that appear whole or not at all, in folders that were checked before the long run.
+//! Files that appear whole or not at all, in folders that were checked before the long run, and
+//! text files that are read up to a limit.
 
 use super::{Error, Result};
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 
 /// Makes the folder `path` and checks that files can be written there, so that a bad path fails
@@ -12,12 +15,14 @@ pub fn prepare_folder(path: &Path) -> Result<()> {
     let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
     std::fs::create_dir_all(path).map_err(io("create the folder"))?;
     let probe = path.join(format!(".probe-{}", std::process::id()));
-    std::fs::write(&probe, []).map_err(io("write into the folder"))?;
-    std::fs::remove_file(&probe).map_err(io("write into the folder"))
+    // Not empty: a full disk still takes names.
+    let written = std::fs::write(&probe, [0; 4096]);
+    let removed = std::fs::remove_file(&probe);
+    written.and(removed).map_err(io("write into the folder"))
 }
 
 /// Writes a file under another name and moves it into place: readers, and runs that go on where
-/// this one was stopped, never see half of it.
+/// this one was stopped, never see half of it, not even after a power cut.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be written; what was there before is left as it was.
@@ -25,12 +30,105 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".part-{}", std::process::id()));
     let part = path.with_file_name(name);
-    let written = std::fs::write(&part, content).and_then(|()| std::fs::rename(&part, path));
+    let written =
+        write_through(&part, content.as_ref()).and_then(|()| std::fs::rename(&part, path));
     written.map_err(|source| {
         // What is left of the attempt is in the way; the first error is the one to report.
         let _ = std::fs::remove_file(&part);
         Error::Io { action: "write", path: path.to_path_buf(), source }
     })
+}
+
+/// Writes files that belong together into `folder`, which this process has locked, by name. The last
+/// one says that all are there: nothing is changed until all have been written elsewhere, and it is
+/// taken away first and put in place last.
+///
+/// # Errors
+/// [`Error::Io`] when one cannot be written; unless the moving itself failed, what was there before
+/// is left as it was.
+///
+/// # Panics
+/// When there are no files.
+pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Result<()> {
+    let (last, _) = files.last().expect("a set has files");
+    let last = folder.join(last);
+    let parts = folder.join(PARTS);
+    let failed = |action, path: &Path| {
+        let path = path.to_path_buf();
+        move |source| Error::Io { action, path, source }
+    };
+    let write = || {
+        remove(&parts)
+            .and_then(|()| std::fs::create_dir(&parts))
+            .map_err(failed("write", &parts))?;
+        for (i, (name, content)) in files.iter().enumerate() {
+            let part = parts.join(i.to_string());
+            write_through(&part, content).map_err(failed("write", &folder.join(name)))?;
+        }
+        remove(&last).map_err(failed("replace", &last))?;
+        for (i, (name, _)) in files.iter().enumerate() {
+            let path = folder.join(name);
+            std::fs::rename(parts.join(i.to_string()), &path).map_err(failed("write", &path))?;
+        }
+        Ok(())
+    };
+    let written = write();
+    // If it failed, that is the error to report.
+    let _ = remove(&parts);
+    written
+}
+
+/// The folder in which a set of files is written before any is put in its place.
+const PARTS: &str = ".parts";
+
+/// Removes what a run that was killed in `folder` had not put in its place yet. The caller has locked
+/// the folder.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be removed.
+pub(super) fn remove_parts(folder: &Path) -> Result<()> {
+    let parts = folder.join(PARTS);
+    remove(&parts).map_err(|source| Error::Io { action: "remove", path: parts, source })
+}
+
+/// Removes a file or a folder, if it is there.
+fn remove(path: &Path) -> std::io::Result<()> {
+    let is_folder = std::fs::symlink_metadata(path).is_ok_and(|m| m.is_dir());
+    let removed =
+        if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+    match removed {
+        Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a file down to the disk: else its name could outlive a power cut that its content does not.
+fn write_through(path: &Path, content: &[u8]) -> std::io::Result<()> {
+    let mut file = File::create(path)?;
+    file.write_all(content)?;
+    file.sync_data()
+}
+
+/// Reads a text file of at most `most` bytes; `remedy` says what to give instead.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read, [`Error::File`] when it is larger or not UTF-8.
+pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
+    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(io)?;
+    // A file can be longer than it says: a pipe, a device, one that grows.
+    file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
+    let refuse = |message: String| Error::File {
+        path: path.to_path_buf(),
+        line: None,
+        message,
+        remedy: remedy.to_string(),
+    };
+    if bytes.len() as u64 > most {
+        return Err(refuse(format!("is larger than {} MiB", most >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_string()))
 }
 
 #[cfg(test)]
@@ -59,5 +157,38 @@ mod tests {
         assert!(write_whole(&file.join("below"), "").is_err());
         assert!(write_whole(folder.path(), "").is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_set_that_cannot_be_written_leaves_the_one_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let set = |text: &str| ["a", "b", "done"].map(|name| (name, text.as_bytes().to_vec()));
+        write_set(folder.path(), &set("one")).unwrap();
+        let mut two = set("two").to_vec();
+        two.insert(2, ("nowhere/c", Vec::new()));
+        write_set(folder.path(), &two).unwrap_err();
+        let text = |name: &str| std::fs::read_to_string(folder.path().join(name)).unwrap();
+        assert_eq!(["a", "b", "done"].map(text), ["one"; 3].map(String::from));
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 3);
+        // A place that cannot be taken leaves the set without the file that calls it complete.
+        std::fs::remove_file(folder.path().join("b")).unwrap();
+        std::fs::create_dir(folder.path().join("b")).unwrap();
+        write_set(folder.path(), &set("two")).unwrap_err();
+        assert!(!folder.path().join("done").exists());
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
+    fn what_is_too_large_or_no_text_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("f");
+        std::fs::write(&path, vec![b'x'; 2 << 20]).unwrap();
+        assert_eq!(read_text(&path, 2 << 20, "").unwrap().len(), 2 << 20);
+        let said = read_text(&path, 1 << 20, "give less").unwrap_err().to_string();
+        assert!(said.ends_with("is larger than 1 MiB; give less"), "{said}");
+        std::fs::write(&path, [0xff]).unwrap();
+        assert!(read_text(&path, 9, "").unwrap_err().to_string().contains("UTF-8"));
+        // What has no end is not waited for.
+        assert!(read_text(Path::new("/dev/zero"), 9, "").is_err());
     }
 }

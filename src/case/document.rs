@@ -1,34 +1,18 @@
 //! TOML with places: every value knows its key and its line, so that every complaint can name them.
 
-use crate::base::{Error, Result};
-use std::io::Read;
+use super::Case;
+use crate::base::{self, Error, Result};
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Larger files are refused unread: no case or study file comes near.
-const MAX_BYTES: u64 = 1 << 20;
-
-/// Reads a text file.
+/// Reads the text of a case, study or sweep file.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String> {
-    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
-    let mut bytes = Vec::new();
-    let file = std::fs::File::open(path).map_err(io)?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut bytes).map_err(io)?;
-    let refuse = |message: &str| Error::File {
-        path: path.to_path_buf(),
-        line: None,
-        message: message.into(),
-        remedy: "give a case or study file in TOML".into(),
-    };
-    if bytes.len() as u64 > MAX_BYTES {
-        return Err(refuse("is larger than 1 MiB"));
-    }
-    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text"))
+    base::read_text(path, Case::MAX_BYTES, "give a case or study file in TOML")
 }
 
 /// A parsed file that can say where things stand in it.

@@ -72,6 +72,9 @@ impl Factors {
 }
 
 impl Case {
+    /// Larger case and study files are refused unread: none comes near (bytes).
+    pub const MAX_BYTES: u64 = 1 << 20;
+
     /// The accuracy that is asked for where a case does not say, as a fraction of p0.
     pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 

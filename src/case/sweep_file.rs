@@ -7,7 +7,7 @@
 use super::Case;
 use super::case_file::{GivenLoad, given_load};
 use super::document::{Document, Entry, edit_distance, read_text};
-use crate::base::{Error, Result};
+use crate::base::{self, Error, Result, check_memory};
 use std::path::Path;
 
 /// Parameters of a case, as the case file names them, and their short names for columns.
@@ -35,6 +35,34 @@ const BOTH: [(&str, [&str; 2]); 2] = [
 /// More rows than this are a slip of the pen.
 const MAX_ROWS: usize = 10_000_000;
 
+/// Larger tables are refused unread: [`MAX_ROWS`] rows are smaller (bytes).
+const MAX_TABLE_BYTES: u64 = 4 << 30;
+
+/// Memory that a row takes while a sweep runs, and each of its numbers in lists (bytes).
+const ROW_BYTES: f64 = 300.0;
+const CELL_BYTES: f64 = 8.0;
+
+/// Memory that a table takes in units of its file's size: cells of some six letters become texts.
+const TABLE_GROWTH: f64 = 15.0;
+
+/// Refuses `rows` (of `columns` numbers, where they stand side by side) that are too many; `error` makes the
+/// error of the words for what is wrong and what to do.
+///
+/// # Errors
+/// The error made, or [`Error::Memory`] where the number of rows alone is legal.
+fn check_rows(rows: f64, columns: usize, error: impl Fn(String, &str) -> Error) -> Result<()> {
+    let bytes = rows * (ROW_BYTES + CELL_BYTES * columns as f64);
+    let remedy = "give fewer values, or several files";
+    if rows > MAX_ROWS as f64 {
+        let gib = bytes / (1u64 << 30) as f64;
+        let message = format!(
+            "the lists combine to more than {MAX_ROWS} rows: {rows:.2e} rows would take about {gib:.1e} GiB"
+        );
+        return Err(error(message, remedy));
+    }
+    check_memory(&format!("a sweep of {rows} rows"), bytes, remedy)
+}
+
 /// Many cases that differ in some parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
@@ -51,6 +79,8 @@ pub struct Sweep {
 enum Rows {
     /// Every combination of the columns' levels; the last column varies fastest.
     Grid(Vec<Vec<f64>>),
+    /// The columns' values side by side, as many of each; one row where there is no column.
+    Side(Vec<Vec<f64>>),
     /// Texts, row by row.
     List(Vec<Vec<String>>),
 }
@@ -76,11 +106,13 @@ impl Sweep {
             }
             return Sweep::parse(&read_text(path)?, path);
         }
-        let text = std::fs::read_to_string(path).map_err(|source| Error::Io {
-            action: "read",
-            path: path.to_path_buf(),
-            source,
-        })?;
+        let size = std::fs::metadata(path).map_or(0, |m| m.len());
+        check_memory(
+            &format!("the table {}", path.display()),
+            size as f64 * TABLE_GROWTH,
+            "split it into several files",
+        )?;
+        let text = base::read_text(path, MAX_TABLE_BYTES, "split it into several files")?;
         Sweep::parse_csv(&text, path, base)
     }
 
@@ -134,7 +166,7 @@ impl Sweep {
             ("load", &["force_n"], &[]),
             ("accuracy", &["tolerance"], &[]),
         ];
-        let mut varying: Vec<(usize, usize, Vec<f64>)> = Vec::new();
+        let mut varying: Vec<(usize, usize, Levels)> = Vec::new();
         let mut side: Option<usize> = None;
         for (name, keys, more) in tables {
             let Some(entry) = root.get(name) else {
@@ -151,7 +183,7 @@ impl Sweep {
                 let index = parameter(&format!("{name}.{key}"));
                 match levels(&entry)? {
                     Levels::One(value) => sweep.fixed[index] = Some(value),
-                    Levels::Many(values) => {
+                    values => {
                         if side_by_side && *side.get_or_insert(values.len()) != values.len() {
                             let reason = format!(
                                 "it has {} values and a list before it has {}, but lists are read \
@@ -171,25 +203,20 @@ impl Sweep {
         }
         // The order of the file is the order of the columns.
         varying.sort_by_key(|v| v.0);
+        let rows = match side {
+            Some(count) => count as f64,
+            None => varying.iter().map(|(_, _, values)| values.len() as f64).product(),
+        };
+        let cells = if side_by_side { varying.len() } else { 0 };
+        check_rows(rows, cells, |message, remedy| root.error(message, remedy))?;
         let mut all = Vec::new();
         for (_, index, values) in varying {
             sweep.columns.push(PARAMETERS[index].0.to_string());
             sweep.sets.push(vec![index]);
-            all.push(values);
+            all.push(values.expand());
         }
-        sweep.rows = if side_by_side {
-            let count = side.unwrap_or(1);
-            Rows::List((0..count).map(|i| all.iter().map(|v| text_of(v[i])).collect()).collect())
-        } else {
-            Rows::Grid(all)
-        };
-        match sweep.count() {
-            Some(n) if n <= MAX_ROWS => Ok(sweep),
-            _ => Err(root.error(
-                format!("the lists combine to more than {MAX_ROWS} rows"),
-                "give fewer values, or several files",
-            )),
-        }
+        sweep.rows = if side_by_side { Rows::Side(all) } else { Rows::Grid(all) };
+        Ok(sweep)
     }
 
     /// Parses a CSV table with a column for each parameter and optionally a column `name`.
@@ -293,6 +320,7 @@ impl Sweep {
     fn count(&self) -> Option<usize> {
         match &self.rows {
             Rows::Grid(levels) => levels.iter().try_fold(1usize, |n, l| n.checked_mul(l.len())),
+            Rows::Side(columns) => Some(columns.first().map_or(1, Vec::len)),
             Rows::List(rows) => Some(rows.len()),
         }
     }
@@ -316,6 +344,7 @@ impl Sweep {
     pub fn cells(&self, i: usize) -> Vec<String> {
         match &self.rows {
             Rows::List(rows) => rows[i].clone(),
+            Rows::Side(columns) => columns.iter().map(|values| text_of(values[i])).collect(),
             Rows::Grid(levels) => {
                 let mut rest = i;
                 let mut cells: Vec<String> = levels
@@ -431,6 +460,42 @@ fn values_of(case: &Case, by_load: bool) -> [Option<f64>; PARAMETERS.len()] {
 enum Levels {
     One(f64),
     Many(Vec<f64>),
+    Range { low: f64, high: f64, count: usize, logarithmic: bool },
+}
+
+impl Levels {
+    fn len(&self) -> usize {
+        match self {
+            Levels::One(_) => 1,
+            Levels::Many(values) => values.len(),
+            Levels::Range { count, .. } => *count,
+        }
+    }
+
+    /// The values, one by one.
+    fn expand(self) -> Vec<f64> {
+        let (low, high, count, logarithmic) = match self {
+            Levels::One(value) => return vec![value],
+            Levels::Many(values) => return values,
+            Levels::Range { low, high, count, logarithmic } => (low, high, count, logarithmic),
+        };
+        let value = |i: usize| {
+            let t = i as f64 / (count - 1) as f64;
+            // The ends are met to the last digit.
+            if i == 0 {
+                low
+            } else if i == count - 1 {
+                high
+            } else if logarithmic {
+                // Thirteen digits: a decade's middle is to be a round number.
+                let value = (low.ln() + t * (high / low).ln()).exp();
+                format!("{value:.12e}").parse().expect("a formatted number")
+            } else {
+                low + t * (high - low)
+            }
+        };
+        (0..count).map(value).collect()
+    }
 }
 
 /// A number, a list of numbers, or a range `{ from, to, count, spacing }`.
@@ -467,23 +532,7 @@ fn levels(entry: &Entry) -> Result<Levels> {
             _ => return Err(entry.refuse("it is not known", "write \"linear\" or \"log\"")),
         },
     };
-    let last = count - 1.0;
-    let value = |i: usize| {
-        let t = i as f64 / last;
-        // The ends are met to the last digit.
-        if i == 0 {
-            low
-        } else if i as f64 == last {
-            high
-        } else if logarithmic {
-            // Thirteen digits: a decade's middle is to be a round number.
-            let value = (low.ln() + t * (high / low).ln()).exp();
-            format!("{value:.12e}").parse().expect("a formatted number")
-        } else {
-            low + t * (high - low)
-        }
-    };
-    Ok(Levels::Many((0..count as usize).map(value).collect()))
+    Ok(Levels::Range { low, high, count: count as usize, logarithmic })
 }
 
 #[cfg(test)]

@@ -4,11 +4,11 @@ use super::cold::ColdRuns;
 use super::fem::FemOptions;
 use super::solve::{checked_tolerance, edge_model};
 use super::study::{FemSource, Records, command_line, now, processor, progress_bar, solve_all};
-use super::{Outcome, print};
-use crate::base::{Error, Result, prepare_folder};
+use super::{Outcome, print, say};
+use crate::base::{Error, Lock, Result, read_text};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
-use crate::fem::Driver;
+use crate::fem::{self, Driver};
 use crate::report::bench as files;
 use crate::report::verdict::{duration, rounded};
 use crate::study::bench::{self, Against, BEST, Bench, FemMeshes, Machine, Origin, Setup, Speedup};
@@ -81,7 +81,8 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
             built_in.cases().cloned().collect()
         } else if let Some(case) = of_study.filter(|_| !path.exists()) {
             vec![case.clone()]
-        } else if std::fs::read_to_string(path).is_ok_and(|text| text.contains("[factors]")) {
+        } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| text.contains("[factors]"))
+        {
             Study::read(path)?.cases().cloned().collect()
         } else {
             vec![Case::find(path)?]
@@ -122,7 +123,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         .map(checked_tolerance)
         .collect::<Result<_>>()?;
     let records = Records::read(arguments.reference.as_deref())?;
-    prepare_folder(&arguments.out)?;
+    let _lock = Lock::claim(&arguments.out)?;
     let drivers: Vec<(f64, Driver)> = match arguments.fem {
         FemSource::Recorded => Vec::new(),
         FemSource::Live => descending(&arguments.sizes)
@@ -159,11 +160,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         },
     );
     bar.finish_and_clear();
+    fem::check_interrupt()?;
     let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
     for (case, point) in points() {
         if let Some(message) = &point.err {
             let name = &case.case.name;
-            eprintln!("warning: {name} by {} at {}: {message}", point.source, point.setting);
+            say(&format!("warning: {name} by {} at {}: {message}", point.source, point.setting));
         }
     }
     let failed = points().filter(|(_, p)| p.origin == Origin::Model).all(|(_, p)| p.err.is_some());

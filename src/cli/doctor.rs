@@ -45,7 +45,9 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         if imports.is_some() && chosen.is_none() {
             chosen = Some(path.clone());
         }
-        interpreters.push(json!({"path": path, "source": source, "imports": imports}));
+        interpreters.push(
+            json!({"path": path.display().to_string(), "source": source, "imports": imports}),
+        );
     }
     let blas = chosen.as_deref().and_then(tools::blas);
     let fast_blas = blas.as_deref().is_none_or(|name| !tools::is_slow_blas(name));
@@ -57,7 +59,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         "fem": {
             "ready": fem_ready,
             "gmsh": gmsh,
-            "interpreter": chosen,
+            "interpreter": chosen.as_ref().map(|path| path.display().to_string()),
             "interpreters": interpreters,
             "mpirun": mpirun,
             "blas": blas,

@@ -1,6 +1,6 @@
 //! `edgeline fem`: one case by finite elements, now.
 
-use super::{Outcome, Progress, print, print_json};
+use super::{Outcome, Progress, print, print_json, say};
 use crate::base::{Result, prepare_folder};
 use crate::case::Case;
 use crate::fem::{Driver, Linear, MeshResult, Settings};
@@ -107,12 +107,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     prepare_folder(&arguments.out)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
     let interpreter = driver.interpreter();
-    eprintln!(
+    say(&format!(
         "using {} ({}), dolfinx {}",
         interpreter.path.display(),
         interpreter.source,
         interpreter.versions.get("dolfinx").map_or("unknown", String::as_str),
-    );
+    ));
     let progress = Progress::new();
     let result = driver.run(&case, &arguments.out, &|text| progress.say(&case.name, text));
     progress.finish();

@@ -2,7 +2,7 @@
 
 use super::study::{What, built_in_baseline, built_in_gates};
 use super::{Outcome, print, print_json};
-use crate::base::{Error, Result, prepare_folder, write_whole};
+use crate::base::{Error, Lock, Result, write_set, write_whole};
 use crate::report::gates;
 use crate::report::study_files::pretty;
 use crate::report::table::read;
@@ -51,7 +51,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         None => built_in_baseline()?,
     };
     let out = &arguments.what.out;
-    prepare_folder(out)?;
+    let _lock = Lock::claim(out)?;
     let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
     let run = arguments.what.run(&study, if timed { 5 } else { 0 })?;
 
@@ -61,9 +61,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let outcomes = gate::evaluate(&run, &thresholds, Some(&accepted));
     let markdown = gates::markdown(&outcomes);
     let json = gates::json(&outcomes);
-    write_whole(&out.join("gates.json"), pretty(&json))?;
-    write_whole(&out.join("gates.md"), &markdown)?;
-    write_whole(&out.join("junit.xml"), gates::junit(&outcomes))?;
+    let files = [
+        ("gates.md", markdown.clone().into_bytes()),
+        ("junit.xml", gates::junit(&outcomes).into_bytes()),
+        ("gates.json", pretty(&json).into_bytes()),
+    ];
+    write_set(out, &files)?;
     if let Some(path) = std::env::var_os("GITHUB_STEP_SUMMARY") {
         append(Path::new(&path), &markdown)?;
     }

@@ -5,7 +5,7 @@ mod cold;
 mod doctor;
 mod fem;
 mod gate;
-mod points;
+pub mod points;
 mod progress;
 mod report;
 mod solve;
@@ -76,10 +76,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(Outcome::Done) => ExitCode::SUCCESS,
         Ok(Outcome::GateFailed) => ExitCode::from(1),
         Err(e) => {
-            eprintln!("error: {e}");
+            say(&format!("error: {e}"));
             ExitCode::from(2)
         }
     }
+}
+
+/// Says something on standard error. That it cannot be said is no reason to fail.
+fn say(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{text}");
 }
 
 /// Prints to standard output. That nobody reads on (`edgeline ... | head -1`) is no error: the

@@ -1,11 +1,18 @@
 //! The file of points that `edgeline solve --points` takes.
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, check_memory, read_text};
 use crate::case::Case;
 use crate::solve::Point;
 use crate::stress::BodyKind;
 use serde::Deserialize;
 use std::path::Path;
+
+/// Larger files are refused unread.
+const MAX_BYTES: u64 = 8 << 30;
+
+/// Memory that a point and its stress take (bytes), and the length of its row in the file.
+const POINT_BYTES: f64 = 500.0;
+const ROW_BYTES: f64 = 40.0;
 
 /// One row of the file.
 #[derive(Deserialize)]
@@ -21,9 +28,24 @@ struct Row {
 /// `case`.
 ///
 /// # Errors
-/// [`Error::File`] with the line of the first row that is not such a point.
+/// [`Error::File`] with the line of the first row that is not such a point, [`Error::Memory`] when
+/// the points need more memory than there is, [`Error::Io`].
 pub(super) fn read(path: &Path, case: &Case) -> Result<Vec<Point>> {
-    let text = crate::report::table::read(path)?;
+    let size = std::fs::metadata(path).map_or(0, |m| m.len());
+    check_memory(
+        &format!("what {} asks for", path.display()),
+        size as f64 * (1.0 + POINT_BYTES / ROW_BYTES),
+        "split the file",
+    )?;
+    parse(&read_text(path, MAX_BYTES, "split the file")?, path, case)
+}
+
+/// Parses the text of a file of points; `path` is only named in errors.
+///
+/// # Errors
+/// As `--points`: [`Error::File`] with the line of the first row that is not a point in a body of
+/// `case`.
+pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
     let refuse = |line: Option<u64>, message: String| Error::File {
         path: path.to_path_buf(),
         line: line.map(|l| l as usize),

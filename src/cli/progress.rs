@@ -29,7 +29,7 @@ impl Progress {
                 bar.set_prefix(what.to_string());
                 bar.set_message(doing.to_string());
             }
-            None => eprintln!("{what}: {doing}"),
+            None => super::say(&format!("{what}: {doing}")),
         }
     }
 

@@ -1,9 +1,9 @@
 //! `edgeline report`: the page of a finished run again.
 
 use super::{Outcome, print};
-use crate::base::Result;
+use crate::base::{Lock, Result};
+use crate::report::page;
 use crate::report::study_files::StudyFiles;
-use crate::report::{page, plots};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -19,7 +19,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let files = StudyFiles::read(&arguments.run)?;
-    plots::write(&files, &arguments.run.join("plots"))?;
+    let _lock = Lock::claim(&arguments.run)?;
     page::write(&files, &arguments.run)?;
     print(&format!("wrote report.html, report.md and plots into {}\n", arguments.run.display()))?;
     Ok(Outcome::Done)

@@ -1,7 +1,7 @@
 //! `edgeline solve`: one case by one edge model.
 
 use super::{Outcome, print, print_json};
-use crate::base::{Error, Result, prepare_folder};
+use crate::base::{Error, Lock, Result, check_memory};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::report::{field, solution};
@@ -89,12 +89,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.points {
         options.points = super::points::read(path, &case)?;
     }
-    prepare_folder(&arguments.out)?;
-    if arguments.field {
-        write_field(&case, &options, &arguments)?;
-    }
+    let _lock = Lock::claim(&arguments.out)?;
+    let fields = if arguments.field { fields(&case, &options, &arguments)? } else { Vec::new() };
     let found = solve(&case, &options)?;
-    solution::write(&found, &options, &arguments.out)?;
+    solution::write(&found, &options, fields, &arguments.out)?;
     if arguments.json {
         print_json(&solution::summary(&found))?;
     } else {
@@ -103,9 +101,13 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     Ok(Outcome::Done)
 }
 
-/// Writes the fields. They come from a solution of their own, which leaves the other files as they
-/// are without them.
-fn write_field(case: &Case, options: &Options, arguments: &Arguments) -> Result<()> {
+/// Memory that a point of the field takes (bytes): its stress, four mirror images of it, and their
+/// place in the files.
+const FIELD_POINT_BYTES: f64 = 400.0;
+
+/// The files of the fields, by name. They come from a solution of their own, which leaves the other
+/// files as they are without them.
+fn fields(case: &Case, options: &Options, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
             key: "--field-points".into(),
@@ -113,9 +115,16 @@ fn write_field(case: &Case, options: &Options, arguments: &Arguments) -> Result<
             reason: "a field has three directions".into(),
             remedy: "give for example 33,49,41".into(),
         })?;
+    let [nx, ny, nz] = counts.map(|n| n as f64);
+    // Both bodies; the block may have half as many points again on its ledge.
+    check_memory(
+        &format!("a field of {nx} x {ny} x {nz} points a quarter of a body"),
+        2.5 * nx * ny * nz * FIELD_POINT_BYTES,
+        "give fewer --field-points",
+    )?;
     let points = field::points(case, counts);
     let options = Options { points, curves: Vec::new(), ..options.clone() };
-    field::write(case, &solve(case, &options)?, counts, &arguments.out).map(|_| ())
+    field::contents(case, &solve(case, &options)?, counts)
 }
 
 /// The tolerance if it is within its legal range.

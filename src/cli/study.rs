@@ -3,13 +3,13 @@
 use super::cold::ColdRuns;
 use super::fem::{FemOptions, Size};
 use super::solve::edge_model;
-use super::{Outcome, print, print_json};
-use crate::base::{Error, Result, prepare_folder};
+use super::{Outcome, print, print_json, say};
+use crate::base::{Error, Lock, Result, check_memory};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::fem;
+use crate::report::page;
 use crate::report::study_files::{Context, StudyFiles};
-use crate::report::{page, plots};
 use crate::solve::{Options, Solution, solve_group};
 use crate::study::bench::{Bench, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
@@ -119,6 +119,9 @@ impl Records {
     }
 }
 
+/// Memory that a case's curves take by one model or FEM, with their rows in the tables (bytes).
+const CASE_BYTES: f64 = 2e6;
+
 /// Parses a distance in units of C.
 fn distance(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
@@ -147,6 +150,12 @@ impl What {
     /// Runs `study` with live FEM in folders below the one for the results.
     pub(super) fn run(&self, study: &Study, repeats: usize) -> Result<StudyRun> {
         let folder = &self.out;
+        let (cases, models) = (study.cases().count(), self.methods().len());
+        check_memory(
+            &format!("a study of {cases} cases by {models} models"),
+            CASE_BYTES * (cases * (models + 1)) as f64,
+            "give fewer cases or models, or take a sweep",
+        )?;
         let live = match self.fem {
             FemSource::Live => {
                 Some(Live::new(self.options.settings(self.size.size), self.fem_repeats)?)
@@ -193,10 +202,12 @@ impl What {
             },
         );
         bar.finish_and_clear();
+        // What was asked to stop is no study, even though every case has a row.
+        fem::check_interrupt()?;
         for case in &run.cases {
             for m in &case.methods {
                 if let Err(message) = &m.answer {
-                    eprintln!("warning: {} by {}: {message}", case.case.name, m.method);
+                    say(&format!("warning: {} by {}: {message}", case.case.name, m.method));
                 }
             }
         }
@@ -222,7 +233,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let date = now();
     let study = arguments.what.find_study()?;
     let out = &arguments.what.out;
-    prepare_folder(out)?;
+    let _lock = Lock::claim(out)?;
     let run = arguments.what.run(&study, arguments.repeats)?;
     if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.answer.is_err()) {
         return Err(first_failure(&run));
@@ -256,9 +267,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
             speedups: &speedups,
         },
     );
-    files.write(out)?;
-    plots::write(&files, &out.join("plots"))?;
-    page::write(&files, out)?;
+    page::write_run(&files, out)?;
     if arguments.json {
         print_json(&files.summary)?;
     } else {
@@ -313,7 +322,7 @@ pub(super) fn command_line() -> String {
             format!("'{}'", a.replace('\'', "'\\''"))
         }
     };
-    let rest = std::env::args().skip(1).map(quoted);
+    let rest = std::env::args_os().skip(1).map(|a| quoted(a.to_string_lossy().into_owned()));
     std::iter::once("edgeline".to_string()).chain(rest).collect::<Vec<_>>().join(" ")
 }
 

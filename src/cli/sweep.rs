@@ -93,14 +93,16 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     });
     bar.finish_and_clear();
     done?;
-    let failed = file.into_inner().unwrap_or_else(|e| e.into_inner()).failed();
+    let file = file.into_inner().unwrap_or_else(|e| e.into_inner());
+    file.finish()?;
+    let failed = file.failed();
 
     let solving = solving.elapsed().as_secs_f64();
     let rate = if rows > kept { (rows - kept) as f64 / solving } else { 0.0 };
     if arguments.json {
         print_json(&json!({
-            "file": arguments.file,
-            "out": arguments.out,
+            "file": arguments.file.display().to_string(),
+            "out": arguments.out.display().to_string(),
             "method": settings.method.name(),
             "rows_of_sweep": sweep.len(),
             "rows": rows,

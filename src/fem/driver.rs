@@ -6,14 +6,12 @@
 //! tells whether what is there belongs to the same request.
 
 use super::jit_cache;
-use super::lock::Lock;
 use super::process::{Stage, kill_marked};
-use super::result::{
-    FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines, wanted_curves,
-    wanted_lines,
-};
+use super::result::{MeshResult, MeshSummary, ResultTexts, wanted_curves, wanted_lines};
 use super::tools::{self, Interpreter};
-use crate::base::{Error, Result, prepare_folder, write_whole};
+use crate::base::{
+    Error, Lock, Result, check_memory, prepare_folder, read_text, write_set, write_whole,
+};
 use crate::case::Case;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -43,7 +41,20 @@ impl Linear {
             Linear::Iterative => "iterative",
         }
     }
+
+    /// Memory that solving for `unknowns` takes (bytes): the growth that was measured, docs/fem.md.
+    fn bytes(self, unknowns: f64) -> f64 {
+        match self {
+            Linear::Direct => 3.0 * GIB * (unknowns / 250e3).powf(1.3),
+            Linear::Iterative => 1.5 * GIB * (unknowns / 250e3),
+        }
+    }
 }
+
+/// Unknowns on a mesh of relative size 1, at least; they grow as size^-2.7.
+const UNKNOWNS_OF_SIZE_1: f64 = 200e3;
+
+const GIB: f64 = (1u64 << 30) as f64;
 
 /// How finite-element runs are done.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,6 +124,20 @@ impl Driver {
         if settings.ranks == 0 {
             return refuse("ranks", "0".into(), "at least one process has to run".into(), "give 1");
         }
+        // A mesh that cannot be solved on any machine like this one is not even made.
+        check_memory(
+            &format!("a mesh of size {}", settings.size),
+            settings.linear.bytes(UNKNOWNS_OF_SIZE_1 * settings.size.powf(-2.7)),
+            "take a coarser mesh with a larger --size",
+        )?;
+        if settings.gmsh.to_str().is_none() {
+            return refuse(
+                "gmsh",
+                settings.gmsh.display().to_string(),
+                "a path that is not UTF-8 cannot be handed on".into(),
+                "give another path to the program",
+            );
+        }
         tools::require(&settings.gmsh, "--gmsh")?;
         if settings.ranks > 1 {
             tools::require(Path::new("mpirun"), "the PATH")?;
@@ -144,7 +169,7 @@ impl Driver {
             path: folder.to_path_buf(),
             source,
         })?;
-        let lock = Lock::take(folder)?;
+        let lock = Lock::claim(folder)?;
         // Whoever was here before is dead; so are its children, unless the kernel cannot tell.
         kill_marked(folder);
 
@@ -166,10 +191,11 @@ impl Driver {
         run.mesh(progress)?;
         run.solve(progress)?;
         let result = run.result(&run.work)?;
+        let mut files = Vec::new();
         for name in ["curves.csv", "pressure.csv", "mesh.json", "fem.json"] {
-            let content = read(&run.work.join(name))?;
-            write_whole(&folder.join(name), content)?;
+            files.push((name, read(&run.work.join(name))?.into_bytes()));
         }
+        write_set(folder, &files)?;
         write_whole(&folder.join("request.key"), key)?;
         jit_cache::keep(&run.cache());
         if !self.settings.keep {
@@ -228,15 +254,26 @@ impl Run<'_> {
 
     fn mesh(&self, progress: &dyn Fn(&str)) -> Result<()> {
         let done = self.work.join("mesh.json");
-        if read_json(&done).is_ok() {
+        let read = || read(&done).and_then(|text| MeshSummary::parse(&text, &done));
+        if let Ok(meshes) = read() {
             progress("meshes are there already");
-            return Ok(());
+            return self.check_memory(meshes);
         }
         progress("meshing");
         let python = Command::new(&self.driver.interpreter.path);
         let timeout = self.driver.settings.mesh_timeout;
         self.stage("mesh", python, timeout, "--mesh-timeout")?;
-        read_json(&done).map(|_| ())
+        self.check_memory(read()?)
+    }
+
+    /// Refuses meshes whose equations would not fit into memory.
+    fn check_memory(&self, meshes: MeshSummary) -> Result<()> {
+        let unknowns = meshes.unknowns as f64;
+        check_memory(
+            &format!("solving for {unknowns:.1e} unknowns"),
+            self.driver.settings.linear.bytes(unknowns),
+            "take a coarser mesh with a larger --size, or --linear iterative",
+        )
     }
 
     fn solve(&self, progress: &dyn Fn(&str)) -> Result<()> {
@@ -309,31 +346,12 @@ impl Run<'_> {
 
     /// Reads and checks the result in `folder`.
     fn result(&self, folder: &Path) -> Result<MeshResult> {
-        let path = folder.join("fem.json");
-        let value = read_json(&path)?;
-        let hertz = self.case.hertz();
-        for (pointer, wanted) in [("/hertz/c_m", hertz.c_m), ("/hertz/p0_pa", hertz.p0_pa)] {
-            let got = value.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN);
-            if (got / wanted - 1.0).abs() > 1e-9 || got.is_nan() {
-                let message = format!("{pointer} = {got:e}, but the case has {wanted:e}");
-                return Err(nonsense(&path, None, message));
-            }
-        }
-        let summary: FemSummary = serde_json::from_value(value)
-            .map_err(|e| nonsense(&path, None, format!("is not a FEM summary: {e}")))?;
-        summary.check(&path)?;
-        if summary.ranks != self.driver.settings.ranks {
-            let message = format!("was computed by {} processes", summary.ranks);
-            return Err(nonsense(&path, None, message));
-        }
-        let path = folder.join("curves.csv");
-        let curves: Vec<_> =
-            parse_curves(&read(&path)?, &path)?.into_iter().map(|(_, curve)| curve).collect();
-        let path = folder.join("pressure.csv");
-        let lines: Vec<_> =
-            parse_lines(&read(&path)?, &path)?.into_iter().map(|(_, line)| line).collect();
-        check_points(self.case, &curves, &lines, folder)?;
-        Ok(MeshResult { size: self.driver.settings.size, summary, curves, lines })
+        let [summary, curves, pressure] =
+            ["fem.json", "curves.csv", "pressure.csv"].map(|name| read(&folder.join(name)));
+        let (summary, curves, pressure) = (summary?, curves?, pressure?);
+        let texts = ResultTexts { summary: &summary, curves: &curves, pressure: &pressure };
+        let settings = &self.driver.settings;
+        MeshResult::parse(self.case, settings.size, settings.ranks, texts, folder)
     }
 }
 
@@ -376,18 +394,16 @@ fn request(case: &Case, settings: &Settings) -> Value {
     })
 }
 
+/// No file of a child that did its work comes near this size (bytes).
+const MAX_RESULT_BYTES: u64 = 256 << 20;
+
 /// Reads a text that a child wrote.
 fn read(path: &Path) -> Result<String> {
-    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
-    let bytes = std::fs::read(path).map_err(io)?;
-    String::from_utf8(bytes).map_err(|_| nonsense(path, None, "is not UTF-8 text"))
-}
-
-/// Reads a JSON file that a child wrote.
-fn read_json(path: &Path) -> Result<Value> {
-    let text = read(path)?;
-    serde_json::from_str(&text)
-        .map_err(|e| nonsense(path, Some(e.line()), format!("is not JSON: {e}")))
+    read_text(
+        path,
+        MAX_RESULT_BYTES,
+        "the file was not written by this version; remove it and run again",
+    )
 }
 
 /// Removes a file or a folder, if it is there.

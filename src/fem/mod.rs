@@ -2,7 +2,6 @@
 
 mod driver;
 mod jit_cache;
-mod lock;
 mod process;
 mod reference;
 mod result;
@@ -11,5 +10,9 @@ mod tests;
 pub mod tools;
 
 pub use driver::{Driver, Linear, Settings};
+pub use process::check_interrupt;
 pub use reference::{ErrorEstimate, Reference};
-pub use result::{FemSummary, LINE_NAMES, MeshResult, check_points, wanted_curves, wanted_lines};
+pub use result::{
+    FemSummary, LINE_NAMES, MeshResult, MeshSummary, ResultTexts, check_points, wanted_curves,
+    wanted_lines,
+};

@@ -80,7 +80,11 @@ impl Stage<'_> {
             }
             (None, signal) => format!("was ended by signal {}", signal.unwrap_or(0)),
         };
-        Err(self.failed(message, "correct what the log tells, then run again"))
+        Err(self.failed(message, if is_full(self.folder) {
+            "no space is left on the disk; make room there, or give a folder on another disk, then run again"
+        } else {
+            "correct what the log tells, then run again"
+        }))
     }
 
     /// Waits for the end, or for a reason not to.
@@ -272,6 +276,14 @@ fn tail(log: &Path) -> String {
     }
 }
 
+/// Whether there is hardly any room left in a folder: the log of a child that this stopped is empty.
+fn is_full(folder: &Path) -> bool {
+    let probe = folder.join(format!(".probe-{}", std::process::id()));
+    let written = fs::write(&probe, vec![0; 1 << 20]);
+    let _ = fs::remove_file(&probe);
+    written.is_err_and(|e| e.kind() == std::io::ErrorKind::StorageFull)
+}
+
 /// Bytes of all files below a folder; what vanishes meanwhile does not count.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
@@ -342,8 +354,11 @@ extern "C" fn on_signal(signal: i32) {
     }
 }
 
-/// An error if this process was asked to stop while a child ran.
-pub(super) fn check_interrupt() -> Result<()> {
+/// Tells whether this process was asked to stop while a child ran.
+///
+/// # Errors
+/// [`Error::Interrupted`] if it was.
+pub fn check_interrupt() -> Result<()> {
     match INTERRUPT.load(Ordering::SeqCst) {
         0 => Ok(()),
         signal => Err(Error::Interrupted { signal }),

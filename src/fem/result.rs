@@ -6,6 +6,7 @@ use crate::solve::{Curve, PressureLine};
 use crate::stress::BodyKind;
 use crate::stress::curves::{CURVE_NAMES, across_contact, contact_line, standard_curves};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -96,7 +97,56 @@ pub struct MeshResult {
     pub lines: Vec<PressureLine>,
 }
 
+/// The files of a finished run as texts.
+#[derive(Debug, Clone, Copy)]
+pub struct ResultTexts<'t> {
+    /// `fem.json`.
+    pub summary: &'t str,
+    /// `curves.csv`.
+    pub curves: &'t str,
+    /// `pressure.csv`.
+    pub pressure: &'t str,
+}
+
 impl MeshResult {
+    /// Reads the result of `case` on the mesh of relative `size` by `ranks` processes; `folder`, where
+    /// the files stand, is only named in errors.
+    ///
+    /// # Errors
+    /// [`Error::File`] when a file is damaged, belongs to another case or another number of processes,
+    /// or states that the run did not carry its load.
+    pub fn parse(
+        case: &Case,
+        size: f64,
+        ranks: usize,
+        texts: ResultTexts,
+        folder: &Path,
+    ) -> Result<Self> {
+        let path = folder.join("fem.json");
+        let value = parse_json(texts.summary, &path)?;
+        let hertz = case.hertz();
+        for (pointer, wanted) in [("/hertz/c_m", hertz.c_m), ("/hertz/p0_pa", hertz.p0_pa)] {
+            let got = value.pointer(pointer).and_then(Value::as_f64).unwrap_or(f64::NAN);
+            if (got / wanted - 1.0).abs() > 1e-9 || got.is_nan() {
+                let message = format!("{pointer} = {got:e}, but the case has {wanted:e}");
+                return Err(nonsense(&path, None, message));
+            }
+        }
+        let summary: FemSummary = serde_json::from_value(value)
+            .map_err(|e| nonsense(&path, None, format!("is not a FEM summary: {e}")))?;
+        summary.check(&path)?;
+        if summary.ranks != ranks {
+            let message = format!("was computed by {} processes", summary.ranks);
+            return Err(nonsense(&path, None, message));
+        }
+        let curves = parse_curves(texts.curves, &folder.join("curves.csv"))?;
+        let curves: Vec<_> = curves.into_iter().map(|(_, curve)| curve).collect();
+        let lines = parse_lines(texts.pressure, &folder.join("pressure.csv"))?;
+        let lines: Vec<_> = lines.into_iter().map(|(_, line)| line).collect();
+        check_points(case, &curves, &lines, folder)?;
+        Ok(Self { size, summary, curves, lines })
+    }
+
     /// The curve called `name` of `body`.
     pub fn curve(&self, body: BodyKind, name: &str) -> Option<&Curve> {
         self.curves.iter().find(|c| c.body == body && c.name == name)
@@ -241,6 +291,38 @@ pub(super) fn parse_lines(text: &str, path: &Path) -> Result<Vec<(f64, PressureL
         }
     }
     Ok(lines)
+}
+
+/// Parses JSON that the finite-element side wrote.
+fn parse_json(text: &str, path: &Path) -> Result<Value> {
+    serde_json::from_str(text)
+        .map_err(|e| nonsense(path, Some(e.line()), format!("is not JSON: {e}")))
+}
+
+/// What `mesh.json` says about the meshes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct MeshSummary {
+    /// Unknowns of both bodies.
+    pub unknowns: u64,
+}
+
+impl MeshSummary {
+    /// Reads a `mesh.json`; `path` is only named in errors.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it does not state the unknowns of both bodies.
+    pub fn parse(text: &str, path: &Path) -> Result<Self> {
+        let value = parse_json(text, path)?;
+        let mut unknowns = 0u64;
+        for body in BodyKind::ALL {
+            let pointer = format!("/bodies/{}/unknowns", body.name());
+            let of_body = value.pointer(&pointer).and_then(Value::as_u64).filter(|n| *n > 0);
+            unknowns = of_body
+                .and_then(|n| unknowns.checked_add(n))
+                .ok_or_else(|| nonsense(path, None, format!("has no number at {pointer}")))?;
+        }
+        Ok(Self { unknowns })
+    }
 }
 
 /// Whether two sizes mean one mesh; NaN stands for "no column".

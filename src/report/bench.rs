@@ -2,7 +2,7 @@
 
 use super::chart::{Figure, Look, Marker, Panel, Series, look};
 use super::table::{Table, number, optional};
-use crate::base::{Result, write_whole};
+use crate::base::{Result, write_set};
 use crate::study::bench::{Accuracy, Against, Bench, CaseBench, Origin, Point, front};
 use crate::study::factorial::median;
 use serde_json::Value;
@@ -14,9 +14,12 @@ use std::path::Path;
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
 pub fn write(bench: &Bench, folder: &Path) -> Result<()> {
-    write_whole(&folder.join("pareto.csv"), table(bench).to_csv())?;
-    write_whole(&folder.join("pareto.svg"), figure(bench).to_svg())?;
-    write_whole(&folder.join("bench.json"), json(bench))
+    let files = [
+        ("pareto.csv", table(bench).to_csv().into_bytes()),
+        ("pareto.svg", figure(bench).to_svg().into_bytes()),
+        ("bench.json", json(bench).into_bytes()),
+    ];
+    write_set(folder, &files)
 }
 
 /// The text of `bench.json`: a line for each case, point and ratio, so that versions of a record can

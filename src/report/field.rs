@@ -5,11 +5,10 @@
 
 use super::contour::Plane;
 use super::vtk::Grid;
-use crate::base::{Error, Result, StressTensor, write_whole};
+use crate::base::{Error, Result, StressTensor};
 use crate::case::Case;
 use crate::solve::{Point, Solution};
 use crate::stress::BodyKind;
-use std::path::Path;
 
 /// Number of grid points of a quarter of a body across, along and into it.
 pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
@@ -42,7 +41,7 @@ fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     [x, y, z]
 }
 
-/// The points at which [`write()`] needs stresses, for [`crate::solve::Options::points`].
+/// The points at which [`contents`] needs stresses, for [`crate::solve::Options::points`].
 pub fn points(case: &Case, counts: [usize; 3]) -> Vec<Point> {
     let c_m = case.hertz().c_m;
     let mut all = Vec::new();
@@ -178,26 +177,23 @@ impl Quarter<'_> {
     }
 }
 
-/// Writes `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the contours
-/// `field-<body>-<plane>.svg` and `.png` into `folder`; returns the names.
+/// The files of the field by name: `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the
+/// contours `field-<body>-<plane>.svg` and `.png`.
 ///
 /// `solution` is that of `case` with [`points`] of the same `counts` as its only extra points.
 ///
 /// # Errors
-/// [`Error::Io`] when a file cannot be written.
+/// [`Error::Io`] when a picture cannot be encoded.
 ///
 /// # Panics
 /// When the solution has other points.
-pub fn write(
+pub fn contents(
     case: &Case,
     solution: &Solution,
     counts: [usize; 3],
-    folder: &Path,
-) -> Result<Vec<String>> {
-    let mut names = Vec::new();
-    let mut put = |name: String, content: Vec<u8>| {
-        write_whole(&folder.join(&name), content).map(|()| names.push(name))
-    };
+) -> Result<Vec<(String, Vec<u8>)>> {
+    let mut files = Vec::new();
+    let mut put = |name: String, content: Vec<u8>| files.push((name, content));
     let mut stress = solution.points.iter().map(|&s| s * (1.0 / solution.hertz.p0_pa));
     for body in BodyKind::ALL {
         let axes = axes(case, body, counts);
@@ -206,22 +202,22 @@ pub fn write(
         assert_eq!(stress.len(), size, "the solution has a stress for every point of the field");
         let quarter = Quarter { axes, stress, case, body };
         let name = body.name();
-        put(format!("field-{name}.vtr"), quarter.grid().to_vtr())?;
+        put(format!("field-{name}.vtr"), quarter.grid().to_vtr());
         if body == BodyKind::Block {
-            put("pressure.vtr".to_string(), quarter.pressure().to_vtr())?;
+            put("pressure.vtr".to_string(), quarter.pressure().to_vtr());
         }
         for (place, plane) in quarter.planes() {
-            put(format!("field-{name}-{place}.svg"), plane.to_svg().into_bytes())?;
+            put(format!("field-{name}-{place}.svg"), plane.to_svg().into_bytes());
             let (pixels, size) = plane.to_pixels();
             let png = png(&pixels, size).map_err(|source| Error::Io {
                 action: "encode",
-                path: folder.join(format!("field-{name}-{place}.png")),
+                path: format!("field-{name}-{place}.png").into(),
                 source,
             })?;
-            put(format!("field-{name}-{place}.png"), png)?;
+            put(format!("field-{name}-{place}.png"), png);
         }
     }
-    Ok(names)
+    Ok(files)
 }
 
 /// Red, green and blue of each picture element as PNG.
@@ -239,6 +235,7 @@ mod tests {
     use super::*;
     use crate::body::EdgeModel;
     use crate::solve::{Options, solve};
+    use std::path::Path;
 
     #[test]
     fn the_grid_reaches_the_ends_and_mirrors_the_shears() {

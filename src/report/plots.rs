@@ -3,10 +3,8 @@
 use super::chart::{Bar, Figure, Note, Panel, Rule, Series, look};
 use super::study_files::StudyFiles;
 use super::table::Table;
-use crate::base::{Result, prepare_folder, write_whole};
 use crate::study::effects::responses;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Names of the quantities with their symbols, for axes.
 pub const SYMBOLS: [(&str, &str); 9] = [
@@ -495,16 +493,4 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
         ));
     }
     plots
-}
-
-/// Writes all plots into `folder`, which is made.
-///
-/// # Errors
-/// [`crate::base::Error::Io`] when a file cannot be written.
-pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
-    prepare_folder(folder)?;
-    for (name, svg) in all(files) {
-        write_whole(&folder.join(name), svg)?;
-    }
-    Ok(())
 }

@@ -1,6 +1,7 @@
 //! The files of one solution: `summary.json`, `pressure.csv`, `curves.csv` and `points.csv`.
 
-use crate::base::{Result, StressTensor, write_whole};
+use super::study_files::pretty;
+use crate::base::{Result, StressTensor, write_set};
 use crate::solve::{Options, Solution};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -26,20 +27,26 @@ pub fn summary(solution: &Solution) -> Value {
     })
 }
 
-/// Writes the files of `solution` into `folder`: `points.csv` if `options` asked for points, and
-/// `summary.json` last, so that its presence means that all are there.
+/// Writes the files of `solution` into `folder`: `more` by their names, `points.csv` if `options` asked
+/// for points, and `summary.json` last, so that its presence means that all are there.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
-pub fn write(solution: &Solution, options: &Options, folder: &Path) -> Result<()> {
-    write_whole(&folder.join("pressure.csv"), pressure_csv(solution))?;
-    write_whole(&folder.join("curves.csv"), curves_csv(solution))?;
+pub fn write(
+    solution: &Solution,
+    options: &Options,
+    more: Vec<(String, Vec<u8>)>,
+    folder: &Path,
+) -> Result<()> {
+    let mut files = more;
+    let mut put = |name: &str, text: String| files.push((name.to_string(), text.into_bytes()));
+    put("pressure.csv", pressure_csv(solution));
+    put("curves.csv", curves_csv(solution));
     if !options.points.is_empty() {
-        write_whole(&folder.join("points.csv"), points_csv(solution, options))?;
+        put("points.csv", points_csv(solution, options));
     }
-    let mut text = serde_json::to_string_pretty(&summary(solution)).expect("plain data");
-    text.push('\n');
-    write_whole(&folder.join("summary.json"), text)
+    put("summary.json", pretty(&summary(solution)));
+    write_set(folder, &files)
 }
 
 /// The contact pressure, one row a cell.

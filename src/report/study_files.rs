@@ -3,7 +3,7 @@
 
 use super::table::{self, Table, number, optional};
 use super::verdict;
-use crate::base::{Error, Result, write_whole};
+use crate::base::{Error, Result};
 use crate::study::bench::Speedup;
 use crate::study::effects::{self, Effects};
 use crate::study::errors::CriticalPoint;
@@ -98,23 +98,20 @@ impl StudyFiles {
         [&self.study, &self.curves, &self.pressure, &self.fem_error, &self.errors, &self.effects]
     }
 
-    /// Writes all files into a folder that is there; `summary.json`, which says that the run is
-    /// complete, last.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when a file cannot be written.
-    pub fn write(&self, folder: &Path) -> Result<()> {
-        for (name, table) in Self::TABLES.iter().zip(self.tables()) {
-            write_whole(&folder.join(name), table.to_csv())?;
-        }
-        write_whole(&folder.join("summary.json"), pretty(&self.summary))
+    /// The run's own files by name: the tables, and `summary.json` last.
+    pub fn contents(&self) -> Vec<(String, Vec<u8>)> {
+        let tables = Self::TABLES.iter().zip(self.tables());
+        let mut contents: Vec<(String, Vec<u8>)> =
+            tables.map(|(name, table)| (name.to_string(), table.to_csv().into_bytes())).collect();
+        contents.push(("summary.json".to_string(), pretty(&self.summary).into_bytes()));
+        contents
     }
 
     /// Reads a finished run.
     ///
     /// # Errors
     /// [`Error::Io`] or [`Error::File`] when a file is missing or is not what
-    /// [`StudyFiles::write`] writes.
+    /// [`super::page::write_run`] writes.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("summary.json");
         let text = table::read(&path)?;

@@ -2,12 +2,13 @@
 //! that a run that is stopped at any moment goes on where it was.
 
 use super::table::{number, optional};
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, check_memory};
 use crate::solve::{END_DISTANCES, KeyResults};
 use crate::study::sweep::Outcome;
 use std::collections::BTreeMap;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Seek, SeekFrom, Write};
+use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
 /// What a row says besides its number, its parameters and its results.
@@ -164,9 +165,14 @@ impl SweepFile {
             .chain(result_columns())
             .collect();
         let header = line(&header);
-        let mut text = String::new();
-        file.read_to_string(&mut text).map_err(io("read"))?;
-        let whole = text.rfind('\n').map_or(0, |end| end + 1);
+        let size = file.metadata().map_err(io("read"))?.len();
+        let what = format!("going on with {}", path.display());
+        check_memory(&what, size as f64, "give another --out")?;
+        let mut bytes = Vec::new();
+        file.read_to_end(&mut bytes).map_err(io("read"))?;
+        let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
+        // A row that was cut off may end within a character.
+        let text = String::from_utf8_lossy(&bytes[..whole]);
         let mut own = Self {
             path: path.to_path_buf(),
             file,
@@ -177,7 +183,7 @@ impl SweepFile {
             failed: 0,
         };
         if whole == 0 {
-            if !header.starts_with(&text) {
+            if !header.as_bytes().starts_with(&bytes) {
                 return Err(own.refuse(1, "holds something else than a sweep's rows".into()));
             }
             own.file.set_len(0).map_err(io("write"))?;
@@ -187,7 +193,7 @@ impl SweepFile {
         if !text.starts_with(&header) {
             return Err(own.refuse(1, "has the columns of something else".into()));
         }
-        own.recognise(&text[..whole], &label)?;
+        own.recognise(&text, &label)?;
         own.file.set_len(whole as u64).map_err(io("write"))?;
         own.file.seek(SeekFrom::Start(whole as u64)).map_err(io("write"))?;
         Ok(own)
@@ -268,12 +274,26 @@ impl SweepFile {
     }
 
     fn append(&mut self, text: &str, rows: usize) -> Result<()> {
-        self.file.write_all(text.as_bytes()).map_err(|source| Error::Io {
-            action: "write",
-            path: self.path.clone(),
-            source,
-        })?;
+        let io = |source| Error::Io { action: "write", path: self.path.clone(), source };
+        // Rows in a file that somebody removed are lost: there is no name to read them by.
+        let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
+        let there = std::fs::metadata(&self.path).map_err(io)?;
+        if identity(there) != identity(self.file.metadata().map_err(io)?) {
+            return Err(io(std::io::Error::other(
+                "another file was put in its place; run again to write all rows",
+            )));
+        }
+        self.file.write_all(text.as_bytes()).map_err(io)?;
         self.next += rows;
         Ok(())
+    }
+
+    /// Makes sure that the rows outlive a power cut.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when they cannot be stored.
+    pub fn finish(&self) -> Result<()> {
+        let io = |source| Error::Io { action: "write", path: self.path.clone(), source };
+        self.file.sync_data().map_err(io)
     }
 }

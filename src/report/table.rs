@@ -1,6 +1,6 @@
 //! Tables of text as they stand in CSV files.
 
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, check_memory, read_text};
 use std::path::Path;
 
 /// A CSV table: a header and rows of the same width.
@@ -89,16 +89,18 @@ pub fn optional(value: Option<f64>) -> String {
     value.map(number).unwrap_or_default()
 }
 
-/// Reads a text file.
+/// Larger files are refused, pipes and devices too, which do not tell their size (bytes).
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Reads a text file of a run.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be read.
+/// [`Error::Io`] when it cannot be read, [`Error::Memory`] when it does not fit into memory, and
+/// [`Error::File`] when it is not UTF-8.
 pub fn read(path: &Path) -> Result<String> {
-    std::fs::read_to_string(path).map_err(|source| Error::Io {
-        action: "read",
-        path: path.to_path_buf(),
-        source,
-    })
+    let size = std::fs::metadata(path).map_or(0, |m| m.len());
+    check_memory(&format!("reading {}", path.display()), size as f64, "give a smaller file")?;
+    read_text(path, MAX_BYTES, "give a smaller file")
 }
 
 #[cfg(test)]

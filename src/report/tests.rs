@@ -26,7 +26,7 @@ fn files(twist: Twist) -> StudyFiles {
 fn a_run_is_read_back_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let written = files(Twist::None);
-    written.write(folder.path()).unwrap();
+    crate::base::write_set(folder.path(), &written.contents()).unwrap();
     let read = StudyFiles::read(folder.path()).unwrap();
     assert_eq!(read.tables().map(|t| t.rows.len()), written.tables().map(|t| t.rows.len()));
     assert_eq!(read.tables(), written.tables());
@@ -67,8 +67,7 @@ fn plots_are_well_formed_and_hold_every_source() {
     if let Ok(folder) = std::env::var("EDGELINE_KEEP_PLOTS") {
         std::fs::create_dir_all(&folder).unwrap();
         let f = files(Twist::None);
-        f.write(folder.as_ref()).unwrap();
-        page::write(&f, folder.as_ref()).unwrap();
+        page::write_run(&f, folder.as_ref()).unwrap();
     }
 }
 

@@ -1,7 +1,8 @@
 //! A lock on the folder of a run. It is the kernel's, so it ends with the process that holds it,
 //! however that ends.
 
-use crate::base::{Error, Result};
+use super::files::remove_parts;
+use super::{Error, Result, prepare_folder};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
 use std::os::unix::fs::MetadataExt;
@@ -9,13 +10,25 @@ use std::path::{Path, PathBuf};
 
 /// A folder that this process has for itself.
 #[derive(Debug)]
-pub(super) struct Lock {
+pub struct Lock {
     path: PathBuf,
     _file: File,
 }
 
 impl Lock {
-    /// Takes the lock of `folder`.
+    /// Makes `folder`, checks that files can be written there, takes its lock, and removes what a run
+    /// that was killed left half-written.
+    ///
+    /// # Errors
+    /// As [`prepare_folder`] and [`Lock::take`].
+    pub fn claim(folder: &Path) -> Result<Lock> {
+        prepare_folder(folder)?;
+        let lock = Lock::take(folder)?;
+        remove_parts(folder)?;
+        Ok(lock)
+    }
+
+    /// Takes the lock of `folder`, which is there.
     ///
     /// # Errors
     /// [`Error::Busy`] when another process has it, [`Error::Io`] when there can be no lock.
@@ -34,6 +47,8 @@ impl Lock {
                     let pid = text.trim().parse().ok();
                     return Err(Error::Busy { path: folder.to_path_buf(), pid });
                 }
+                // A file system without locks: two runs in one folder are then the user's own care.
+                Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {}
                 Err(TryLockError::Error(e)) => return Err(io(e)),
             }
             // The holder before may have removed the file between our opening and locking it; a
