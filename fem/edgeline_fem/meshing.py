@@ -315,8 +315,12 @@ def read_msh(path):
         start = data.index(b"$Nodes\n") + len(b"$Nodes\n")
         stop = data.index(b"\n", start)
         count = int(data[start:stop])
+        if count <= 0:
+            raise ValueError(f"{count} nodes")
         record = np.dtype([("tag", "<i4"), ("x", "<f8", (3,))])
         nodes = np.frombuffer(data, record, count, stop + 1)
+        if not 0 < nodes["tag"].min() <= nodes["tag"].max() <= 10 * count:
+            raise ValueError("numbers of nodes that gmsh would not give")
         row = np.full(nodes["tag"].max() + 1, -1, dtype=np.int64)
         row[nodes["tag"]] = np.arange(count)
 
@@ -335,6 +339,8 @@ def read_msh(path):
                 cells.append(row[block[:, 1 + tags :]])
             offset += 4 * (3 + number * width)
             left -= int(number)
+        if not cells or min(part.min() for part in cells) < 0:
+            raise ValueError("no hexahedra, or nodes of theirs that are not there")
     except (OSError, ValueError, KeyError, IndexError) as error:
         raise FemError(f"{path}: is not a mesh that this program wrote: {error!r}") from error
     return nodes["x"].copy(), np.concatenate(cells), groups
@@ -362,6 +368,31 @@ def write_atomically(path, text):
     os.replace(temporary, path)
 
 
+# A gmsh that prints more than this has lost its way (bytes).
+MAX_OUTPUT = 1 << 20
+
+
+def _run(command):
+    """Run a program to its end: its exit code and what it printed.
+
+    Raises :class:`FemError` if it cannot be run, or prints more than ``MAX_OUTPUT``, which ends it.
+    """
+    try:
+        # Its death goes with ours; what it prints may be anything.
+        with subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            preexec_fn=die_with_parent,
+        ) as process:
+            said = process.stdout.read(MAX_OUTPUT + 1)
+            if len(said) > MAX_OUTPUT:
+                process.kill()
+                raise FemError(f"'{command[0]}' printed more than {MAX_OUTPUT >> 20} MiB and was stopped; "
+                               "see what it is, or name another gmsh program")
+    except OSError as error:
+        raise FemError(f"gmsh program '{command[0]}' cannot be run: {error.strerror}") from error
+    return process.returncode, said.decode(errors="replace")
+
+
 def run_gmsh(program, geo, msh, vtk):
     """Mesh ``geo`` into ``msh`` (and ``msh`` with suffix .vtk) by the gmsh program, one thread."""
     part = Path(f"{msh}.part")
@@ -369,17 +400,13 @@ def run_gmsh(program, geo, msh, vtk):
     if vtk:
         outputs.append((Path(f"{msh}.vtk.part"), "vtk", Path(msh).with_suffix(".vtk")))
     for output, kind, final in outputs:
+        # What an earlier gmsh left must not pass for the work of this one.
+        output.unlink(missing_ok=True)
         command = [program, "-3", "-nt", "1", "-v", "2", "-format", kind, "-o", str(output), str(geo)]
-        try:
-            done = subprocess.run(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-                text=True, check=False, preexec_fn=die_with_parent,
-            )
-        except OSError as error:
-            raise FemError(f"gmsh program '{program}' cannot be run: {error.strerror}") from error
-        complaints = "\n".join(done.stdout.strip().splitlines()[-10:])
-        if done.returncode != 0 or not output.exists() or "Error" in done.stdout:
-            raise FemError(f"gmsh failed on {geo} (exit code {done.returncode}): {complaints}")
+        code, said = _run(command)
+        complaints = "\n".join(said.strip().splitlines()[-10:])
+        if code != 0 or not output.exists() or "Error" in said:
+            raise FemError(f"gmsh failed on {geo} (exit code {code}): {complaints}")
         os.replace(output, final)
 
 
@@ -391,11 +418,10 @@ def processor_seconds():
 
 def gmsh_version(program):
     """The version that the gmsh program prints; :class:`FemError` if it cannot be run."""
-    try:
-        done = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
-    except (OSError, subprocess.CalledProcessError) as error:
-        raise FemError(f"gmsh program '{program}' cannot be run: {error}") from error
-    return (done.stdout.strip() or done.stderr.strip()).splitlines()[-1]
+    code, said = _run([program, "--version"])
+    if code != 0 or not said.strip():
+        raise FemError(f"gmsh program '{program}' does not tell its version (exit code {code}): {said}")
+    return said.strip().splitlines()[-1]
 
 
 def make_meshes(request, folder):

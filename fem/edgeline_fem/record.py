@@ -8,6 +8,7 @@ import csv
 import dataclasses
 import datetime
 import fcntl
+import hashlib
 import io
 import json
 import math
@@ -83,8 +84,8 @@ def _rows(path):
     return rows[0], rows[1:]
 
 
-def _merge(path, size, new):
-    """Put the rows of the CSV file ``new`` into the one at ``path`` as the mesh of ``size``."""
+def _merge(path, size, new, merged):
+    """Put the rows of ``new`` into those of the CSV file at ``path`` as the mesh of ``size``: ``merged``."""
     _, old = _rows(path)
     header, rows = _rows(new)
     kept = [row for row in old if float(row[0]) != size]
@@ -97,7 +98,7 @@ def _merge(path, size, new):
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(["mesh", *header])
     writer.writerows(kept)
-    write_atomically(path, text.getvalue())
+    merged.write_text(text.getvalue(), encoding="utf-8")
 
 
 def order_and_factor(differences, sizes):
@@ -237,6 +238,42 @@ def _stage(stage, run, request, folder, log):
     log(done.stderr.strip().splitlines()[-1])
 
 
+FILES = ("record.json", "curves.csv", "pressure.csv")
+SUMS = "SHA256SUMS"
+# Where a new version of a record is put together.
+NEW = ".new"
+
+
+def checksums(folder):
+    """SHA-256 of the files of the record in ``folder``, as ``sha256sum`` writes them."""
+    sums = ((hashlib.sha256((folder / name).read_bytes()).hexdigest(), name) for name in FILES)
+    return "".join(f"{digest}  {name}\n" for digest, name in sums)
+
+
+def check_record(folder):
+    """Raise :class:`FemError` unless the files of the record in ``folder`` are those that were recorded."""
+    sums = folder / SUMS
+    if not sums.exists() or sums.read_text(encoding="utf-8") != checksums(folder):
+        raise FemError(f"{sums}: a file of this record was changed or is damaged; restore the folder from "
+                       "version control, or remove it to record anew")
+
+
+def _commit(target):
+    """Move a complete new version of the record in ``target`` into place, if one was left there.
+
+    A new version is put together in a folder of its own; its checksums, written last, say that it is
+    complete. So a record is the old or the new version, whenever this process is killed: the next one that
+    records moves what is left.
+    """
+    new = target / NEW
+    if (new / SUMS).exists():
+        # The checksums last: until then those of the old version refuse the mixture.
+        for name in (*FILES, SUMS):
+            if (new / name).exists():
+                os.replace(new / name, target / name)
+    shutil.rmtree(new, ignore_errors=True)
+
+
 @contextlib.contextmanager
 def _locked(folder):
     """Hold the only lock on a folder; raise if another process has it. Freed if this process dies."""
@@ -255,8 +292,8 @@ def record(case, size, folder, log, run=Run(), **overrides):
     """Solve ``case`` on the mesh of ``size`` and add it to the record in ``folder``/<case name>.
 
     ``run`` is the :class:`Run`, ``overrides`` are further mesh options. Returns False if the record holds
-    that mesh already. Other meshes of the record are kept; the record is readable at any moment, and after
-    a kill the next call takes up where this one was.
+    that mesh already. Other meshes of the record are kept; after a kill at any moment the next call takes up
+    where this one was. Raises :class:`FemError` if the record there is damaged.
     """
     target = Path(folder) / case.name
     target.mkdir(parents=True, exist_ok=True)
@@ -265,12 +302,15 @@ def record(case, size, folder, log, run=Run(), **overrides):
 
 
 def _record(case, size, target, log, run, overrides):
+    _commit(target)
     path = target / "record.json"
     request = standard_request(case, size, **overrides)
     request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear))
     options = request.to_json()["mesh"]
-    data = json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
-    if data is not None:
+    data = None
+    if path.exists():
+        check_record(target)
+        data = json.loads(path.read_text(encoding="utf-8"))
         known = data["meshes"].get(f"{size:g}")
         if data["case"] != case.to_json():
             raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
@@ -308,11 +348,15 @@ def _record(case, size, target, log, run, overrides):
         "date": began.isoformat(timespec="seconds"), "command": f"{command} results/reference", **summary,
     }
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
+    new = target / NEW
+    new.mkdir()
     for name in ("curves.csv", "pressure.csv"):
-        _merge(target / name, size, work / name)
-    measures = (target, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+        _merge(target / name, size, work / name, new / name)
+    measures = (new, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
     data["orders"] = observed_orders(*measures)
     data["errors"] = estimate_errors(*measures)
-    write_atomically(path, json.dumps(data, indent=1) + "\n")
+    (new / "record.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    write_atomically(new / SUMS, checksums(new))
+    _commit(target)
     shutil.rmtree(work)
     return True

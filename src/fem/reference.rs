@@ -1,10 +1,11 @@
 //! Recorded finite-element results, as `results/reference/README.md` describes them.
 
 use super::result::{FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines};
-use crate::base::{Error, Material, Result};
+use crate::base::{Error, Material, Result, read_text};
 use crate::case::{Block, Case, Roller};
 use crate::solve::{Curve, PressureLine};
 use serde::{Deserialize, Serialize};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -14,6 +15,36 @@ const EMBEDDED: &[(&str, [&str; 3])] = include!(concat!(env!("OUT_DIR"), "/recor
 
 /// The files of a record, in the order of [`EMBEDDED`].
 const FILES: [&str; 3] = ["record.json", "curves.csv", "pressure.csv"];
+
+/// The checksums of these files, as `sha256sum` writes and checks them.
+const SUMS: &str = "SHA256SUMS";
+
+/// No file of a record comes near this size (bytes).
+const MAX_FILE_BYTES: u64 = 256 << 20;
+
+/// What to do about a file that is not the one that was recorded.
+const RESTORE: &str = "restore the folder from version control, or remove it and record it anew: \
+                       python3 -m edgeline_fem record (docs/fem.md)";
+
+/// Refuses the text of the file `name` unless its checksum stands in `sums`.
+fn check_sum(text: &str, name: &str, sums: &str, folder: &Path) -> Result<()> {
+    let refuse = |name: &str, message: String| Error::File {
+        path: folder.join(name),
+        line: None,
+        message,
+        remedy: RESTORE.to_string(),
+    };
+    let wanted = sums
+        .lines()
+        .find_map(|line| line.split_once("  ").filter(|(_, of)| *of == name))
+        .ok_or_else(|| refuse(SUMS, format!("holds no checksum of {name}")))?
+        .0;
+    let found: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    if found == wanted {
+        return Ok(());
+    }
+    Err(refuse(name, format!("was changed or is damaged: its SHA-256 is {found}, not {wanted}")))
+}
 
 /// How far one component of one curve is from the exact solution of its model, as its meshes tell.
 /// The immediate neighbourhood of the roller's end is left out of curves on the surface.
@@ -125,14 +156,16 @@ impl Reference {
     /// Reads the record in the folder `results/reference/<case>`.
     ///
     /// # Errors
-    /// [`Error::Io`] when a file cannot be read; [`Error::File`] when it is damaged, when a run
-    /// did not carry its load, or when the points are not the standard curves'.
+    /// [`Error::Io`] when a file cannot be read; [`Error::File`] when it is not the file that was
+    /// recorded, and as [`Reference::parse`].
     pub fn read(folder: &Path) -> Result<Reference> {
+        let read = |name: &str| read_text(&folder.join(name), MAX_FILE_BYTES, RESTORE);
+        let sums = read(SUMS)?;
         let mut texts = Vec::new();
         for file in FILES {
-            let path = folder.join(file);
-            let io = |source| Error::Io { action: "read", path: path.clone(), source };
-            texts.push(std::fs::read_to_string(&path).map_err(io)?);
+            let text = read(file)?;
+            check_sum(&text, file, &sums, folder)?;
+            texts.push(text);
         }
         Self::parse([&texts[0], &texts[1], &texts[2]], folder)
     }
@@ -154,7 +187,13 @@ impl Reference {
         folders.iter().map(|folder| Self::read(folder)).collect()
     }
 
-    fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
+    /// Reads the texts of `record.json`, `curves.csv` and `pressure.csv`; `folder`, where they stand, is
+    /// only named in errors.
+    ///
+    /// # Errors
+    /// [`Error::File`] when one is damaged or of another version, when a run did not carry its load, or
+    /// when the points are not the standard curves'.
+    pub fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
         let path = folder.join(FILES[0]);
         let record: Record = serde_json::from_str(record)
             .map_err(|e| nonsense(&path, Some(e.line()), format!("is not a record: {e}")))?;

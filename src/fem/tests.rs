@@ -50,14 +50,13 @@ fn a_record_belongs_to_a_problem_not_to_a_name() {
 #[test]
 fn damaged_records_are_refused_with_their_place() {
     let source = records().join("validation-nu025");
-    let folder = tempfile::tempdir().unwrap();
     let damage = |file: &str, change: &dyn Fn(String) -> String| {
-        for name in ["record.json", "curves.csv", "pressure.csv"] {
+        let texts = ["record.json", "curves.csv", "pressure.csv"].map(|name| {
             let text = std::fs::read_to_string(source.join(name)).unwrap();
-            let text = if name == file { change(text) } else { text };
-            std::fs::write(folder.path().join(name), text).unwrap();
-        }
-        Reference::read(folder.path()).unwrap_err().to_string()
+            if name == file { change(text) } else { text }
+        });
+        let texts = texts.each_ref().map(String::as_str);
+        Reference::parse(texts, &source).unwrap_err().to_string()
     };
     let line_three = |text: String, from: &str, to: &str| {
         let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
@@ -78,7 +77,55 @@ fn damaged_records_are_refused_with_their_place() {
     assert!(message.contains("pressure.csv: the pressure lines are not those"), "{message}");
     let message = damage("record.json", &|t| t[..t.len() / 2].to_string());
     assert!(message.contains("record.json:"), "{message}");
+    let message = damage("record.json", &|t| t.replace("\"schema\": 1", "\"schema\": 2"));
+    assert!(message.contains("has schema 2, this program reads 1"), "{message}");
     let message =
         damage("record.json", &|t| t.replace("\"load_error_rel\": ", "\"load_error_rel\": 1"));
     assert!(message.contains("load_error_rel = 1"), "{message}");
+}
+
+#[test]
+fn files_that_are_not_those_recorded_are_refused() {
+    let source = records().join("validation-nu025");
+    let folder = tempfile::tempdir().unwrap();
+    let copy = || {
+        for name in ["record.json", "curves.csv", "pressure.csv", "SHA256SUMS"] {
+            std::fs::copy(source.join(name), folder.path().join(name)).unwrap();
+        }
+    };
+    let refused = || Reference::read(folder.path()).unwrap_err().to_string();
+    for name in ["record.json", "curves.csv", "pressure.csv"] {
+        copy();
+        Reference::read(folder.path()).unwrap();
+        // One digit more, which no reader of numbers would notice.
+        let path = folder.path().join(name);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let at = text.rfind(|c: char| c.is_ascii_digit()).unwrap();
+        std::fs::write(&path, format!("{}1{}", &text[..=at], &text[at + 1..])).unwrap();
+        let said = refused();
+        assert!(
+            said.contains(&format!("{name}: was changed or is damaged: its SHA-256")),
+            "{said}"
+        );
+        assert!(said.contains("restore the folder from version control"), "{said}");
+    }
+    copy();
+    let sums = folder.path().join("SHA256SUMS");
+    std::fs::write(&sums, "0  other\n").unwrap();
+    assert!(refused().contains("SHA256SUMS: holds no checksum of record.json"), "{}", refused());
+    std::fs::remove_file(&sums).unwrap();
+    assert!(refused().contains("cannot read"), "{}", refused());
+}
+
+#[test]
+fn meshes_state_their_unknowns() {
+    let parse = |text: &str| MeshSummary::parse(text, Path::new("mesh.json"));
+    let bodies = r#"{"bodies": {"block": {"unknowns": 30}, "roller": {"unknowns": 12}}}"#;
+    assert_eq!(parse(bodies).unwrap().unknowns, 42);
+    for bad in ["{}", "[", "", "nan", &bodies.replace("12", "-1"), &bodies.replace("12", "0")] {
+        let said = parse(bad).unwrap_err().to_string();
+        assert!(said.starts_with("mesh.json"), "{bad}: {said}");
+    }
+    let huge = bodies.replace("12", &u64::MAX.to_string());
+    assert!(parse(&huge).unwrap_err().to_string().contains("has no number at /bodies/roller"));
 }
