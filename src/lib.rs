@@ -31,6 +31,9 @@
 //! | [`report`] | one file per form of output |
 //! | [`cli`] | one file per subcommand |
 
+// The one exception is `fem/system.rs`, which says why.
+#![deny(unsafe_code)]
+
 pub mod base;
 pub mod kernels;
 

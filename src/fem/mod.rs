@@ -5,6 +5,7 @@ mod jit_cache;
 mod process;
 mod reference;
 mod result;
+mod system;
 #[cfg(test)]
 mod tests;
 pub mod tools;

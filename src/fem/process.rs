@@ -5,6 +5,7 @@
 //! own children inherit. Whatever is found with that mark after the child's end is killed; that
 //! reaches MPI ranks, which leave the process group.
 
+use super::system;
 use crate::base::{Error, Result};
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom};
@@ -180,19 +181,7 @@ fn spawn(command: &mut Command, mark: &Path) -> std::io::Result<Child> {
     let driver = std::process::id();
     let boot = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     command.process_group(0).env(MARK, mark).env(DRIVER, format!("{}:{driver}", boot.trim()));
-    #[cfg(target_os = "linux")]
-    // SAFETY: the closure runs in the forked child, where it only makes system calls that are
-    // async-signal-safe, and allocates nothing.
-    unsafe {
-        command.pre_exec(move || {
-            libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-            // The driver may have died before that call.
-            if libc::getppid() != driver as libc::pid_t {
-                libc::_exit(127);
-            }
-            Ok(())
-        });
-    }
+    system::die_with_this_process(command);
     command.spawn()
 }
 
@@ -211,12 +200,10 @@ fn stop(child: &mut Child) {
     let _ = child.wait();
 }
 
+/// The group was made for this child, which has not been waited for unless its group is empty or
+/// still its own.
 fn signal_group(child: &Child, signal: i32) {
-    // SAFETY: a plain system call. The group was made for this child, which has not been waited
-    // for unless its group is empty or still its own.
-    unsafe {
-        libc::kill(-(child.id() as libc::pid_t), signal);
-    }
+    system::send(signal, child.id() as i32, true);
 }
 
 /// Kills every process that carries the mark of the run in `folder`, until there is none.
@@ -230,10 +217,7 @@ pub(super) fn kill_marked(folder: &Path) {
             return;
         }
         for pid in found {
-            // SAFETY: a plain system call.
-            unsafe {
-                libc::kill(pid, libc::SIGKILL);
-            }
+            system::send(libc::SIGKILL, pid, false);
         }
         std::thread::sleep(Duration::from_millis(5));
     }
@@ -309,7 +293,7 @@ impl Active {
         static INSTALL: Once = Once::new();
         INSTALL.call_once(|| {
             for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
-                install(signal);
+                system::handle(signal, on_signal);
             }
         });
         ACTIVE.fetch_add(1, Ordering::SeqCst);
@@ -323,34 +307,12 @@ impl Drop for Active {
     }
 }
 
-fn install(signal: i32) {
-    // SAFETY: the handler is async-signal-safe, and the structure is filled before its use.
-    unsafe {
-        let mut old: libc::sigaction = std::mem::zeroed();
-        // What was ignored on purpose (nohup) stays ignored.
-        if libc::sigaction(signal, std::ptr::null(), &mut old) != 0
-            || old.sa_sigaction == libc::SIG_IGN
-        {
-            return;
-        }
-        let mut new: libc::sigaction = std::mem::zeroed();
-        new.sa_sigaction = on_signal as extern "C" fn(i32) as libc::sighandler_t;
-        new.sa_flags = libc::SA_RESTART;
-        libc::sigemptyset(&mut new.sa_mask);
-        libc::sigaction(signal, &new, std::ptr::null_mut());
-    }
-}
-
 /// Notes the signal while a child runs; otherwise it does what it does by default.
 extern "C" fn on_signal(signal: i32) {
     if ACTIVE.load(Ordering::SeqCst) > 0 {
         INTERRUPT.store(signal, Ordering::SeqCst);
     } else {
-        // SAFETY: both calls are async-signal-safe.
-        unsafe {
-            libc::signal(signal, libc::SIG_DFL);
-            libc::raise(signal);
-        }
+        system::act_by_default(signal);
     }
 }
 
