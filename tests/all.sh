@@ -55,8 +55,11 @@ fi
 # The interpreter's cache beside the sources would make cargo build anew.
 export PYTHONDONTWRITEBYTECODE=1
 
-# What is installed must not be skipped.
+# What is installed, or allowed, must not be skipped.
 export EDGELINE_REQUIRE_BROWSER=1 EDGELINE_REQUIRE_VTK=1
+if [[ $(id -u) == 0 ]]; then
+    export EDGELINE_REQUIRE_MOUNT=1
+fi
 
 step "format"
 cargo fmt --check
@@ -66,6 +69,13 @@ cargo clippy --all-targets --quiet -- -D warnings
 
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
+
+step "licences and sources of dependencies"
+if command -v cargo-deny >/dev/null; then
+    cargo deny check licenses bans sources
+else
+    echo "skipped: cargo-deny is not installed; continuous integration runs it"
+fi
 
 step "build"
 cargo build --release

@@ -23,8 +23,9 @@ use std::process::ExitCode;
 /// solver, and the finite-element harness that proves it.
 ///
 /// Results go to files and a short summary to standard output; progress and warnings go to
-/// standard error. The exit code is 0 when all was done, 1 when an accuracy gate failed, and 2
-/// when it could not run: bad input, a missing tool, a failed child process.
+/// standard error. A folder serves one run at a time. The exit code is 0 when all was done, 1 when
+/// an accuracy gate failed, and 2 when it could not run: bad input, a missing tool, a failed child
+/// process.
 #[derive(Parser)]
 #[command(name = "edgeline", version, arg_required_else_help = true)]
 struct Arguments {

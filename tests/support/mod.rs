@@ -1,0 +1,121 @@
+//! What tests of child processes and of faults have in common: a folder in which `edgeline` runs with
+//! the stand-ins of `tests/fake/`, and processes that are counted.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+use tempfile::TempDir;
+
+pub fn fake(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fake").join(name)
+}
+
+/// A folder in which `edgeline fem` runs.
+pub struct Bench {
+    /// Where the program is started; the run has the folder `run` in it.
+    pub folder: TempDir,
+}
+
+impl Bench {
+    pub fn new() -> Self {
+        Self { folder: tempfile::tempdir().unwrap() }
+    }
+
+    pub fn out(&self) -> PathBuf {
+        self.folder.path().join("run")
+    }
+
+    /// `edgeline fem` with the real tools.
+    pub fn live(&self, case: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+        command
+            .current_dir(self.folder.path())
+            .env_remove("EDGELINE_PYTHON")
+            .args(["fem", case, "--out"])
+            .arg(self.out())
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// `edgeline fem` with the stand-ins, which behave as `mode` says.
+    pub fn fake(&self, mode: &str) -> Command {
+        let mut command = self.live("flush-short");
+        command
+            .arg("--python")
+            .arg(fake("python3"))
+            .arg("--gmsh")
+            .arg(fake("gmsh"))
+            .env("FAKE", mode)
+            .env("FAKE_NOTES", self.folder.path().join("notes"));
+        command
+    }
+
+    /// What the stand-in was asked to do so far.
+    pub fn notes(&self) -> Vec<String> {
+        let text = fs::read_to_string(self.folder.path().join("notes")).unwrap_or_default();
+        text.lines().map(str::to_string).collect()
+    }
+
+    /// The results, without what differs from run to run.
+    pub fn results(&self) -> [String; 2] {
+        ["curves.csv", "pressure.csv"].map(|f| fs::read_to_string(self.out().join(f)).unwrap())
+    }
+
+    /// Processes of the runs in this folder and below it, zombies aside.
+    pub fn processes(&self) -> Vec<i32> {
+        let mark = format!("EDGELINE_RUN={}", self.out().canonicalize().unwrap().display());
+        let pids = fs::read_dir("/proc").unwrap().flatten();
+        pids.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
+            .filter(|pid| {
+                fs::read(format!("/proc/{pid}/environ")).is_ok_and(|text| {
+                    text.split(|&b| b == 0).any(|v| v.starts_with(mark.as_bytes()))
+                })
+            })
+            .collect()
+    }
+
+    /// Waits until all processes of this folder's runs have ended.
+    pub fn assert_no_process_is_left(&self) {
+        let until = Instant::now() + Duration::from_secs(5);
+        while !self.processes().is_empty() {
+            assert!(Instant::now() < until, "left over: {:?}", self.processes());
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+/// Runs to the end, which has to be a refusal, and returns what was said.
+pub fn refused(command: &mut Command) -> String {
+    let output = command.output().unwrap();
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{said}");
+    assert!(output.stdout.is_empty());
+    said
+}
+
+pub fn succeeded(command: &mut Command) -> Output {
+    let output = command.output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    output
+}
+
+pub fn kill(pid: i32, signal: i32) {
+    // SAFETY: a plain system call.
+    unsafe {
+        libc::kill(pid, signal);
+    }
+}
+
+/// Waits for something to become true.
+pub fn wait_for(what: &str, condition: impl Fn() -> bool) {
+    let until = Instant::now() + Duration::from_secs(20);
+    while !condition() {
+        assert!(Instant::now() < until, "{what} did not happen");
+        std::thread::sleep(Duration::from_millis(10));
+    }
+}
+
+pub fn start(command: &mut Command) -> Child {
+    command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
