@@ -72,7 +72,13 @@ impl Case {
                     slenderness: slenderness(&table.require("S_l", "S_l = 5.0")?)?,
                     length_ratio: length_ratio(&table.require("L_r", "L_r = 1.0")?)?,
                 };
-                Case::from_factors(name, radius_m, roller_material, block_material, factors)
+                let case =
+                    Case::from_factors(name, radius_m, roller_material, block_material, factors);
+                if let Some(message) = case.out_of_range() {
+                    return Err(table
+                        .error(message, "check the radius (m), the moduli (Pa) and the factors"));
+                }
+                case
             }
             GivenLoad::Force(table) => {
                 table.only(&["force_n"])?;
@@ -90,7 +96,11 @@ impl Case {
                         length_m: length(&of_block, "the block's length in metres")?,
                         material: block_material,
                     },
-                    force_n: force.number_in(1e-12, 1e15, "the load in newtons")?,
+                    force_n: force.number_in(
+                        Case::FORCE_RANGE.0,
+                        Case::FORCE_RANGE.1,
+                        "the load in newtons",
+                    )?,
                     tolerance: Case::DEFAULT_TOLERANCE,
                 };
                 check_factors(&case, &force, &of_roller, &of_block)?;
@@ -126,12 +136,16 @@ pub(super) fn given_load<'d>(root: &Table<'d>) -> Result<GivenLoad<'d>> {
     }
 }
 
+/// Letters of a name, at most.
+pub(super) const MAX_NAME: usize = 64;
+
 /// The name, which also names folders.
 pub(super) fn name(root: &Table) -> Result<String> {
     let entry = root.require("name", "name = \"flush-short\"")?;
     let name = entry.string()?;
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
-    if name.is_empty() || name.len() > 64 || name.starts_with('.') || !name.chars().all(plain) {
+    if name.is_empty() || name.len() > MAX_NAME || name.starts_with('.') || !name.chars().all(plain)
+    {
         return Err(entry.refuse(
             "a name is 1 to 64 letters, digits, '-', '_' and '.', and does not start with '.'",
             "choose such a name: folders are named after it",
@@ -195,14 +209,18 @@ pub(super) fn length_ratio(entry: &Entry) -> Result<f64> {
 }
 
 fn length(entry: &Entry, what: &str) -> Result<f64> {
-    entry.number_in(1e-9, 1e4, what)
+    let (low, high) = Case::LENGTH_RANGE;
+    entry.number_in(low, high, what)
 }
 
 /// Checks what a load and lengths amount to; the keys at fault are named.
 fn check_factors(case: &Case, force: &Entry, roller: &Entry, block: &Entry) -> Result<()> {
     let factors = case.factors();
-    let outside = |value: f64, (low, high): (f64, f64)| !(low..=high).contains(&value);
-    if factors.length_ratio > 1.0 {
+    // A case that was written from factors on a limit is a rounding beyond it.
+    let slack = 1.0 + 1e-9;
+    let outside =
+        |value: f64, (low, high): (f64, f64)| !(low / slack..=high * slack).contains(&value);
+    if factors.length_ratio > slack {
         return Err(block.refuse(
             format!("the block is shorter than the roller ({:e} m)", case.roller.length_m),
             "make it at least as long: equal lengths are flush ends",

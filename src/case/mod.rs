@@ -78,6 +78,12 @@ impl Case {
     /// The accuracy that is asked for where a case does not say, as a fraction of p0.
     pub const DEFAULT_TOLERANCE: f64 = 1e-3;
 
+    /// Legal range of lengths and radii (m).
+    pub const LENGTH_RANGE: (f64, f64) = (1e-9, 1e4);
+
+    /// Legal range of the load (N).
+    pub const FORCE_RANGE: (f64, f64) = (1e-12, 1e15);
+
     /// Legal range of the tolerance.
     pub const TOLERANCE_RANGE: (f64, f64) = (1e-5, 1e-1);
 
@@ -116,6 +122,21 @@ impl Case {
             slenderness: self.roller.length_m / (2.0 * hertz.c_m),
             length_ratio: self.roller.length_m / self.block.length_m,
         }
+    }
+
+    /// What that follows from factors is out of its legal range, in words.
+    fn out_of_range(&self) -> Option<String> {
+        let (length, force) = (Self::LENGTH_RANGE, Self::FORCE_RANGE);
+        [
+            ("the roller's length", self.roller.length_m, length, "m"),
+            ("the block's length", self.block.length_m, length, "m"),
+            ("the load", self.force_n, force, "N"),
+        ]
+        .into_iter()
+        .find(|(_, value, (low, high), _)| !(*low..=*high).contains(value))
+        .map(|(what, value, (low, high), unit)| {
+            format!("{what} becomes {value:.3e} {unit} and must lie between {low:e} and {high:e}")
+        })
     }
 
     /// Whether `other` is the same problem, whatever it is called and however accurately it is to be

@@ -1,6 +1,8 @@
 //! The study file: a factorial design around one pair of bodies, and further cases.
 
-use super::case_file::{length_ratio, load_factor, material, name, radius, slenderness, tolerance};
+use super::case_file::{
+    MAX_NAME, length_ratio, load_factor, material, name, radius, slenderness, tolerance,
+};
 use super::document::{Document, Entry, Table, read_text};
 use super::{Case, Factors, builtin_case};
 use crate::base::{Material, Result};
@@ -88,7 +90,7 @@ impl Study {
                 for &length_ratio in &study.length_ratio_levels {
                     let name = format!("w{load:e}_sl{slenderness}_lr{length_ratio}");
                     let factors = Factors { load, slenderness, length_ratio };
-                    study.corners.push(base.case(name, factors));
+                    study.corners.push(base.case(name, factors, &levels)?);
                 }
             }
         }
@@ -99,7 +101,7 @@ impl Study {
                 length_ratio: study.length_ratio_levels.iter().sum::<f64>()
                     / study.length_ratio_levels.len() as f64,
             };
-            study.centre = Some(base.case("centre".into(), factors));
+            study.centre = Some(base.case("centre".into(), factors, &levels)?);
         }
         if let Some(files) = root.get("cases") {
             let mut names: BTreeSet<String> = study.cases().map(|c| c.name.clone()).collect();
@@ -143,9 +145,20 @@ impl Base {
         })
     }
 
-    fn case(&self, name: String, factors: Factors) -> Case {
+    fn case(&self, name: String, factors: Factors, levels: &Table) -> Result<Case> {
         let case = Case::from_factors(name, self.radius_m, self.roller, self.block, factors);
-        Case { tolerance: self.tolerance, ..case }
+        if case.name.len() > MAX_NAME {
+            let message =
+                format!("the case {} has a name of more than {MAX_NAME} letters", case.name);
+            return Err(levels.error(message, "give levels with fewer digits"));
+        }
+        if let Some(reason) = case.out_of_range() {
+            let message = format!("in the case {}, {reason}", case.name);
+            return Err(
+                levels.error(message, "check the radius (m), the moduli (Pa) and the levels")
+            );
+        }
+        Ok(Case { tolerance: self.tolerance, ..case })
     }
 }
 

@@ -316,3 +316,47 @@ proptest! {
         prop_assert!((got.length_ratio / length_ratio - 1.0).abs() < 1e-13);
     }
 }
+
+#[test]
+fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
+    let case = |radius: &str, young: &str, slenderness: &str| {
+        let body = format!("young_pa = {young}\npoisson = 0.3");
+        let text = format!(
+            "name = \"a\"\n[roller]\nradius_m = {radius}\n{body}\n[block]\n{body}\n\
+             [dimensionless]\nW = 0.05\nS_l = {slenderness}\nL_r = 0.5\n"
+        );
+        let study = text.replace("[dimensionless]", "[factors]").replace("W = 0.05", "W = [0.05]");
+        let study = study
+            .replace(&format!("S_l = {slenderness}"), &format!("S_l = [{slenderness}]"))
+            .replace("L_r = 0.5", "L_r = [0.5]");
+        let case = Case::parse(&text, Path::new("c.toml"));
+        let study = Study::parse(&study, Path::new("c.toml")).map(|s| s.corners[0].clone());
+        assert_eq!(case.is_ok(), study.is_ok());
+        (case, study)
+    };
+    for (radius, young, slenderness, wanted) in [
+        ("1e4", "210e9", "1e4", "the roller's length becomes 5.046e7 m and must lie between"),
+        ("5e3", "210e9", "2", "the block's length becomes 1.009e4 m and must lie between"),
+        ("1e4", "1e14", "0.5", "the load becomes 6.931e19 N and must lie between"),
+    ] {
+        let (case, study) = case(radius, young, slenderness);
+        for said in [case.unwrap_err(), study.unwrap_err()] {
+            assert!(said.to_string().contains(wanted), "{said}");
+        }
+    }
+    // A case on a limit is a rounding beyond it when it is read from its own file.
+    for radius in ["1e-3", "3e-3", "7e-3", "0.011", "0.013"] {
+        let case = case(radius, "2.3e11", "0.5").0.unwrap();
+        assert!(Case::parse(&case.to_toml(), Path::new("again")).unwrap().is_same_problem(&case));
+    }
+}
+
+#[test]
+fn levels_with_too_many_digits_for_names_are_refused() {
+    let text = super::DEFAULT_STUDY
+        .replace("W = [1e-4, 1e-3]", "W = [1.2345678901234567e-12]")
+        .replace("S_l = [5.0, 20.0]", "S_l = [1234.5678901234567]")
+        .replace("L_r = [0.5, 1.0]", "L_r = [0.0010000000000000002]");
+    let said = Study::parse(&text, Path::new("s.toml")).unwrap_err().to_string();
+    assert!(said.contains("has a name of more than 64 letters; give levels with fewer"), "{said}");
+}
