@@ -66,7 +66,7 @@ fn run(target: &str, check: fn(&[u8])) {
 }
 
 /// Damaged copies of each input: some seconds of all targets together.
-const COPIES: usize = 200;
+const COPIES: usize = 1000;
 
 macro_rules! targets {
     ($($target:ident)*) => {

@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# Shows that the tests notice wrong formulas: changes one line of the kernels or the solver at a time,
+# in a copy of the project, and runs the tests that should fail then.
+#
+#   bash tests/mutate.sh
+#
+# The copy stands in target/mutants. Exit code 0 if every mutant was caught, 1 if one survived, 2 if a
+# mutant no longer fits its file or does not build, or the tests fail without any.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
+copy=$CARGO_TARGET_DIR/mutants
+mkdir -p "$copy"
+
+solver="--test verification -- pressures_of_an_independent flush_ends_without planes_carry end_faces"
+
+# File, the line's text, what it becomes, and the tests that should notice. A text must stand in its
+# file exactly once.
+mutants=(
+    "src/kernels/boussinesq.rs @@ -1.5 / PI * z @@ -1.4 / PI * z @@ --lib kernels::boussinesq"
+    "src/kernels/deflection.rs @@ (log(0) + log(1)) + x * difference @@ (log(0) + log(1)) - x * difference @@ --lib kernels::deflection"
+    "src/kernels/hertz.rs @@ let zz = -lift * m * m_sum / modulus; @@ let zz = -lift * m * n_sum / modulus; @@ --test analytic -- line_contact"
+    "src/kernels/plate.rs @@ along + (1.0 - near) * up @@ along + (1.0 + near) * up @@ --lib kernels::plate"
+    "src/kernels/strip.rs @@ (potential(2 * m) - potential(2 * m + 2)) @@ (potential(2 * m) + potential(2 * m + 2)) @@ --lib kernels::strip"
+    "src/body/finite.rs @@ identity(n, n) - from_face * &to_face @@ identity(n, n) + from_face * &to_face @@ $solver"
+    "src/body/finite.rs @@ .map(|i| Image { weight: 2.0, ..*i }) @@ .map(|i| Image { weight: 1.0, ..*i }) @@ $solver"
+    "src/contact/solver.rs @@ let load = 0.5 * PI * length; @@ let load = 0.4 * PI * length; @@ $solver"
+    "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
+    "src/stress/field.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
+)
+# Runs tests in the copy, quietly.
+run() {
+    (cd "$copy/tree" && cargo test --quiet --profile fast "$@") >"$copy/log" 2>&1
+}
+
+refuse() {
+    echo "error: $1" >&2
+    tail -20 "$copy/log" >&2 2>/dev/null || true
+    exit 2
+}
+
+# What is under version control, as it stands now; unchanged files keep their times for cargo.
+rm -rf "$copy/tree"
+mkdir "$copy/tree"
+git ls-files -z --deduplicate | xargs -0 cp --parents --preserve=timestamps --target-directory="$copy/tree"
+
+declare -A known=()
+survived=0
+for mutant in "${mutants[@]}"; do
+    file=${mutant%% @@ *} rest=${mutant#* @@ }
+    from=${rest%% @@ *} rest=${rest#* @@ }
+    to=${rest%% @@ *} tests=${rest#* @@ }
+    read -ra arguments <<<"$tests"
+    if [[ -z ${known[$tests]:-} ]]; then
+        run "${arguments[@]}" || refuse "these tests fail without a mutant: $tests"
+        known[$tests]=1
+    fi
+    count=$(grep -cF -- "$from" "$file" || true)
+    [[ $count == 1 ]] || refuse "$file has $count lines with \"$from\": bring tests/mutate.sh up to date"
+    FROM=$from TO=$to perl -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$copy/tree/$file"
+    read -ra build <<<"${tests%% -- *}"
+    run "${build[@]}" --no-run || refuse "$file does not build with \"$to\""
+    if run "${arguments[@]}"; then
+        echo "SURVIVED  $file: $from -> $to"
+        survived=1
+    else
+        echo "caught    $file: $from -> $to ($(grep -c 'panicked at' "$copy/log") tests fail)"
+    fi
+    cp "$file" "$copy/tree/$file"
+done
+exit "$survived"
