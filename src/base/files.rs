@@ -14,10 +14,11 @@ use std::path::Path;
 pub fn prepare_folder(path: &Path) -> Result<()> {
     let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
     std::fs::create_dir_all(path).map_err(io("create the folder"))?;
-    let probe = path.join(format!(".probe-{}", std::process::id()));
+    // One name for all: what a run that is killed here leaves is removed by the next.
+    let probe = path.join(".probe");
     // Not empty: a full disk still takes names.
     let written = std::fs::write(&probe, [0; 4096]);
-    let removed = std::fs::remove_file(&probe);
+    let removed = remove(&probe);
     written.and(removed).map_err(io("write into the folder"))
 }
 

@@ -262,7 +262,7 @@ fn tail(log: &Path) -> String {
 
 /// Whether there is hardly any room left in a folder: the log of a child that this stopped is empty.
 fn is_full(folder: &Path) -> bool {
-    let probe = folder.join(format!(".probe-{}", std::process::id()));
+    let probe = folder.join(".probe");
     let written = fs::write(&probe, vec![0; 1 << 20]);
     let _ = fs::remove_file(&probe);
     written.is_err_and(|e| e.kind() == std::io::ErrorKind::StorageFull)
