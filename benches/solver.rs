@@ -96,6 +96,7 @@ fn compliance_and_contact(c: &mut Criterion) {
             spacing: resolution.spacing,
             tolerance: 1e-2 * scene.tolerance,
             max_iterations: 40,
+            soundness: 1e-2,
         };
         c.bench_function(&format!("contact/flush, S_l/{slenderness}"), |b| {
             b.iter(|| contact::solve(&compliance, &axis, &settings).expect("it converges"));

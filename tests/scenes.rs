@@ -119,7 +119,7 @@ const LAWS: [(&str, f64); 12] = [
     ("inputs 1e-12 off (p0)", 1e-6),
     ("traction on the end faces (tolerances)", 8.0),
     ("approach against the load", 0.0),
-    ("finer grid (tolerances)", 3.0),
+    ("finer grid (tolerances)", 5.0),
     ("finer grid near the end (tolerances)", 12.0),
 ];
 

@@ -1,11 +1,10 @@
 //! The solver against known solutions, an independent one, its own refinement and the laws that any
 //! solution keeps. Lengths are in units of C, stresses in units of p0.
 
-mod common;
+mod scene;
 
 use std::f64::consts::PI;
 
-use common::scene;
 use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
@@ -14,6 +13,7 @@ use edgeline::solve::{Options, Point, RollerShape, Scene, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, Field, Pressure};
 use nalgebra::{DMatrix, DVector};
+use scene::scene;
 
 /// Distance from the roller's corner within which nothing is compared (C).
 const CORNER: f64 = 0.1;
@@ -120,6 +120,20 @@ fn long_contact_is_plane_strain() {
             let want = hertz::line_stress(x, z, 0.3);
             small(&format!("stress at {x} {z}"), apart(&got, &want), 5e-3);
             near(&format!("tau_max at {x} {z}"), got.tau_max(), want.tau_max(), 5e-3);
+        }
+    }
+}
+
+/// The approach of points at a depth in plane strain: the integral of (1 - e^(-k d)) 2 J1(k) / k^2 over k,
+/// whose derivative in d is 2 (sqrt(1 + d^2) - d).
+#[test]
+fn approach_of_a_long_contact_is_that_of_plane_strain() {
+    for tolerance in [1e-2, 1e-3] {
+        let scene = Scene { tolerance, ..scene(900.0, 1.0, 0.3, EdgeModel::Mirror) };
+        let solved = SolvedScene::new(&scene).unwrap();
+        for d in [3.0f64, 10.0, 40.0] {
+            let want = d * (1.0 + d * d).sqrt() + d.asinh() - d * d;
+            near(&format!("approach at {d}"), solved.approach(d), want, 0.005 * want);
         }
     }
 }

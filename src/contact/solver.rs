@@ -1,7 +1,7 @@
 use super::check::check;
 use crate::base::{Error, Panels, Result, Wavenumbers, linear};
 use crate::kernels::strip;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
 use std::ops::Range;
 
@@ -500,12 +500,19 @@ impl Linear<'_> {
     }
 }
 
+/// Wavenumber (1/C) below which a displacement at a depth counts as its difference to the surface's.
+const LONG: f64 = 0.6;
+
 /// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
 /// the kernel e^(-k depth) the displacement's logarithmic growth with the extent of the bodies
-/// drops out of the difference.
+/// drops out of the difference to the approach.
+///
+/// So does what the contact's few nodes make of displacements like 1/k and ln k: below a wavenumber
+/// the sum over the same nodes is taken, less the integral of what fades on the way down.
 pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
     let mut modes = Vec::new();
-    let numbers = compliance.wavenumbers.coarse().nodes();
+    let coarse = compliance.wavenumbers.coarse();
+    let numbers = coarse.nodes();
     let means: Vec<f64> = numbers
         .iter()
         .zip(compliance.matrices)
@@ -519,16 +526,46 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
             (c * p).mean()
         })
         .collect();
-    // A finite line load's displacement is linear in ln k for small k; so it is interpolated, on
-    // wavenumbers about 1/depth, wherever those of the contact lie.
+    let first = coarse.breaks()[1];
+    let top = coarse.breaks().partition_point(|k| *k < LONG).min(coarse.panel_count());
+    let top = coarse.breaks()[top];
+    let below = numbers.partition_point(|k| *k < top);
+
+    // alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
+    let ends = [0, coarse.order() / 2, coarse.order() - 1];
+    let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
+    let system = Matrix3::from_fn(|i, j| rows[i][j]);
+    let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
     let mean = |k: f64| {
-        let right = numbers.partition_point(|n| *n < k).clamp(1, numbers.len() - 1);
-        let (low, high) = (numbers[right - 1].ln(), numbers[right].ln());
-        let share = (k.ln() - low) / (high - low);
-        means[right - 1] + share * (means[right] - means[right - 1])
+        if k < first {
+            return fit[0] / k + fit[1] + fit[2] * k.ln();
+        }
+        // k times the mean is smooth in ln k: 2 pi / k for waves shorter than the line.
+        let from = numbers.partition_point(|n| *n < k).saturating_sub(2).min(numbers.len() - 4);
+        let at: [f64; 4] = std::array::from_fn(|i| numbers[from + i].ln());
+        let term = |i: usize| -> f64 {
+            let basis = (0..4).filter(|j| *j != i).map(|j| (k.ln() - at[j]) / (at[i] - at[j]));
+            numbers[from + i] * means[from + i] * basis.product::<f64>()
+        };
+        (0..4).map(term).sum::<f64>() / k
     };
-    let breaks = (-16..=4).map(|i| if i == -16 { 0.0 } else { 3f64.powi(i) / depth }).collect();
-    let own = Panels::new(breaks, 4);
-    let terms = own.nodes().iter().zip(own.weights());
-    terms.map(|(&k, w)| w / (PI * PI) * (-k * depth).exp() * mean(k)).sum()
+    // Panels that resolve e^(-k depth) and the fall of the mean.
+    let smallest = (1e-3 / depth).min(first);
+    let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;
+    let graded = |i| smallest * (top / smallest).powf(f64::from(i) / f64::from(steps));
+    let mut breaks: Vec<f64> = std::iter::once(0.0).chain((0..=steps).map(graded)).collect();
+    breaks.push(first);
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *a);
+    let own = Panels::new(breaks, 6);
+    let faded: f64 = own
+        .nodes()
+        .iter()
+        .zip(own.weights())
+        .map(|(&k, w)| -(-k * depth).exp_m1() * w * mean(k))
+        .sum();
+    let terms = || numbers.iter().zip(coarse.weights()).zip(&means);
+    let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
+    let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
+    (long - faded + short) / (PI * PI)
 }
