@@ -31,7 +31,7 @@ const CAVEATS: [&str; 5] = [
 /// and `summary.json`, which says that the run is complete, last.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write()`].
 pub fn write_run(files: &StudyFiles, folder: &Path) -> Result<()> {
     let made = made(files)?.into_iter();
     write_with_plots(folder, made.chain(files.contents()).collect())
