@@ -28,8 +28,10 @@ impl Bench {
 
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+        // A suite that runs under nohup would hand its ignored SIGHUP down, and edgeline respects that.
+        let mut command = Command::new("env");
         command
+            .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_edgeline")])
             .current_dir(self.folder.path())
             .env_remove("EDGELINE_PYTHON")
             .args(["fem", case, "--out"])
