@@ -2,6 +2,7 @@
 //! the stand-ins of `tests/fake/`, and processes that are counted.
 
 use std::fs;
+use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -28,10 +29,16 @@ impl Bench {
 
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
         // A suite that runs under nohup would hand its ignored SIGHUP down, and edgeline respects that.
-        let mut command = Command::new("env");
+        // SAFETY: a plain system call that is async-signal-safe.
+        unsafe {
+            command.pre_exec(|| {
+                libc::signal(libc::SIGHUP, libc::SIG_DFL);
+                Ok(())
+            });
+        }
         command
-            .args(["--default-signal=HUP", env!("CARGO_BIN_EXE_edgeline")])
             .current_dir(self.folder.path())
             .env_remove("EDGELINE_PYTHON")
             .args(["fem", case, "--out"])
