@@ -1,6 +1,6 @@
 //! What a solved contact has to satisfy, evaluated away from the points where it was solved.
 
-use super::solver::{Compliance, ContactSolution, Remainder, SCREEN, SCREEN_POINTS, remainders};
+use super::solver::{Compliance, ContactSolution, Remainder, remainders, screened};
 use crate::base::{Error, Panels, Result};
 use crate::kernels::strip;
 
@@ -77,46 +77,27 @@ fn gaps_of(
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
-    let n = axis.len();
-    let mut gaps = vec![vec![0.0; n]; places.len()];
-    let most = solution.coefficients.iter().map(Vec::len).max().unwrap_or(0);
-    let mut modes = vec![0.0; most];
-    let mut amplitudes = vec![0.0; n];
+    let mut gaps = vec![vec![0.0; axis.len()]; places.len()];
     let fine = compliance.wavenumbers.fine();
     for ((&k, w), remainder) in fine.nodes().iter().zip(fine.weights()).zip(remainders) {
-        amplitudes.fill(0.0);
-        for j in remainder.nodes.clone() {
-            let rows = remainder.rows[j].clone();
-            let c = &solution.coefficients[j];
-            if rows.is_empty() || c.is_empty() {
-                continue;
-            }
-            let own = &mut modes[..c.len()];
-            strip::transforms(solution.half_widths[j], k, own);
-            let transform: f64 = own.iter().zip(c).map(|(t, c)| t * c).sum();
-            let entries = remainder.matrix.column(j);
-            for i in rows {
-                amplitudes[i] += entries[i] * transform;
-            }
-        }
+        // All rows and columns: those that the solver leaves out are what is to be checked, too.
+        let amplitudes = &remainder.matrix * solution.transform(k);
         for (row, t) in gaps.iter_mut().zip(places) {
-            for i in remainder.nodes.clone() {
-                row[i] += w / (PI * PI) * amplitudes[i] * (k * t * solution.half_widths[i]).cos();
+            for ((gap, amplitude), a) in row.iter_mut().zip(&amplitudes).zip(&solution.half_widths)
+            {
+                *gap += w / (PI * PI) * amplitude * (k * t * a).cos();
             }
         }
     }
+    let mut modes = Vec::new();
     for (row, &t) in gaps.iter_mut().zip(places) {
         for (i, gap) in row.iter_mut().enumerate() {
             let (a, c) = (solution.half_widths[i], &solution.coefficients[i]);
-            let own = &mut modes[..c.len()];
-            strip::logarithmic(a, t, own);
-            *gap += 2.0 / PI * own.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
-            for q in 0..SCREEN_POINTS {
-                let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
-                let offset = a * (t - angle.cos());
-                let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
-                let p = angle.sin() * strip::pressure(1.0, c, angle.cos());
-                *gap += 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64 * p;
+            modes.resize(c.len(), 0.0);
+            strip::logarithmic(a, t, &mut modes);
+            *gap += 2.0 / PI * modes.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
+            for (angle, weight) in screened(a, t) {
+                *gap += weight * angle.sin() * strip::pressure(1.0, c, angle.cos());
             }
             *gap += (a * t).powi(2) - solution.approach;
         }

@@ -52,9 +52,22 @@ pub struct ContactSolution {
     pub load_error: f64,
 }
 
+impl ContactSolution {
+    /// Fourier transform int p cos(k x) dx of the pressure at every node.
+    pub(super) fn transform(&self, k: f64) -> DVector<f64> {
+        let mut modes = Vec::new();
+        DVector::from_fn(self.half_widths.len(), |j, _| {
+            let coefficients = &self.coefficients[j];
+            modes.resize(coefficients.len(), 0.0);
+            strip::transforms(self.half_widths[j], k, &mut modes);
+            modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
+        })
+    }
+}
+
 /// Distance at which the closed logarithmic kernel of the local, plane part is screened, so that
 /// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
-pub(super) const SCREEN: f64 = 2.0;
+const SCREEN: f64 = 2.0;
 
 /// Entries of the collocation matrix per wavenumber that are as good as none, relative to the
 /// tolerance of the singularity.
@@ -71,7 +84,7 @@ const ATTEMPT: usize = 26;
 const SHAPE_POINTS: i32 = 8;
 
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
-pub(super) const SCREEN_POINTS: usize = 12;
+const SCREEN_POINTS: usize = 12;
 
 /// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
 ///
@@ -338,9 +351,9 @@ impl Layout {
 pub(super) struct Remainder {
     pub matrix: DMatrix<f64>,
     /// Rows of each column that matter: where waves are short, only those near the line's end.
-    pub rows: Vec<Range<usize>>,
+    rows: Vec<Range<usize>>,
     /// Rows and columns that matter.
-    pub nodes: Range<usize>,
+    nodes: Range<usize>,
 }
 
 /// The remainders at the fine wavenumbers, interpolated from the coarse ones; `negligible` is the
@@ -385,6 +398,17 @@ pub(super) fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> 
         .enumerate()
         .map(interpolated)
         .collect()
+}
+
+/// What screens the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x') dx', by
+/// Gauss-Chebyshev of the first kind: angles f of x' = cos(f) `half_width`, and weights of p sin(f) there.
+pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (f64, f64)> {
+    (0..SCREEN_POINTS).map(move |q| {
+        let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
+        let offset = half_width * (t - angle.cos());
+        let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
+        (angle, 2.0 / PI * kernel * half_width * PI / SCREEN_POINTS as f64)
+    })
 }
 
 /// The linear problem for held half-widths: the unknowns of each node, then the approach.
@@ -472,13 +496,8 @@ impl Linear<'_> {
                 for (column, factor) in &singular {
                     matrix[(row, *column)] += 2.0 / PI * factor * amplitude;
                 }
-                // (1/2) int ln((x - x')^2 + d^2) p(x') dx' by Gauss-Chebyshev of the first kind, with
-                // sqrt(1-t^2) U_2m = sin((2m+1) f).
-                for q in 0..SCREEN_POINTS {
-                    let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
-                    let offset = a * (t - angle.cos());
-                    let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
-                    let weight = 2.0 / PI * kernel * a * PI / SCREEN_POINTS as f64;
+                for (angle, weight) in screened(a, t) {
+                    // sqrt(1-t^2) U_2m = sin((2m+1) f).
                     for (m, column) in modes.clone().enumerate() {
                         let mode = ((2 * m + 1) as f64 * angle).sin() * angle.sin();
                         matrix[(row, column)] += weight * mode;
@@ -510,21 +529,12 @@ const LONG: f64 = 0.6;
 /// So does what the contact's few nodes make of displacements like 1/k and ln k: below a wavenumber
 /// the sum over the same nodes is taken, less the integral of what fades on the way down.
 pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
-    let mut modes = Vec::new();
     let coarse = compliance.wavenumbers.coarse();
     let numbers = coarse.nodes();
     let means: Vec<f64> = numbers
         .iter()
         .zip(compliance.matrices)
-        .map(|(&k, c)| {
-            let p = DVector::from_fn(solution.half_widths.len(), |j, _| {
-                let coefficients = &solution.coefficients[j];
-                modes.resize(coefficients.len(), 0.0);
-                strip::transforms(solution.half_widths[j], k, &mut modes);
-                modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
-            });
-            (c * p).mean()
-        })
+        .map(|(&k, c)| (c * solution.transform(k)).mean())
         .collect();
     let first = coarse.breaks()[1];
     let top = coarse.breaks().partition_point(|k| *k < LONG).min(coarse.panel_count());
