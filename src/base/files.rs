@@ -88,11 +88,19 @@ const PARTS: &str = ".parts";
 /// # Errors
 /// [`Error::Io`] when it cannot be removed.
 pub(super) fn remove_parts(folder: &Path) -> Result<()> {
-    let parts = folder.join(PARTS);
-    remove(&parts).map_err(|source| Error::Io { action: "remove", path: parts, source })
+    remove_if_there(&folder.join(PARTS))
 }
 
-/// Removes a file or a folder, if it is there.
+/// Removes a file or a folder with all that is in it, if it is there.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be removed.
+pub fn remove_if_there(path: &Path) -> Result<()> {
+    let io = |source| Error::Io { action: "remove", path: path.to_path_buf(), source };
+    remove(path).map_err(io)
+}
+
+/// [`remove_if_there`], with the system's own error.
 fn remove(path: &Path) -> std::io::Result<()> {
     let is_folder = std::fs::symlink_metadata(path).is_ok_and(|m| m.is_dir());
     let removed =

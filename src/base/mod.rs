@@ -14,7 +14,7 @@ mod tensor;
 mod wavenumbers;
 
 pub use error::{Error, Result};
-pub use files::{prepare_folder, read_text, write_set, write_whole};
+pub use files::{prepare_folder, read_text, remove_if_there, write_set, write_whole};
 pub use lock::Lock;
 pub use material::Material;
 pub use memory::check_memory;

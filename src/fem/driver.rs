@@ -10,7 +10,8 @@ use super::process::{Stage, kill_marked};
 use super::result::{MeshResult, MeshSummary, ResultTexts, wanted_curves, wanted_lines};
 use super::tools::{self, Interpreter};
 use crate::base::{
-    Error, Lock, Result, check_memory, prepare_folder, read_text, write_set, write_whole,
+    Error, Lock, Result, check_memory, prepare_folder, read_text, remove_if_there, write_set,
+    write_whole,
 };
 use crate::case::Case;
 use serde_json::{Value, json};
@@ -185,7 +186,7 @@ impl Driver {
         }
         // In this order, so that a run that is killed here does not pass for a finished one.
         for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
-            remove(&folder.join(name))?;
+            remove_if_there(&folder.join(name))?;
         }
         run.prepare(&text, &key)?;
         run.mesh(progress)?;
@@ -199,7 +200,7 @@ impl Driver {
         write_whole(&folder.join("request.key"), key)?;
         jit_cache::keep(&run.cache());
         if !self.settings.keep {
-            remove(&run.work)?;
+            remove_if_there(&run.work)?;
         }
         drop(lock);
         Ok(result)
@@ -234,7 +235,7 @@ impl Run<'_> {
     /// Lays out the folder of work, keeping what belongs to the same request.
     fn prepare(&self, request: &str, key: &str) -> Result<()> {
         if read(&self.work.join("request.key")).ok().as_deref() != Some(key) {
-            remove(&self.work)?;
+            remove_if_there(&self.work)?;
         }
         let package = self.work.join("package/edgeline_fem");
         prepare_folder(&package)?;
@@ -242,7 +243,7 @@ impl Run<'_> {
             write_whole(&package.join(name), source)?;
         }
         // What an earlier run did not finish compiling must not be waited for.
-        remove(&self.work.join("cache"))?;
+        remove_if_there(&self.work.join("cache"))?;
         jit_cache::seed(&self.cache());
         write_whole(&self.work.join("request.json"), request)?;
         write_whole(&self.work.join("request.key"), key)
@@ -283,7 +284,7 @@ impl Run<'_> {
                 progress("solved already");
                 return Ok(());
             }
-            remove(&done)?;
+            remove_if_there(&done)?;
         }
         progress("solving");
         let settings = &self.driver.settings;
@@ -404,16 +405,4 @@ fn read(path: &Path) -> Result<String> {
         MAX_RESULT_BYTES,
         "the file was not written by this version; remove it and run again",
     )
-}
-
-/// Removes a file or a folder, if it is there.
-fn remove(path: &Path) -> Result<()> {
-    let removed =
-        if path.is_dir() { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
-    match removed {
-        Err(source) if source.kind() != std::io::ErrorKind::NotFound => {
-            Err(Error::Io { action: "remove", path: path.to_path_buf(), source })
-        }
-        _ => Ok(()),
-    }
 }
