@@ -4,6 +4,9 @@
 //! `EDGELINE_SCENES=20000 cargo test --release --test scenes -- --nocapture` runs as many and writes
 //! `results/scenes/`; without the variable some hundred of them run, and nothing is written.
 
+mod compare;
+
+use compare::{apart, worse};
 use edgeline::base::{Error, Material, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
@@ -107,6 +110,23 @@ impl Draw {
     }
 }
 
+/// The laws, in the order of [`LAWS`].
+#[derive(Clone, Copy)]
+enum Law {
+    Load,
+    Pull,
+    Gap,
+    Penetration,
+    Mirror,
+    Exchange,
+    Units,
+    Perturbed,
+    Traction,
+    Approach,
+    Finer,
+    FinerNear,
+}
+
 /// What a law is broken by, each in units of what is allowed.
 const LAWS: [(&str, f64); 12] = [
     ("load (relative)", 1e-9),
@@ -148,15 +168,6 @@ fn reason(message: &str) -> String {
         if value { "a value" } else { word }
     });
     words.collect::<Vec<_>>().join(" ").replace('"', "'").replace('\n', " ")
-}
-
-/// The larger one; a NaN wins.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
-}
-
-fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
-    a.components().into_iter().zip(b.components()).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
 }
 
 /// Distances from the end of the line at which pressures are compared.
@@ -204,13 +215,14 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     let half_length = scene.half_length;
     let axis = solved.pressure.axis();
     let mut broken = [0.0; LAWS.len()];
+    let mut note = |law: Law, value: f64| broken[law as usize] = worse(broken[law as usize], value);
 
     let line = |j: usize| {
         let (a, c) = solved.pressure.at_node(j);
         axis.weights()[j] * strip::cumulative(a, c, a)
     };
     let carried: f64 = (0..axis.len()).map(line).sum();
-    broken[0] = (carried / (0.5 * PI * half_length) - 1.0).abs();
+    note(Law::Load, (carried / (0.5 * PI * half_length) - 1.0).abs());
 
     let places = [0.2, 0.55, 0.9, 1.1, 1.4, 2.5, 5.0];
     let outside = |j: &usize| half_length - axis.nodes()[*j] >= CORNER;
@@ -218,10 +230,10 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         for j in (0..axis.len()).filter(outside) {
             let (a, c) = solved.pressure.at_node(j);
             let pressed = c.iter().any(|c| *c != 0.0);
-            broken[1] = worse(broken[1], -strip::pressure(a, c, a * t) / draw.tolerance);
-            broken[3] = worse(broken[3], -gaps[j] / draw.tolerance);
+            note(Law::Pull, -strip::pressure(a, c, a * t) / draw.tolerance);
+            note(Law::Penetration, -gaps[j] / draw.tolerance);
             if t < 1.0 && pressed {
-                broken[2] = worse(broken[2], gaps[j].abs() / draw.tolerance);
+                note(Law::Gap, gaps[j].abs() / draw.tolerance);
             }
         }
     }
@@ -231,14 +243,14 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         let (y, z) = (0.7 * half_length, 0.6);
         let [s, t] = [field.at(y, z, &[0.4])[0], field.at(-y, z, &[-0.4])[0]];
         let mirrored = StressTensor { xz: -t.xz, yz: -t.yz, ..t };
-        broken[4] = worse(broken[4], apart(&s, &mirrored));
+        note(Law::Mirror, apart(&s, &mirrored));
         if draw.model == EdgeModel::QuarterSpace {
             // On the face itself zero is put in; so near to it the field says what it is.
             let y = body.half * (1.0 - 2e-9);
             for z in [0.2, 0.7, 2.0, 6.0] {
                 for s in field.at(y, z, &[0.0, 0.7, 1.5]) {
                     let traction = worse(s.yy.abs(), worse(s.xy.abs(), s.yz.abs()));
-                    broken[8] = worse(broken[8], traction / draw.tolerance);
+                    note(Law::Traction, traction / draw.tolerance);
                 }
             }
         }
@@ -247,7 +259,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     if draw.factors.length_ratio == 1.0 {
         let mut exchanged = scene.clone();
         exchanged.bodies.swap(0, 1);
-        broken[5] = pressures_apart(&solved, &SolvedScene::new(&exchanged)?);
+        note(Law::Exchange, pressures_apart(&solved, &SolvedScene::new(&exchanged)?));
     }
 
     // Other units of length and of stress.
@@ -262,13 +274,13 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     let rescaled = Scene::new(&other, draw.model, None);
     // A scene has twelve digits of the case: the same ones, but where rounding takes the other side.
     if rescaled != scene {
-        broken[7] = pressures_apart(&solved, &SolvedScene::new(&rescaled)?);
+        note(Law::Perturbed, pressures_apart(&solved, &SolvedScene::new(&rescaled)?));
     }
     for (a, b) in scene.bodies.iter().zip(rescaled.bodies) {
         let pairs =
             [(a.half, b.half), (a.share, b.share), (scene.half_length, rescaled.half_length)];
         let off = pairs.into_iter().map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, worse);
-        broken[6] = worse(broken[6], off);
+        note(Law::Units, off);
     }
 
     // One part in 10^12 of every number.
@@ -279,7 +291,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
             body.half *= 1.0 + 1e-12;
             body.nu *= 1.0 + 1e-12;
         }
-        broken[7] = worse(broken[7], pressures_apart(&solved, &SolvedScene::new(&other)?));
+        note(Law::Perturbed, pressures_apart(&solved, &SolvedScene::new(&other)?));
     }
 
     // More load, more approach.
@@ -291,15 +303,15 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         solved.approach(r / c) * c * c
     };
     let more = approach(&heavier, &pressed) - approach(&case, &solved);
-    broken[9] = if more > 0.0 { 0.0 } else { 1.0 };
+    note(Law::Approach, if more > 0.0 { 0.0 } else { 1.0 });
 
     if compare {
         let tolerance = if draw.tolerance > 2e-3 { 1e-3 } else { 1e-4 };
         let finer = Resolution::for_tolerance(tolerance);
         let finer = SolvedScene::with_resolution(&scene, &finer)?;
         let [far, near] = stresses_apart(&solved, &finer);
-        broken[10] = worse(pressures_apart(&solved, &finer), far) / draw.tolerance;
-        broken[11] = near / draw.tolerance;
+        note(Law::Finer, worse(pressures_apart(&solved, &finer), far) / draw.tolerance);
+        note(Law::FinerNear, near / draw.tolerance);
     }
     let (iterations, condition) = (solved.contact.iterations, solved.condition);
     Ok(Outcome::Answer { broken, iterations, condition, seconds })

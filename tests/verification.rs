@@ -1,10 +1,12 @@
 //! The solver against known solutions, an independent one, its own refinement and the laws that any
 //! solution keeps. Lengths are in units of C, stresses in units of p0.
 
+mod compare;
 mod scene;
 
 use std::f64::consts::PI;
 
+use compare::{apart, worse};
 use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
@@ -40,17 +42,6 @@ fn curve_points(scene: &Scene, kind: BodyKind) -> Vec<(&'static str, [f64; 3])> 
 
 fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {
     field.at(y, z, &[x])[0]
-}
-
-/// Largest difference of two stresses' components.
-fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
-    let pairs = a.components().into_iter().zip(b.components());
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, worse)
-}
-
-/// The larger one; a NaN wins, so that it cannot pass as small.
-fn worse(a: f64, b: f64) -> f64 {
-    if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
 /// Asserts |got - want| <= tolerance and says what was got.
