@@ -535,6 +535,53 @@ fn faded_wavenumbers_do_not_matter() {
     }
 }
 
+/// The curves' points between those that are evaluated, ledges of about the depth included, below
+/// which the end face's corner is as near as the contact's.
+#[test]
+fn points_between_do_not_matter() {
+    for tolerance in [1e-2, 5e-3, 1e-3, 1e-4] {
+        let mut worst: f64 = 0.0;
+        let (mut fewer, mut all) = (0, 0);
+        for (slenderness, length_ratio, model) in [
+            (5.0, 1.0, EdgeModel::QuarterSpace),
+            (5.0, 0.5, EdgeModel::QuarterSpace),
+            (20.0, 0.97, EdgeModel::QuarterSpace),
+            (20.0, 0.5, EdgeModel::HalfSpace),
+            (1.0, 0.9, EdgeModel::QuarterSpace),
+            (200.0, 0.999, EdgeModel::QuarterSpace),
+            (8.0, 0.8, EdgeModel::Guilbault),
+        ] {
+            let scene = Scene { tolerance, ..scene(slenderness, length_ratio, 0.3, model) };
+            let solved = SolvedScene::new(&scene).unwrap();
+            for kind in BodyKind::ALL {
+                let [field, direct] = [solved.field(kind), solved.field(kind)];
+                let mut own: f64=0.; let mut what=String::new();
+                for curve in standard_curves(kind, slenderness, half_of(&scene, kind)) {
+                    let [x, y, z] = curve.points[0];
+                    let run = |axis: usize| curve.points.iter().map(|p| p[axis]).collect::<Vec<_>>();
+                    let values = match curve.name {
+                        name if name.starts_with("depth") => field.down(x, y, &run(2)),
+                        name if name.starts_with("along") => field.along(x, z, &run(1)),
+                        _ => continue,
+                    };
+                    for (place, value) in curve.points.iter().zip(&values) {
+                        let off: f64 = apart(value, &at(&direct, *place));
+                        if (place[1] - slenderness).hypot(place[2]) < CORNER * 0.999 { continue; }
+                        if off > own { own = off; what=format!("{tolerance} {slenderness} {length_ratio} {model} {kind:?} {} {place:?} {off:.2e}", curve.name); }
+                        worst = worse(worst, apart(value, &at(&direct, *place)));
+                    }
+                }
+                println!("{what}");
+                fewer += field.work().done;
+                all += direct.work().done;
+            }
+        }
+        assert!(fewer < all, "{fewer} {all}");
+        println!("{fewer} of {all}");
+        small(&format!("tolerance {tolerance:e}"), worst / tolerance, 50.);
+    }
+}
+
 #[test]
 fn bodies_that_are_alike_are_computed_once() {
     let alike = solved(5.0, 1.0, 0.3, EdgeModel::QuarterSpace);

@@ -408,6 +408,8 @@ struct Line {
 enum Along {
     /// Along x, at y and z.
     X(f64, f64),
+    /// Along y, at x and z.
+    Y(f64, f64),
     /// Along z, at x and y.
     Z(f64, f64),
 }
@@ -446,13 +448,14 @@ fn stresses(
         lines[index].points.push((at, slot));
     };
     for (i, curve) in curves.iter().enumerate() {
-        let depth = curve.points.windows(2).all(|p| p[0][..2] == p[1][..2]);
+        let same = |axis: usize| curve.points.windows(2).all(|p| p[0][axis] == p[1][axis]);
+        let fixed = [0, 1, 2].map(same);
         for (j, &[x, y, z]) in curve.points.iter().enumerate() {
             let slot = Slot::Curve(i, j);
-            if depth {
-                add(curve.body, Along::Z(x, y), z, slot);
-            } else {
-                add(curve.body, Along::X(y, z), x, slot);
+            match fixed {
+                [true, true, _] => add(curve.body, Along::Z(x, y), z, slot),
+                [true, _, true] => add(curve.body, Along::Y(x, z), y, slot),
+                _ => add(curve.body, Along::X(y, z), x, slot),
             }
         }
     }
@@ -472,7 +475,8 @@ fn stresses(
             let at: Vec<f64> = line.points.iter().map(|p| p.0).collect();
             match line.along {
                 Along::X(y, z) => field.at(y, z, &at),
-                Along::Z(x, y) => field.down(x, y, &at, solved.resolution.order + 1),
+                Along::Y(x, z) => field.along(x, z, &at),
+                Along::Z(x, y) => field.down(x, y, &at),
             }
         })
         .collect();

@@ -12,8 +12,8 @@ use crate::body::stencil::{LineLoads, Stencil};
 use crate::body::{Body, EdgeModel, Layer};
 use crate::kernels::strip;
 use crate::kernels::wave::{surface_spread, surface_spread_shear};
-use nalgebra::DVector;
-use std::f64::consts::PI;
+use nalgebra::{Complex, DVector};
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
@@ -188,9 +188,12 @@ impl Counters {
     }
 }
 
-/// Depth (C) from which [`Field::down`] interpolates, on panels that grow.
-const SMOOTH_DEPTH: f64 = 0.15;
-const GROWTH: f64 = 2.0;
+/// Depth (C) from which [`Field::down`] interpolates: nearer to the surface a coarse answer has
+/// errors next to the corner that a polynomial would carry away from there.
+const SMOOTH_DEPTH: f64 = 0.14;
+
+/// What interpolation along a line may leave out, in tolerances.
+const INTERPOLATION: f64 = 0.02;
 
 /// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
 const ON_SURFACE: f64 = 1e-9;
@@ -210,6 +213,8 @@ pub struct Field<'a> {
     all: Mutex<Vec<(i32, Arc<Vec<Loads>>)>>,
     /// Stress transition factor of [`EdgeModel::Guilbault`].
     gamma: f64,
+    /// Requested accuracy (p0).
+    tolerance: f64,
     /// A wavenumber's share of a stress that is as good as none (p0).
     negligible: f64,
     counters: Counters,
@@ -269,6 +274,7 @@ impl<'a> Field<'a> {
             central,
             all,
             gamma,
+            tolerance,
             negligible,
             counters,
             plates,
@@ -330,36 +336,76 @@ impl<'a> Field<'a> {
         xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
     }
 
-    /// Stresses at the points (`x`, `y`, z) for each z of `zs`, in their order: what
-    /// [`Field::at`] gives, with the smooth part interpolated over the depth where points lie
-    /// closer than it varies.
-    pub fn down(&self, x: f64, y: f64, zs: &[f64], order: usize) -> Vec<StressTensor> {
-        let deepest = zs.iter().fold(0.0, |m: f64, z| m.max(*z));
-        let mut breaks = vec![SMOOTH_DEPTH];
-        while 1.3 * GROWTH * breaks[breaks.len() - 1] < deepest {
-            breaks.push(GROWTH * breaks[breaks.len() - 1]);
-        }
-        let shallow = zs.iter().filter(|z| **z < SMOOTH_DEPTH).count();
-        if deepest <= SMOOTH_DEPTH || zs.len() - shallow <= breaks.len() * order {
+    /// Stresses at the points (`x`, `y`, z) for each z >= 0 of `zs`, in their order: what [`Field::at`]
+    /// gives, with the smooth part interpolated where points lie closer than it varies.
+    ///
+    /// Under a load at the distance u along the surface the field's poles are at z = +-i u, so in
+    /// ln z it is analytic for imaginary parts within pi/2.
+    pub fn down(&self, x: f64, y: f64, zs: &[f64]) -> Vec<StressTensor> {
+        let below = zs.iter().filter(|z| **z >= SMOOTH_DEPTH).map(|z| z.ln());
+        let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), FRAC_PI_2)];
+        let Some(axis) = self.sampling(below, poles) else {
             return zs.iter().map(|&z| self.at(y, z, &[x])[0]).collect();
-        }
-        breaks.push(deepest);
-        let axis = Panels::new(breaks, order);
+        };
         let nodes: Vec<StressTensor> =
-            axis.nodes().iter().map(|&z| self.remainders(y, z, &[x])[0]).collect();
+            axis.nodes().iter().map(|t| self.remainders(y, t.exp(), &[x])[0]).collect();
         zs.iter()
-            .map(|&z| {
-                if z < SMOOTH_DEPTH {
-                    return self.at(y, z, &[x])[0];
-                }
-                let (first, weights) = axis.interpolation(z);
-                let mut sum = StressTensor::default();
-                for (w, s) in weights.iter().zip(&nodes[first..]) {
-                    sum += *s * *w;
-                }
-                self.complete(x, y, z, sum)
+            .map(|&z| match z >= SMOOTH_DEPTH {
+                true => self.complete(x, y, z, interpolated(&axis, &nodes, z.ln())),
+                false => self.at(y, z, &[x])[0],
             })
             .collect()
+    }
+
+    /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
+    /// [`Field::at`] gives, interpolated where points lie closer than the field varies.
+    ///
+    /// At a depth below a corner the field's poles are at that distance from the corner, to either
+    /// side of the line: y = corner + z sinh t puts the points where it varies, and the poles of
+    /// the contact's end at t = +-i pi/2.
+    pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
+        let breaks = self.pressure.axis().breaks();
+        let end = breaks[breaks.len() - 1];
+        let corner = Complex::new((self.body.half - end) / z, 1.0).asinh();
+        let place = |y: f64| ((y - end) / z).asinh();
+        let poles = |_| vec![(0.0, FRAC_PI_2), (corner.re, corner.im)];
+        let axis = match z > ON_SURFACE {
+            true => self.sampling(ys.iter().map(|y| place(*y)), poles),
+            false => None,
+        };
+        let Some(axis) = axis else {
+            return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
+        };
+        let nodes: Vec<StressTensor> =
+            axis.nodes().iter().map(|t| self.at(end + z * t.sinh(), z, &[x])[0]).collect();
+        ys.iter().map(|y| interpolated(&axis, &nodes, place(*y))).collect()
+    }
+
+    /// The nodes through which to interpolate to `places`, [`INTERPOLATION`] exactly, with
+    /// functions that have `poles` (places, and distances from the axis) between the outermost two;
+    /// none if they were no fewer than the places.
+    ///
+    /// Interpolation through n Gauss nodes errs by about r^-n, with r the parameter of Bernstein's
+    /// ellipse through the pole, see [`crate::body::stencil`].
+    fn sampling(
+        &self,
+        places: impl Iterator<Item = f64> + Clone,
+        poles: impl Fn([f64; 2]) -> Vec<(f64, f64)>,
+    ) -> Option<Panels> {
+        let from = places.clone().fold(f64::INFINITY, f64::min);
+        let to = places.clone().fold(f64::NEG_INFINITY, f64::max);
+        let count = places.count();
+        if count < 3 || to <= from {
+            return None;
+        }
+        let slowest = poles([from, to])
+            .into_iter()
+            .map(|(at, off)| ((at - from).hypot(off) + (at - to).hypot(off)) / (to - from))
+            .fold(f64::INFINITY, f64::min);
+        let rate = (slowest + (slowest * slowest - 1.0).max(0.0).sqrt()).ln();
+        let wanted = -(INTERPOLATION * self.tolerance).ln() / rate;
+        (wanted < count as f64 - 1.0)
+            .then(|| Panels::new(vec![from, to], wanted.ceil().max(2.0) as usize))
     }
 
     /// Whether `y` (C) lies on an end face.
@@ -536,6 +582,15 @@ impl<'a> Field<'a> {
         };
         [xx, dd, ww, into * xd, xw, into * wd]
     }
+}
+
+/// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
+fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTensor {
+    let mut sum = StressTensor::default();
+    for (node, weight) in numbered(axis.interpolation(place)) {
+        sum += values[node] * weight;
+    }
+    sum
 }
 
 /// A run of numbers from the first on, each with its weight.
