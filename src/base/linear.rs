@@ -1,5 +1,6 @@
 //! Dense linear systems.
 
+use multiversion::multiversion;
 use nalgebra::DMatrix;
 
 /// Columns that are eliminated together.
@@ -10,6 +11,7 @@ const BLOCK: usize = 32;
 /// column by column and takes four times as long at the 150 to 300 unknowns of a contact.
 ///
 /// None where the matrix is singular or holds no numbers.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 pub fn solve(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let n = matrix.nrows();
     assert!(matrix.ncols() == n && right.nrows() == n, "a square system");

@@ -84,31 +84,23 @@ impl Panels {
         self.breaks[1..self.breaks.len() - 1].partition_point(|&b| b <= x)
     }
 
-    /// Values at `x` of the Lagrange polynomials of panel `i`, into `out` (length `order`).
-    pub fn basis(&self, i: usize, x: f64, out: &mut [f64]) {
-        let [a, b] = self.panel(i);
-        let t = (2.0 * x - a - b) / (b - a);
-        if let Some(hit) = self.unit_nodes.iter().position(|&u| u == t) {
-            out.fill(0.0);
-            out[hit] = 1.0;
-            return;
-        }
-        let mut product = 1.0;
-        for u in &self.unit_nodes {
-            product *= t - u;
-        }
-        for ((o, u), c) in out.iter_mut().zip(&self.unit_nodes).zip(&self.barycentric) {
-            *o = product * c / (t - u);
-        }
+    /// The interpolation at `x`: the nodes of its panel, each with its weight (an extrapolation where
+    /// `x` lies outside the axis).
+    pub fn interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
+        let panel = self.panel_of(x);
+        (panel * self.order..).zip(self.polynomials(panel, x))
     }
 
-    /// Weights of the interpolation at `x`: the first node's index, and one weight per node of
-    /// its panel (an extrapolation where `x` lies outside the axis).
-    pub fn interpolation(&self, x: f64) -> (usize, Vec<f64>) {
-        let i = self.panel_of(x);
-        let mut out = vec![0.0; self.order];
-        self.basis(i, x, &mut out);
-        (i * self.order, out)
+    /// Values at `x` of the Lagrange polynomials of panel `i`, by the barycentric formula.
+    pub fn polynomials(&self, i: usize, x: f64) -> impl Iterator<Item = f64> {
+        let [a, b] = self.panel(i);
+        let t = (2.0 * x - a - b) / (b - a);
+        let hit = self.unit_nodes.contains(&t);
+        let product: f64 = self.unit_nodes.iter().map(|u| t - u).product();
+        self.unit_nodes.iter().zip(&self.barycentric).map(move |(u, c)| match hit {
+            true => f64::from(u8::from(*u == t)),
+            false => product * c / (t - u),
+        })
     }
 
     /// Integrals of each Lagrange polynomial of panel `i` times cos(`wavenumber` x) over the panel,
@@ -177,8 +169,7 @@ mod tests {
         let f = |x: f64| 1.0 - 2.0 * x + 0.5 * x.powi(3);
         let values: Vec<f64> = axis.nodes().iter().map(|&x| f(x)).collect();
         for x in [0.0, 0.2, 0.5, 1.7, 3.0, axis.nodes()[5]] {
-            let (start, w) = axis.interpolation(x);
-            let got: f64 = w.iter().zip(&values[start..]).map(|(w, v)| w * v).sum();
+            let got: f64 = axis.interpolation(x).map(|(node, w)| w * values[node]).sum();
             assert!((got - f(x)).abs() < 1e-13, "{x}: {got}");
         }
         let integral: f64 = axis.weights().iter().zip(&values).map(|(w, v)| w * v).sum();
@@ -193,10 +184,8 @@ mod tests {
             let mut got = [0.0; 5];
             axis.cosine_moments(0, k, &mut got);
             let mut want = [0.0; 5];
-            let mut basis = [0.0; 5];
             for (x, w) in fine.nodes().iter().zip(fine.weights()) {
-                axis.basis(0, *x, &mut basis);
-                for (s, b) in want.iter_mut().zip(&basis) {
+                for (s, b) in want.iter_mut().zip(axis.polynomials(0, *x)) {
                     *s += w * b * (k * x).cos();
                 }
             }

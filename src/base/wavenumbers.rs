@@ -32,11 +32,10 @@ impl Wavenumbers {
             members.push(first..(breaks.len() - 1) * order);
         }
         let fine = Panels::new(breaks, order);
-        let mut basis = vec![0.0; order * fine.len()];
+        let mut basis = Vec::with_capacity(order * fine.len());
         for (panel, nodes) in members.iter().enumerate() {
             for node in nodes.clone() {
-                let into = &mut basis[node * order..(node + 1) * order];
-                coarse.basis(panel, fine.nodes()[node], into);
+                basis.extend(coarse.polynomials(panel, fine.nodes()[node]));
             }
         }
         Self { coarse, fine, members, basis }

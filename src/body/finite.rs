@@ -7,11 +7,12 @@
 
 use super::axes::Resolution;
 use super::model::EdgeModel;
-use super::stencil::{Image, Sources, Stencil};
+use super::stencil::{Image, Peak, Sources, Stencil};
 use crate::base::{Panels, linear};
 use crate::kernels::bessel::k0;
+use crate::kernels::k0_table::k0_of_all;
 use crate::kernels::plate;
-use crate::kernels::wave::WaveTable;
+use crate::kernels::wave::{WaveTable, WwPlaces};
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -44,8 +45,8 @@ pub struct Body {
     face_wavenumbers: Panels,
     resolution: Resolution,
     compliance_stencils: Vec<Stencil>,
-    to_face: Vec<Stencil>,
-    from_faces: Vec<[Stencil; 2]>,
+    to_face: Vec<(Stencil, WwPlaces)>,
+    from_faces: Vec<[(Stencil, WwPlaces); 2]>,
     reach: f64,
     /// Distance from the contact's end to the end face.
     ledge: f64,
@@ -124,7 +125,10 @@ impl Body {
         };
         body.compliance_stencils = body.surface.axis.nodes()[..contact]
             .iter()
-            .map(|&y| Stencil::new(&body.surface, &body.images, y, 0.0))
+            .map(|&y| {
+                let shortest = 2.0 / resolution.k_max;
+                Stencil::new(&body.surface, &body.images, y, 0.0, shortest, Peak::Logarithm)
+            })
             .collect();
         if complete {
             body.prepare_faces();
@@ -152,20 +156,20 @@ impl Body {
             .filter(|i| i.shift <= 0.0)
             .map(|i| Image { weight: 2.0, ..*i })
             .collect();
-        self.to_face = self
-            .face
-            .axis
-            .nodes()
-            .iter()
-            .map(|&z| Stencil::new(&self.surface, &before, half, z))
-            .collect();
+        let seen = |from: &Sources, images: &[Image], along: f64, depth: f64| {
+            let stencil = Stencil::new(from, images, along, depth, 0.0, Peak::Kink);
+            let places = WwPlaces::new(stencil.offsets(), depth);
+            (stencil, places)
+        };
+        self.to_face =
+            self.face.axis.nodes().iter().map(|&z| seen(&self.surface, &before, half, z)).collect();
         let both = [Image { sign: 1.0, shift: 0.0, weight: 2.0 }];
         self.from_faces = self
             .surface
             .axis
             .nodes()
             .iter()
-            .map(|&y| [half - y, half + y].map(|d| Stencil::new(&self.face, &both, 0.0, d)))
+            .map(|&y| [half - y, half + y].map(|d| seen(&self.face, &both, 0.0, d)))
             .collect();
         let (face, axis) = (&self.face.axis, &self.face_wavenumbers);
         let order = face.order();
@@ -198,8 +202,7 @@ impl Body {
 
     /// On a loaded surface itself the stresses' kernels vary over 1/k only.
     fn stress_stencil(&self, from: &Sources, images: &[Image], along: f64, depth: f64) -> Stencil {
-        let shortest = if depth == 0.0 { 2.0 / self.resolution.k_max } else { 0.0 };
-        Stencil::resolving(from, images, along, depth, shortest)
+        Stencil::new(from, images, along, depth, 2.0 / self.resolution.k_max, Peak::Kink)
     }
 
     /// Number of contact nodes.
@@ -242,21 +245,29 @@ impl Body {
         }
     }
 
+    /// Most points that [`Body::for_strips`] calls for.
+    pub fn most_strips(&self) -> usize {
+        2 * self.strips.len()
+    }
+
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
         let n = self.surface.axis.len();
         let mut displacement = Rows::new(&self.surface, n);
-        let kernel = |u: f64| 2.0 * k0(k * u.abs());
+        let reach = self.reach(k);
+        let mut values = Vec::new();
         for (i, stencil) in self.compliance_stencils.iter().enumerate() {
             displacement.push(|charges, nodes| {
-                stencil.add_row(self.reach(k), kernel, charges, nodes);
+                k0_of_all(k, stencil.offsets(), reach, &mut values);
+                stencil.add_row(&values, charges, nodes);
                 let mut strips = 0.0;
                 let y = self.surface.axis.nodes()[i];
-                self.for_strips(k, y, 0.0, |u, w| strips += w * kernel(u));
+                self.for_strips(k, y, 0.0, |u, w| strips += w * k0(k * u.abs()));
                 self.add_mean(strips, nodes);
             });
         }
-        let displacement = displacement.finish();
+        // f = 2 K0.
+        let displacement = 2.0 * displacement.finish();
         // An end face that is too far from the contact for this wavenumber carries nothing.
         if self.model != EdgeModel::QuarterSpace || self.ledge > self.reach(k) {
             let compliance = displacement.columns(0, self.contact).into_owned();
@@ -291,22 +302,34 @@ impl Body {
         }
     }
 
+    /// Compressive stress across the loaded line of a unit load at each of `places`, into `values`.
+    fn press(&self, k: f64, places: &WwPlaces, values: &mut Vec<f64>) {
+        self.kernel.ww(k, places, self.reach(k), values);
+        values.iter_mut().for_each(|v| *v = -*v);
+    }
+
     /// T_zy: compressive stress yy on the end face per P.
     fn surface_matrix(&self, k: f64) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
-        for (i, stencil) in self.to_face[..self.face_len(k)].iter().enumerate() {
+        let mut values = Vec::new();
+        for (i, (stencil, places)) in self.to_face[..self.face_len(k)].iter().enumerate() {
             let z = self.face.axis.nodes()[i];
-            let kernel = |u: f64| -self.kernel.ww(k, u, z);
             matrix.push(|charges, nodes| {
                 if k * z > self.reach {
                     return;
                 }
-                stencil.add_row(self.reach(k), kernel, charges, nodes);
+                self.press(k, places, &mut values);
+                stencil.add_row(&values, charges, nodes);
                 // The strip behind y = 0 and its mirror image in the face.
-                let mut strip = 0.0;
+                let (mut offsets, mut weights) = (Vec::new(), Vec::new());
                 self.for_strips(k, self.half, z, |u, w| {
-                    strip += if u > 0.0 { w * kernel(u) } else { 0.0 };
+                    if u > 0.0 {
+                        offsets.push(u);
+                        weights.push(w);
+                    }
                 });
+                self.press(k, &WwPlaces::new(&offsets, z), &mut values);
+                let strip: f64 = values.iter().zip(&weights).map(|(v, w)| v * w).sum();
                 self.add_mean(2.0 * strip, nodes);
             });
         }
@@ -317,13 +340,16 @@ impl Body {
     fn faces_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
         let n = self.surface.axis.len();
         let mut matrix = Rows::new(&self.face, columns);
+        let mut values = Vec::new();
         for (i, stencils) in self.from_faces.iter().enumerate() {
             let y = self.surface.axis.nodes()[i];
             matrix.push(|charges, nodes| {
-                for (stencil, depth) in stencils.iter().zip([self.half - y, self.half + y]) {
+                for ((stencil, places), depth) in
+                    stencils.iter().zip([self.half - y, self.half + y])
+                {
                     if k * depth < self.reach {
-                        let kernel = |u: f64| -self.kernel.ww(k, u, depth);
-                        stencil.add_row(self.reach(k), kernel, charges, nodes);
+                        self.press(k, places, &mut values);
+                        stencil.add_row(&values, charges, nodes);
                     }
                 }
             });
@@ -331,27 +357,30 @@ impl Body {
         let mut matrix = matrix.finish();
         if self.plate_matters(k) {
             let axis = &self.face_wavenumbers;
+            let waves = self.plate_waves(k);
             let plate = DMatrix::from_fn(n, axis.len(), |i, m| {
-                let y = self.surface.axis.nodes()[i];
                 let weight = axis.weights()[m] / PI;
-                -weight * plate::remainder(self.half, self.nu, k, axis.nodes()[m], y)[2]
+                -weight * waves[m].at(self.surface.axis.nodes()[i])[2]
             });
             matrix += plate * self.cosines.columns(0, columns);
         }
         matrix
     }
 
-    /// What the plate's remainder does at `y` per unit of each entry of
-    /// [`Body::plate_transform`], in the components of [`plate::remainder`].
-    pub fn plate_kernel(&self, k: f64, y: f64) -> Vec<[f64; 6]> {
+    /// The plate's remainder at its wavenumbers; none where it does not matter.
+    pub fn plate_waves(&self, k: f64) -> Vec<plate::Remainder> {
         if !self.plate_matters(k) {
             return Vec::new();
         }
-        let axis = &self.face_wavenumbers;
-        let terms = axis.nodes().iter().zip(axis.weights());
-        terms
-            .map(|(&l, w)| plate::remainder(self.half, self.nu, k, l, y).map(|s| w / PI * s))
-            .collect()
+        let wave = |l: &f64| plate::Remainder::new(self.half, self.nu, k, *l);
+        self.face_wavenumbers.nodes().iter().map(wave).collect()
+    }
+
+    /// What the plate's remainder does at `y` per unit of each entry of [`Body::plate_transform`], in the
+    /// components of [`plate::Remainder::at`], from its [`Body::plate_waves`].
+    pub fn plate_kernel(&self, waves: &[plate::Remainder], y: f64) -> Vec<[f64; 6]> {
+        let terms = waves.iter().zip(self.face_wavenumbers.weights());
+        terms.map(|(wave, w)| wave.at(y).map(|s| w / PI * s)).collect()
     }
 
     /// Sines and cosines of the plate's wavenumbers at the depth `z`.
@@ -398,21 +427,23 @@ struct Rows<'a> {
 impl<'a> Rows<'a> {
     /// No rows yet; `columns` first nodes are kept.
     fn new(sources: &'a Sources, columns: usize) -> Self {
-        let charges = vec![0.0; sources.charge_count()];
-        Self { sources, columns, charges, nodes: Vec::new() }
+        Self { sources, columns, charges: Vec::new(), nodes: Vec::new() }
     }
 
     /// Appends a row that `fill` writes over the charges and over the nodes, both zero at first.
     fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
-        self.charges.fill(0.0);
-        let start = self.nodes.len();
-        self.nodes.resize(start + self.columns, 0.0);
-        fill(&mut self.charges, &mut self.nodes[start..]);
-        self.sources.scatter(&self.charges, &mut self.nodes[start..]);
+        let (charge, node) = (self.charges.len(), self.nodes.len());
+        self.charges.resize(charge + self.sources.charge_count(), 0.0);
+        self.nodes.resize(node + self.columns, 0.0);
+        fill(&mut self.charges[charge..], &mut self.nodes[node..]);
     }
 
     /// The matrix over the nodes.
     fn finish(self) -> DMatrix<f64> {
-        DMatrix::from_row_slice(self.nodes.len() / self.columns, self.columns, &self.nodes)
+        let rows = self.nodes.len() / self.columns;
+        let charges = DMatrix::from_row_slice(rows, self.sources.charge_count(), &self.charges);
+        let mut nodes = DMatrix::from_row_slice(rows, self.columns, &self.nodes);
+        self.sources.scatter(&charges, &mut nodes);
+        nodes
     }
 }

@@ -96,8 +96,8 @@ fn gaps_of(
             modes.resize(c.len(), 0.0);
             strip::logarithmic(a, t, &mut modes);
             *gap += 2.0 / PI * modes.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
-            for (angle, weight) in screened(a, t) {
-                *gap += weight * angle.sin() * strip::pressure(1.0, c, angle.cos());
+            for ([cos, sin, _], weight) in screened(a, t) {
+                *gap += weight * sin * strip::pressure(1.0, c, cos);
             }
             *gap += (a * t).powi(2) - solution.approach;
         }

@@ -1,9 +1,11 @@
 use super::check::check;
 use crate::base::{Error, Panels, Result, Wavenumbers, linear};
 use crate::kernels::strip;
+use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 /// The compliance of both bodies together, one matrix per wavenumber.
 #[derive(Debug, Clone)]
@@ -400,14 +402,23 @@ pub(super) fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> 
         .collect()
 }
 
-/// What screens the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x') dx', by
-/// Gauss-Chebyshev of the first kind: angles f of x' = cos(f) `half_width`, and weights of p sin(f) there.
-pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (f64, f64)> {
-    (0..SCREEN_POINTS).map(move |q| {
+/// Points x' = cos(f) of Gauss-Chebyshev's rule of the first kind: cos f, sin f and 2 cos 2 f.
+pub(super) type ScreenPoint = [f64; 3];
+
+static SCREEN_RULE: LazyLock<[ScreenPoint; SCREEN_POINTS]> = LazyLock::new(|| {
+    std::array::from_fn(|q| {
         let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
-        let offset = half_width * (t - angle.cos());
+        [angle.cos(), angle.sin(), 2.0 * (2.0 * angle).cos()]
+    })
+});
+
+/// What screens the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x') dx', by
+/// Gauss-Chebyshev: points of x' / `half_width`, and weights of p sin(f) there.
+pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (ScreenPoint, f64)> {
+    SCREEN_RULE.iter().map(move |point| {
+        let offset = half_width * (t - point[0]);
         let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
-        (angle, 2.0 / PI * kernel * half_width * PI / SCREEN_POINTS as f64)
+        (*point, 2.0 / PI * kernel * half_width * PI / SCREEN_POINTS as f64)
     })
 }
 
@@ -473,8 +484,7 @@ impl Linear<'_> {
                 for (m, transform) in layout.modes(j).map(|m| (m, transform[m])).chain(singular) {
                     let factor = w / (PI * PI) * transform;
                     let mut column = matrix.column_mut(m);
-                    let column = &mut column.as_mut_slice()[span.clone()];
-                    column.iter_mut().zip(&shape).for_each(|(entry, s)| *entry += factor * s);
+                    add_scaled(&mut column.as_mut_slice()[span.clone()], factor, &shape);
                 }
             }
         }
@@ -496,11 +506,12 @@ impl Linear<'_> {
                 for (column, factor) in &singular {
                     matrix[(row, *column)] += 2.0 / PI * factor * amplitude;
                 }
-                for (angle, weight) in screened(a, t) {
-                    // sqrt(1-t^2) U_2m = sin((2m+1) f).
-                    for (m, column) in modes.clone().enumerate() {
-                        let mode = ((2 * m + 1) as f64 * angle).sin() * angle.sin();
-                        matrix[(row, column)] += weight * mode;
+                for ([_, sin, turn], weight) in screened(a, t) {
+                    // sqrt(1-t^2) U_2m = sin((2m+1) f), by the recurrence in steps of 2 f.
+                    let (mut before, mut here) = (-sin, sin);
+                    for column in modes.clone() {
+                        matrix[(row, column)] += weight * here * sin;
+                        (before, here) = (here, turn * here - before);
                     }
                     for (column, factor) in &singular {
                         matrix[(row, *column)] += weight * factor;
@@ -517,6 +528,12 @@ impl Linear<'_> {
             }
         }
     }
+}
+
+/// Adds `factor` times `shape`, compiled for the processor's vector units too.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn add_scaled(sum: &mut [f64], factor: f64, shape: &[f64]) {
+    sum.iter_mut().zip(shape).for_each(|(entry, s)| *entry += factor * s);
 }
 
 /// Wavenumber (1/C) below which a displacement at a depth counts as its difference to the surface's.

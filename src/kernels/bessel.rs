@@ -163,7 +163,7 @@ const GAUSS_10: [(f64, f64); 5] = [
 /// downward recurrence normalised by J0 + 2 sum J_2n = 1 (Abramowitz and Stegun 1964, 9.1.46).
 /// Returns J0(s).
 pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
-    let highest = 2 * out.len();
+    let (highest, step) = (2 * out.len(), 2.0 / s);
     if s > highest as f64 {
         let (mut before, mut here) = bessel_j0_j1(s);
         let j0 = before;
@@ -171,7 +171,7 @@ pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
             if order % 2 == 1 {
                 out[order / 2] = here;
             }
-            (before, here) = (here, 2.0 * order as f64 / s * here - before);
+            (before, here) = (here, order as f64 * step * here - before);
         }
         return j0;
     }
@@ -182,7 +182,8 @@ pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
         }
         return 1.0;
     }
-    let start = 2 * ((highest + 18).max((s + 20.0) as usize) / 2);
+    // From an order on that is below 1e-15, by (s / 2)^n / n!.
+    let start = 2 * ((highest + 4).max((2.4 * s + 15.0) as usize) / 2);
     let (mut above, mut here) = (0.0, 1e-30);
     let mut norm = 0.0;
     for order in (1..=start).rev() {
@@ -192,7 +193,7 @@ pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
         } else if order / 2 < out.len() {
             out[order / 2] = here;
         }
-        (above, here) = (here, 2.0 * order as f64 / s * here - above);
+        (above, here) = (here, order as f64 * step * here - above);
         if here.abs() > 1e200 {
             (above, here, norm) = (above * 1e-200, here * 1e-200, norm * 1e-200);
             out.iter_mut().for_each(|o| *o *= 1e-200);
@@ -208,7 +209,7 @@ fn bessel_j0_j1(s: f64) -> (f64, f64) {
     if s < 25.0 {
         let mut odd = [0.0; 1];
         // Miller's recurrence serves moderate arguments too: ask for one order only.
-        let start = 2 * ((s + 30.0) as usize / 2 + 5);
+        let (start, step) = (2 * ((s + 30.0) as usize / 2 + 5), 2.0 / s);
         let (mut above, mut here, mut norm) = (0.0, 1e-250, 0.0);
         for order in (1..=start).rev() {
             if order % 2 == 0 {
@@ -216,7 +217,7 @@ fn bessel_j0_j1(s: f64) -> (f64, f64) {
             } else if order == 1 {
                 odd[0] = here;
             }
-            (above, here) = (here, 2.0 * order as f64 / s * here - above);
+            (above, here) = (here, order as f64 * step * here - above);
         }
         norm += here;
         return (here / norm, odd[0] / norm);

@@ -4,6 +4,7 @@ pub mod bessel;
 pub mod boussinesq;
 pub mod deflection;
 pub mod hertz;
+pub mod k0_table;
 pub mod line_load;
 pub mod love;
 pub mod patches;

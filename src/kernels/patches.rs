@@ -5,7 +5,7 @@
 pub struct Fineness {
     /// Coefficients in either coordinate of a patch.
     pub order: usize,
-    /// Patches an octave of rho.
+    /// Patches an octave of rho, a power of two.
     pub rows: usize,
     /// Patches from the depth's direction to the surface's.
     pub angles: usize,
@@ -26,19 +26,26 @@ pub const FLOOR: f64 = 1.0 / 512.0;
 pub const CEILING: f64 = 32.0;
 
 impl Fineness {
-    /// The patch and the place in it, in [-1, 1], of the distance `rho` and of `share`, that of the
-    /// offset in the sum of offset and depth.
+    /// Of the distance `rho` the first patch of its row, and the place in it, in [-1, 1].
     #[inline(always)]
-    pub fn locate(&self, share: f64, rho: f64) -> (usize, f64, f64) {
+    pub fn row(&self, rho: f32) -> (usize, f32) {
+        const MANTISSA: u32 = 23;
+        const ONE: u32 = 127 << MANTISSA;
+        // The octave's halves, and so on, are the mantissa's first digits; what follows is the place.
+        let halves = self.rows.trailing_zeros();
         let bits = rho.to_bits();
-        let octave = ((bits >> 52) as i32) - 1023;
-        let mantissa = f64::from_bits((bits & ((1 << 52) - 1)) | (1023 << 52));
-        let along = (mantissa - 1.0) * self.rows as f64;
-        let row = along as usize;
+        let row = (bits >> (MANTISSA - halves)) as i32 - ((127 + LOW) << halves);
+        let place = f32::from_bits((bits << halves) & ((1 << MANTISSA) - 1) | ONE);
+        (row as usize * self.angles, 2.0 * place - 3.0)
+    }
+
+    /// Of `share`, the offset's part in the sum of offset and depth, the patch in its row, and the
+    /// place in it, in [-1, 1].
+    #[inline(always)]
+    pub fn direction(&self, share: f64) -> (usize, f64) {
         let around = share * self.angles as f64;
         let angle = (around as usize).min(self.angles - 1);
-        let patch = ((octave - LOW) as usize * self.rows + row) * self.angles + angle;
-        (patch, 2.0 * (along - row as f64) - 1.0, 2.0 * (around - angle as f64) - 1.0)
+        (angle, 2.0 * (around - angle as f64) - 1.0)
     }
 
     /// Chebyshev nodes in [-1, 1], the places of a patch's values in either coordinate.

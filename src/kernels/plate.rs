@@ -4,41 +4,73 @@
 //! kappa^2 = k^2 + l^2, t = kappa H. In the plane of the wave vector and y the plate is in plane
 //! strain (Timoshenko and Goodier, Theory of Elasticity, 1970, article 24).
 
-/// Amplitudes of the stresses of the plate less those of the two half-spaces behind its faces,
-/// per unit face pressure, at `y`: xx, yy, zz vary as cos(k x) cos(l z), xy as sin(k x) cos(l z),
-/// xz as sin(k x) sin(l z), yz as cos(k x) sin(l z).
-///
-/// `half` > 0 is H, |`y`| <= H, `k` and `l` >= 0 not both zero, `nu` is Poisson's ratio.
-/// The difference is smooth and vanishes like e^(-2 kappa (H - |y|) ...) for large kappa H.
-pub fn remainder(half: f64, nu: f64, k: f64, l: f64, y: f64) -> [f64; 6] {
-    let kappa = k.hypot(l);
-    let t = kappa * half;
-    let a = kappa * y;
-    // Hyperbolic functions of t and a, each divided by e^t.
-    let (up, down) = ((a - t).exp(), (-a - t).exp());
-    let (cosh_a, sinh_a) = (0.5 * (up + down), 0.5 * (up - down));
-    let decay = (-2.0 * t).exp();
-    let (cosh_t, sinh_t) = (0.5 * (1.0 + decay), 0.5 * (1.0 - decay));
-    // (sinh t cosh t + t) / e^(2 t).
-    let d = 0.25 * (1.0 - decay * decay) + t * decay;
-    let across = -((sinh_t + t * cosh_t) * cosh_a - a * sinh_t * sinh_a) / d;
-    let along = -((sinh_t - t * cosh_t) * cosh_a + a * sinh_t * sinh_a) / d;
-    let shear = -(a * sinh_t * cosh_a - t * cosh_t * sinh_a) / d;
-    let (near, far) = (t - a, t + a);
-    // `up` is e^-near and `down` e^-far.
-    let across = across + (1.0 + near) * up + (1.0 + far) * down;
-    let along = along + (1.0 - near) * up + (1.0 - far) * down;
-    let shear = shear - near * up + far * down;
-    let transverse = nu * (along + across);
-    let (kk, ll) = (k / kappa, l / kappa);
-    [
-        along * kk * kk + transverse * ll * ll,
-        across,
-        along * ll * ll + transverse * kk * kk,
-        shear * kk,
-        -(along - transverse) * kk * ll,
-        shear * ll,
-    ]
+/// The stresses of the plate less those of the two half-spaces behind its faces, per unit face pressure of
+/// one wave. The difference is smooth and vanishes like e^(-2 kappa (H - |y|) ...) for large kappa H.
+#[derive(Debug, Clone, Copy)]
+pub struct Remainder {
+    nu: f64,
+    kappa: f64,
+    /// kappa H, and hyperbolic functions of it over their growth e^t.
+    t: f64,
+    cosh_t: f64,
+    sinh_t: f64,
+    /// e^(-2 t).
+    decay: f64,
+    /// 1 / ((sinh t cosh t + t) / e^(2 t)).
+    inverse: f64,
+    /// The wave vector's direction, k / kappa and l / kappa.
+    kk: f64,
+    ll: f64,
+}
+
+impl Remainder {
+    /// For the half-thickness `half` > 0, Poisson's ratio `nu`, and the wavenumbers `k` and `l` >= 0, not
+    /// both zero.
+    pub fn new(half: f64, nu: f64, k: f64, l: f64) -> Self {
+        let kappa = k.hypot(l);
+        let t = kappa * half;
+        let decay = (-2.0 * t).exp();
+        Self {
+            nu,
+            kappa,
+            t,
+            cosh_t: 0.5 * (1.0 + decay),
+            sinh_t: 0.5 * (1.0 - decay),
+            decay,
+            inverse: 1.0 / (0.25 * (1.0 - decay * decay) + t * decay),
+            kk: k / kappa,
+            ll: l / kappa,
+        }
+    }
+
+    /// Amplitudes at |`y`| <= H: xx, yy, zz vary as cos(k x) cos(l z), xy as sin(k x) cos(l z), xz as
+    /// sin(k x) sin(l z), yz as cos(k x) sin(l z).
+    pub fn at(&self, y: f64) -> [f64; 6] {
+        let Self { nu, t, cosh_t, sinh_t, inverse, kk, ll, .. } = *self;
+        let a = self.kappa * y;
+        // e^(a - t) and e^(-a - t), the larger one by the exponential.
+        let large = (a.abs() - t).exp();
+        let small = self.decay / large;
+        let (up, down) = if a < 0.0 { (small, large) } else { (large, small) };
+        let (cosh_a, sinh_a) = (0.5 * (up + down), 0.5 * (up - down));
+        let across = -((sinh_t + t * cosh_t) * cosh_a - a * sinh_t * sinh_a) * inverse;
+        let along = -((sinh_t - t * cosh_t) * cosh_a + a * sinh_t * sinh_a) * inverse;
+        let shear = -(a * sinh_t * cosh_a - t * cosh_t * sinh_a) * inverse;
+        let (near, far) = (t - a, t + a);
+        // `up` is e^-near and `down` e^-far.
+        let across = across + (1.0 + near) * up + (1.0 + far) * down;
+        let along = along + (1.0 - near) * up + (1.0 - far) * down;
+        let shear = shear - near * up + far * down;
+        let transverse = nu * (along + across);
+        [
+            along * kk * kk + transverse * ll * ll,
+            across,
+            along * ll * ll + transverse * kk * kk,
+            shear * kk,
+            -(along - transverse) * kk * ll,
+            shear * ll,
+        ]
+    }
 }
 
 #[cfg(test)]
@@ -73,7 +105,8 @@ mod tests {
         let (half, nu) = (1.7, 0.3);
         for (k, l) in [(0.01, 0.02), (0.5, 0.0), (0.0, 0.8), (1.1, 0.7), (3.0, 5.0)] {
             let at = |y: f64| {
-                let (r, h) = (remainder(half, nu, k, l, y), half_spaces(half, nu, k, l, y));
+                let r = Remainder::new(half, nu, k, l).at(y);
+                let h = half_spaces(half, nu, k, l, y);
                 std::array::from_fn::<f64, 6, _>(|i| r[i] + h[i])
             };
             for y in [half, -half] {
@@ -95,6 +128,7 @@ mod tests {
 
     #[test]
     fn remainder_vanishes_for_short_waves() {
-        assert!(remainder(10.0, 0.3, 2.0, 1.0, 10.0).iter().all(|s| s.abs() < 1e-15));
+        let remainder = Remainder::new(10.0, 0.3, 2.0, 1.0);
+        assert!(remainder.at(10.0).iter().all(|s| s.abs() < 1e-15));
     }
 }

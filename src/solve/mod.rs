@@ -369,11 +369,12 @@ fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
     for (side, (j, (&y, &dy))) in sides {
         let (a, coefficients) = pressure.at_node(j);
         let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;
+        let carried = |i: i32| strip::cumulative(a, coefficients, (f64::from(i) - 0.5) * CELL);
+        let mut low = carried(-reach);
         for i in -reach..=reach {
-            let x = f64::from(i) * CELL;
-            let [low, high] =
-                [x - 0.5 * CELL, x + 0.5 * CELL].map(|x| strip::cumulative(a, coefficients, x));
+            let (x, high) = (f64::from(i) * CELL, carried(i + 1));
             let p = ((high - low) / CELL).max(0.0);
+            low = high;
             cells.push(PressureCell { x_m: x, y_m: side * y, dx_m: CELL, dy_m: dy, p_pa: p });
         }
     }

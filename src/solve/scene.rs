@@ -5,6 +5,7 @@ use crate::body::{Body, EdgeModel, Layer, Resolution};
 use crate::case::Case;
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
 use crate::stress::{BodyKind, Field, Pressure};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
 
@@ -110,8 +111,10 @@ pub struct SolvedScene {
     pub seconds: Seconds,
     /// The largest condition number of the bodies' equations, see [`Layer::condition`].
     pub condition: f64,
+    /// [`Pressure::moments`].
+    moments: DMatrix<f64>,
     bodies: Vec<(Body, Vec<Layer>)>,
-    compliances: Vec<nalgebra::DMatrix<f64>>,
+    compliances: Vec<DMatrix<f64>>,
 }
 
 impl SolvedScene {
@@ -179,6 +182,7 @@ impl SolvedScene {
         let contact = contact::solve(&compliance, &axis, &settings)?;
         let pressure =
             Pressure::new(axis, contact.half_widths.clone(), contact.coefficients.clone());
+        let moments = pressure.moments(&wavenumbers);
         let total = start.elapsed().as_secs_f64();
         Ok(Self {
             scene: scene.clone(),
@@ -188,6 +192,7 @@ impl SolvedScene {
             contact,
             seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
             condition,
+            moments,
             bodies,
             compliances,
         })
@@ -216,7 +221,8 @@ impl SolvedScene {
     /// than `tolerance` (p0) left out.
     pub fn field_with(&self, kind: BodyKind, gamma: f64, tolerance: f64) -> Field<'_> {
         let (body, layers) = self.body(kind);
-        Field::new(body, &self.wavenumbers, layers, &self.pressure, gamma, tolerance)
+        let (numbers, moments) = (&self.wavenumbers, &self.moments);
+        Field::new(body, numbers, layers, &self.pressure, moments, gamma, tolerance)
     }
 
     /// The compliance of both bodies together.

@@ -7,143 +7,16 @@
 //! ([`crate::kernels::strip`]): what is left fades with k, so the pressure's steep edge across the
 //! contact costs no wavenumbers.
 
+use super::pressure::Pressure;
+use super::waves::{Sight, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
-use crate::body::stencil::{LineLoads, Stencil};
 use crate::body::{Body, EdgeModel, Layer};
+use crate::kernels::line_load::WaveStress;
 use crate::kernels::strip;
-use crate::kernels::wave::{surface_spread, surface_spread_shear};
-use nalgebra::{Complex, DVector};
+use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
-
-/// The contact pressure as a function of place.
-#[derive(Debug, Clone)]
-pub struct Pressure {
-    axis: Panels,
-    half_widths: Vec<f64>,
-    coefficients: Vec<Vec<f64>>,
-}
-
-impl Pressure {
-    /// The pressure whose half-width and coefficients of the modes are given at the nodes of `axis`;
-    /// modes that a node lacks are zero there.
-    pub fn new(axis: Panels, half_widths: Vec<f64>, mut coefficients: Vec<Vec<f64>>) -> Self {
-        let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
-        coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
-        Self { axis, half_widths, coefficients }
-    }
-
-    /// Axis along the contact.
-    pub fn axis(&self) -> &Panels {
-        &self.axis
-    }
-
-    /// Half-width and modes at node `j`.
-    pub fn at_node(&self, j: usize) -> (f64, &[f64]) {
-        (self.half_widths[j], &self.coefficients[j])
-    }
-
-    /// Half-width and modes at `y`; none outside the contact.
-    pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
-        let (first, weights) = self.neighbours(y.abs())?;
-        let mut coefficients = vec![0.0; self.coefficients[0].len()];
-        let mut half_width = 0.0;
-        for (j, w) in (first..).zip(&weights) {
-            half_width += w * self.half_widths[j];
-            for (sum, c) in coefficients.iter_mut().zip(&self.coefficients[j]) {
-                *sum += w * c;
-            }
-        }
-        Some((half_width, coefficients))
-    }
-
-    /// Pressure at (`x`, `y`) (p0).
-    pub fn at(&self, x: f64, y: f64) -> f64 {
-        self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
-    }
-
-    /// Fourier transform over x at every node, into `out`.
-    fn transform(&self, k: f64, out: &mut [f64]) {
-        let mut modes = vec![0.0; self.coefficients[0].len()];
-        for ((into, a), c) in out.iter_mut().zip(&self.half_widths).zip(&self.coefficients) {
-            strip::transforms(*a, k, &mut modes);
-            *into = modes.iter().zip(c).map(|(t, c)| t * c).sum();
-        }
-    }
-
-    /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
-    fn neighbours(&self, y: f64) -> Option<(usize, Vec<f64>)> {
-        let inside = y <= self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12);
-        inside.then(|| self.axis.interpolation(y))
-    }
-}
-
-/// The loads of one wavenumber on the superposed bodies.
-#[derive(Debug, Clone)]
-struct Loads {
-    k: f64,
-    /// Whether they serve the plane x = 0 only, where shears that are odd in x vanish.
-    central: bool,
-    /// Factor of what they cause: the quadrature weight of the wavenumber, if the loads lack it,
-    /// over pi.
-    weight: f64,
-    /// Contact pressure at the contact's nodes.
-    contact: Vec<f64>,
-    /// P at the surface's nodes, and its charges.
-    surface: Vec<f64>,
-    surface_charges: Vec<f64>,
-    /// Mean of P over the body's length.
-    mean: f64,
-    /// q at the face's first nodes, and its charges.
-    face: Vec<f64>,
-    face_charges: Vec<f64>,
-    /// Transform of q for the plate.
-    plate: Vec<f64>,
-}
-
-impl Loads {
-    /// The loads that go with the transform `contact` of the contact pressure, by the layers and
-    /// their shares. Without a `weight` of the wavenumber its quadrature is in `contact`, and the loads
-    /// serve the plane x = 0.
-    fn new(
-        body: &Body,
-        k: f64,
-        weight: Option<f64>,
-        contact: Vec<f64>,
-        layers: &[Layer],
-        shares: &[f64],
-    ) -> Self {
-        let p = DVector::from_column_slice(&contact);
-        let (mut surface, mut face) = (Vec::new(), Vec::new());
-        let add = |sum: &mut Vec<f64>, part: &DVector<f64>, share: f64| {
-            sum.resize(sum.len().max(part.len()), 0.0);
-            sum.iter_mut().zip(part.iter()).for_each(|(s, p)| *s += share * p);
-        };
-        for (layer, &share) in layers.iter().zip(shares).filter(|(_, share)| **share != 0.0) {
-            match &layer.surface {
-                Some(matrix) => add(&mut surface, &(matrix * &p), share),
-                None => add(&mut surface, &p, share),
-            }
-            if let Some(matrix) = &layer.face {
-                add(&mut face, &(matrix * &p), share);
-            }
-        }
-        let total: f64 = surface.iter().zip(body.surface.axis.weights()).map(|(p, w)| p * w).sum();
-        Self {
-            k,
-            central: weight.is_none(),
-            weight: weight.unwrap_or(1.0) / PI,
-            mean: total / body.half,
-            plate: body.plate_transform(k, &face),
-            surface_charges: body.surface.charges(&surface),
-            face_charges: body.face.charges(&face),
-            contact,
-            surface,
-            face,
-        }
-    }
-}
 
 /// Kernel evaluations for stresses: those done, and those that a sum of all sources over all
 /// wavenumbers would have taken besides.
@@ -192,6 +65,10 @@ impl Counters {
 /// errors next to the corner that a polynomial would carry away from there.
 const SMOOTH_DEPTH: f64 = 0.14;
 
+/// Distance (C) from the contact's end from which [`Field::along`] interpolates on the surface, where the
+/// pressure's panels are the coarser the farther they are from the end.
+const SMOOTH_DISTANCE: f64 = 1.0;
+
 /// What interpolation along a line may leave out, in tolerances.
 const INTERPOLATION: f64 = 0.02;
 
@@ -205,12 +82,12 @@ pub struct Field<'a> {
     pressure: &'a Pressure,
     wavenumbers: &'a Wavenumbers,
     layers: &'a [Layer],
-    /// What acts on the plane x = 0, where every wave is at its crest: one item for each coarse
-    /// wavenumber, with the quadrature over the fine ones in its loads.
-    central: Vec<Loads>,
-    /// What acts elsewhere, one item for each fine wavenumber, made when it is asked for: with the
-    /// exponent of two of the distance from that plane up to which it serves.
-    all: Mutex<Vec<(i32, Arc<Vec<Loads>>)>>,
+    /// What acts on the plane x = 0, where every wave is at its crest: the coarse wavenumbers, with the
+    /// quadrature over the fine ones in their loads.
+    central: Arc<Waves>,
+    /// What acts elsewhere, the fine wavenumbers, made when it is asked for: with the exponent of two
+    /// of the distance from that plane up to which it serves.
+    all: Mutex<Vec<(i32, Arc<Waves>)>>,
     /// Stress transition factor of [`EdgeModel::Guilbault`].
     gamma: f64,
     /// Requested accuracy (p0).
@@ -218,7 +95,7 @@ pub struct Field<'a> {
     /// A wavenumber's share of a stress that is as good as none (p0).
     negligible: f64,
     counters: Counters,
-    /// [`Body::plate_kernel`] of the items of `central`, for the latest y.
+    /// [`Body::plate_kernel`] of the waves of `central`, for the latest y.
     plates: Mutex<Vec<(f64, Plates)>>,
 }
 
@@ -232,36 +109,20 @@ const KEPT_PLATES: usize = 128;
 /// contact's width gives the amplitudes, the rest is left out; of the coarse ones, after a panel.
 const FADED: usize = 8;
 
-/// Amplitudes of xx, yy, zz, xy, xz, yz.
-type Amplitudes = [f64; 6];
-
 impl<'a> Field<'a> {
-    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`, with wavenumbers
-    /// left out that change no stress by more than about a tenth of `tolerance` (p0).
+    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`, which has these
+    /// [`Pressure::moments`], with wavenumbers left out that change no stress by more than about a tenth of `tolerance` (p0).
     pub fn new(
         body: &'a Body,
         wavenumbers: &'a Wavenumbers,
         layers: &'a [Layer],
         pressure: &'a Pressure,
+        moments: &DMatrix<f64>,
         gamma: f64,
         tolerance: f64,
     ) -> Self {
-        let (fine, n) = (wavenumbers.fine(), pressure.axis().len());
-        let mut transforms = vec![0.0; n * fine.len()];
-        for (&k, out) in fine.nodes().iter().zip(transforms.chunks_exact_mut(n)) {
-            pressure.transform(k, out);
-        }
-        let moments = wavenumbers.moments(&transforms, n);
-        let central = wavenumbers
-            .coarse()
-            .nodes()
-            .iter()
-            .zip(moments.chunks_exact(n))
-            .zip(layers)
-            .map(|((&k, p), layer)| {
-                Loads::new(body, k, None, p.to_vec(), std::slice::from_ref(layer), &[1.0])
-            })
-            .collect();
+        let (k, shares) = (wavenumbers.coarse().nodes().to_vec(), |i: usize| (i, [1.0]));
+        let central = Arc::new(Waves::new(body, k, None, moments.clone(), layers, shares));
         let negligible = 0.005 * tolerance;
         let all = Mutex::default();
         let counters = Counters::default();
@@ -297,8 +158,9 @@ impl<'a> Field<'a> {
         if let Some(plates) = kept(&self.plates.lock().unwrap_or_else(|e| e.into_inner())) {
             return plates;
         }
-        let made: Plates =
-            Arc::new(self.central.iter().map(|loads| self.body.plate_kernel(loads.k, y)).collect());
+        let made: Plates = Arc::new(
+            self.central.plate_waves.iter().map(|w| self.body.plate_kernel(w, y)).collect(),
+        );
         let mut plates = self.plates.lock().unwrap_or_else(|e| e.into_inner());
         if plates.len() >= KEPT_PLATES {
             plates.clear();
@@ -308,23 +170,24 @@ impl<'a> Field<'a> {
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
-    fn all(&self, farthest: f64) -> Arc<Vec<Loads>> {
+    fn all(&self, farthest: f64) -> Arc<Waves> {
         let level = farthest.max(1.0).log2().ceil() as i32;
         let mut made = self.all.lock().unwrap_or_else(|e| e.into_inner());
-        if let Some((_, loads)) = made.iter().find(|(l, _)| *l == level) {
-            return loads.clone();
+        if let Some((_, waves)) = made.iter().find(|(l, _)| *l == level) {
+            return waves.clone();
         }
         let numbers = self.wavenumbers.resolving(2f64.powi(level));
-        let terms = numbers.fine().nodes().iter().zip(numbers.fine().weights()).enumerate();
-        let loads = terms.map(|(node, (&k, &weight))| {
-            let (first, shares) = numbers.interpolation(node);
-            let mut p = vec![0.0; self.pressure.axis().len()];
-            self.pressure.transform(k, &mut p);
-            Loads::new(self.body, k, Some(weight), p, &self.layers[first..], shares)
-        });
-        let loads = Arc::new(loads.collect::<Vec<_>>());
-        made.push((level, loads.clone()));
-        loads
+        let (k, n) = (numbers.fine().nodes().to_vec(), self.pressure.axis().len());
+        let mut transforms = DMatrix::zeros(n, k.len());
+        for (k, mut column) in k.iter().zip(transforms.column_iter_mut()) {
+            self.pressure.transform(*k, column.as_mut_slice());
+        }
+        let weights = Some(numbers.fine().weights());
+        let shares = |i: usize| numbers.interpolation(i);
+        let transforms = transforms.transpose();
+        let waves = Arc::new(Waves::new(self.body, k, weights, transforms, self.layers, shares));
+        made.push((level, waves.clone()));
+        waves
     }
 
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
@@ -359,21 +222,42 @@ impl<'a> Field<'a> {
 
     /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
     /// [`Field::at`] gives, interpolated where points lie closer than the field varies.
-    ///
-    /// At a depth below a corner the field's poles are at that distance from the corner, to either
-    /// side of the line: y = corner + z sinh t puts the points where it varies, and the poles of
-    /// the contact's end at t = +-i pi/2.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
         let breaks = self.pressure.axis().breaks();
         let end = breaks[breaks.len() - 1];
+        if z > ON_SURFACE {
+            return self.along_below(x, z, ys, end);
+        }
+        // On the surface the smooth part varies over the distances from the two ends of the contact:
+        // it is even in y, and analytic in ln((end - y) (end + y)) within imaginary parts of pi.
+        let place = |y: f64| ((end - y) * (end + y)).ln();
+        let inner = ys.iter().filter(|y| **y <= end - SMOOTH_DISTANCE).map(|y| place(*y));
+        let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), PI)];
+        let nodes = self.sampling(inner, poles).map(|axis| {
+            let y = |t: &f64| (end * end - t.exp()).max(0.0).sqrt();
+            let at_node = |t: &f64| self.remainders(y(t), 0.0, &[x])[0];
+            let values: Vec<StressTensor> = axis.nodes().iter().map(at_node).collect();
+            (axis, values)
+        });
+        ys.iter()
+            .map(|&y| match &nodes {
+                Some((axis, values)) if y <= end - SMOOTH_DISTANCE => {
+                    self.complete(x, y, 0.0, interpolated(axis, values, place(y)))
+                }
+                _ => self.at(y, z, &[x])[0],
+            })
+            .collect()
+    }
+
+    /// [`Field::along`] below the surface. At a depth below a corner, the contact's at y = `end` or the
+    /// body's, the field's poles are at that distance from the corner, to either side of the line:
+    /// y = end + z sinh t puts the points where it varies, and the poles of the contact's end at
+    /// t = +-i pi/2.
+    fn along_below(&self, x: f64, z: f64, ys: &[f64], end: f64) -> Vec<StressTensor> {
         let corner = Complex::new((self.body.half - end) / z, 1.0).asinh();
         let place = |y: f64| ((y - end) / z).asinh();
         let poles = |_| vec![(0.0, FRAC_PI_2), (corner.re, corner.im)];
-        let axis = match z > ON_SURFACE {
-            true => self.sampling(ys.iter().map(|y| place(*y)), poles),
-            false => None,
-        };
-        let Some(axis) = axis else {
+        let Some(axis) = self.sampling(ys.iter().map(|y| place(*y)), poles) else {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         };
         let nodes: Vec<StressTensor> =
@@ -416,7 +300,7 @@ impl<'a> Field<'a> {
     /// The stress whose part beyond the endless contact of the local pressure is `remainder`.
     fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
-        for (j, weight) in self.pressure.neighbours(y.abs()).into_iter().flat_map(numbered) {
+        for (j, weight) in self.pressure.neighbours(y.abs()).into_iter().flatten() {
             let (a, c) = self.pressure.at_node(j);
             let [xx, zz, xz] = strip::stress(a, c, x, z).map(|s| weight * s);
             s.xx += xx;
@@ -440,65 +324,69 @@ impl<'a> Field<'a> {
     /// Stresses at (x, |`y`|, `z`) for each x of `xs`, less those of an endless contact of the
     /// pressure at `y`.
     fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let y = y.abs();
-        let body = self.body;
-        let surface = body.surface_stencil(y, z);
-        let complete = body.model == EdgeModel::QuarterSpace;
-        let faces = complete.then(|| body.face_stencils(y, z));
-        let correction = (body.model == EdgeModel::Guilbault).then(|| {
-            let end = body.surface_stencil(body.half, z);
-            (end, [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma)))
-        });
-        let local: Vec<(usize, f64)> =
-            self.pressure.neighbours(y).into_iter().flat_map(numbered).collect();
+        let (y, body) = (y.abs(), self.body);
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let central = farthest == 0.0;
-        let all = if central { Arc::default() } else { self.all(farthest) };
-        let (items, faded) = if central {
-            (&self.central[..], self.wavenumbers.coarse().order())
+        let waves = if central { self.central.clone() } else { self.all(farthest) };
+        let faded = if central {
+            self.wavenumbers.coarse().order()
         } else {
-            (&all[..], FADED * all.len() / self.wavenumbers.fine().len())
+            FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
+        let surface = Sight::of_surface(body, &waves, y, z);
+        let complete = body.model == EdgeModel::QuarterSpace;
+        let faces = complete.then(|| {
+            let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
+            Sight::of_faces(body, &waves, y, z, depths)
+        });
+        let correction = (body.model == EdgeModel::Guilbault).then(|| {
+            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma));
+            (Sight::of_surface(body, &waves, body.half, z), shares[0] + shares[1])
+        });
+        let local: Vec<(usize, f64)> = self.pressure.neighbours(y).into_iter().flatten().collect();
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
-        let mut scratch = LineLoads::default();
-        let on_faces: usize = faces.iter().flatten().map(Stencil::len).sum();
+        let on_faces: usize = faces.iter().flatten().map(Sight::len).sum();
         let on_surface = surface.len() + correction.as_ref().map_or(0, |c| c.0.len());
         let mut work = Work::default();
         let phases = if complete { body.plate_phases(z) } else { Vec::new() };
         let plates = (complete && central).then(|| self.plates(y));
-        for (number, loads) in items.iter().enumerate() {
-            let k = loads.k;
+        for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
-                work.faded = ((items.len() - number) * (on_surface + on_faces)) as u64;
+                work.faded = ((waves.k.len() - i) * (on_surface + on_faces)) as u64;
                 break;
             }
-            let mut amplitudes = self.surface_part(&surface, loads, y, z, &mut scratch);
-            let mut done = scratch.offsets.len();
-            if let Some((end, shares)) = &correction {
-                let on_end = self.surface_part(end, loads, body.half, z, &mut scratch)[1];
-                done += scratch.offsets.len();
-                amplitudes[1] -= on_end * (shares[0] + shares[1]);
+            let (felt, mut done) = surface.stress(body, &waves, i);
+            let WaveStress { xx, ww, dd, xw, xd, wd } = felt;
+            let mut amplitudes = [xx, ww, dd, xw, xd, wd];
+            if let Some((end, share)) = &correction {
+                let (on_end, count) = end.stress(body, &waves, i);
+                amplitudes[1] -= on_end.ww * share;
+                done += count;
             }
-            if let Some(stencils) = &faces {
-                let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
-                for ((stencil, depth), into) in stencils.iter().zip(depths).zip([-1.0, 1.0]) {
-                    let face = self.face_part(stencil, loads, z, depth, into, &mut scratch);
-                    amplitudes.iter_mut().zip(face).for_each(|(a, f)| *a += f);
-                    done += scratch.offsets.len();
+            let mut ends = on_faces;
+            if let Some(faces) = faces.as_ref().filter(|_| waves.ends[i]) {
+                for (face, into) in faces.iter().zip([-1.0, 1.0]) {
+                    let (s, count) = face.stress(body, &waves, i);
+                    let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
+                    amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
+                    done += count;
                 }
+                let transform = &waves.plate[i];
                 let plate = match &plates {
-                    Some(plates) => Body::plate_stress(&plates[number], &loads.plate, &phases),
-                    None => Body::plate_stress(&body.plate_kernel(k, y), &loads.plate, &phases),
+                    Some(plates) => Body::plate_stress(&plates[i], transform, &phases),
+                    None => {
+                        let kernel = body.plate_kernel(&waves.plate_waves[i], y);
+                        Body::plate_stress(&kernel, transform, &phases)
+                    }
                 };
                 amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
+                ends = 0;
             }
-            let ends = if loads.face.is_empty() { on_faces } else { 0 };
             work.done += done as u64;
             work.ends += ends as u64;
-            // Strips are sources that the stencils do not count.
-            work.beyond_reach += (on_surface + on_faces).saturating_sub(ends + done) as u64;
-            let p: f64 = local.iter().map(|(j, w)| w * loads.contact[*j]).sum();
+            work.beyond_reach += (on_surface + on_faces - ends - done) as u64;
+            let p: f64 = local.iter().map(|(j, w)| w * waves.contact[(i, *j)]).sum();
             let e = (-k * z).exp() * p;
             amplitudes[0] += (1.0 - k * z) * e;
             amplitudes[1] += 2.0 * body.nu * e;
@@ -506,115 +394,27 @@ impl<'a> Field<'a> {
             amplitudes[4] += k * z * e;
             let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
             // Only once oscillations across the contact are resolved does a small amplitude last.
-            let small = k > 1.0 && loads.weight * largest < self.negligible;
+            let small = k > 1.0 && weight * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
                 for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
-                    *s += loads.weight * a * if i == 3 || i == 4 { sin } else { cos };
+                    *s += weight * a * if i == 3 || i == 4 { sin } else { cos };
                 }
             }
         }
         self.counters.add(&work);
         sums.into_iter().map(StressTensor::from_components).collect()
     }
-
-    /// Amplitudes from P on z = 0 and its images, at (`y`, `z`); `scratch` is overwritten.
-    fn surface_part(
-        &self,
-        stencil: &Stencil,
-        loads: &Loads,
-        y: f64,
-        z: f64,
-        scratch: &mut LineLoads,
-    ) -> Amplitudes {
-        let (body, k) = (self.body, loads.k);
-        let reach = body.reach(k);
-        scratch.clear();
-        if z > reach {
-            return [0.0; 6];
-        }
-        stencil.gather(reach, &loads.surface, &loads.surface_charges, scratch);
-        body.for_strips(k, y, z, |u, w| scratch.push(u, w * loads.mean));
-        if z == 0.0 {
-            let p = value_at(&body.surface.axis, &loads.surface, y);
-            return surface_limit(body.nu, k, p, loads.central, scratch);
-        }
-        let [xx, yy, zz, yz, xy, xz] = self.line_loads(k, z, loads.central, scratch);
-        [xx, yy, zz, xy, xz, yz]
-    }
-
-    /// Amplitudes xx, ww, dd, wd, xw, xd of line loads at a depth > 0; on the plane x = 0 the shears
-    /// xw and xd are none.
-    fn line_loads(&self, k: f64, depth: f64, central: bool, loads: &LineLoads) -> Amplitudes {
-        let kernel = &self.body.kernel;
-        if central {
-            let [xx, ww, dd, wd] = kernel.sum_even(k, depth, &loads.offsets, &loads.loads);
-            return [xx, ww, dd, wd, 0.0, 0.0];
-        }
-        kernel.sum(k, depth, &loads.offsets, &loads.loads)
-    }
-
-    /// Amplitudes from q on one end face, `depth` from it, at the depth `z` in the body; `into` is
-    /// the sign of the direction into the body along y.
-    fn face_part(
-        &self,
-        stencil: &Stencil,
-        loads: &Loads,
-        z: f64,
-        depth: f64,
-        into: f64,
-        scratch: &mut LineLoads,
-    ) -> Amplitudes {
-        let (body, k) = (self.body, loads.k);
-        let reach = body.reach(k);
-        scratch.clear();
-        if depth > reach || loads.face.is_empty() {
-            return [0.0; 6];
-        }
-        stencil.gather(reach, &loads.face, &loads.face_charges, scratch);
-        let [xx, ww, dd, wd, xw, xd] = if depth == 0.0 {
-            let q = value_at(&body.face.axis, &loads.face, z);
-            let [xx, ww, dd, xw, xd, wd] = surface_limit(body.nu, k, q, loads.central, scratch);
-            [xx, ww, dd, wd, xw, xd]
-        } else {
-            self.line_loads(k, depth, loads.central, scratch)
-        };
-        [xx, dd, ww, into * xd, xw, into * wd]
-    }
 }
 
 /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
 fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTensor {
     let mut sum = StressTensor::default();
-    for (node, weight) in numbered(axis.interpolation(place)) {
+    for (node, weight) in axis.interpolation(place) {
         sum += values[node] * weight;
     }
     sum
-}
-
-/// A run of numbers from the first on, each with its weight.
-fn numbered((first, weights): (usize, Vec<f64>)) -> impl Iterator<Item = (usize, f64)> {
-    (first..).zip(weights)
-}
-
-/// Value at `at` of a function given at the first nodes of `axis`; zero beyond them.
-fn value_at(axis: &Panels, values: &[f64], at: f64) -> f64 {
-    let end = axis.breaks()[axis.panel_count()];
-    let (first, weights) = axis.interpolation(at);
-    if at > end * (1.0 + 1e-12) || first >= values.len() {
-        return 0.0;
-    }
-    weights.iter().zip(&values[first..]).map(|(w, v)| w * v).sum()
-}
-
-/// Amplitudes on a loaded surface itself, see [`surface_spread`]: xx, along the surface, along the
-/// depth, xw (none on the plane x = 0, `central`), and no shear on the surface. `p` is the load there.
-fn surface_limit(nu: f64, k: f64, p: f64, central: bool, loads: &LineLoads) -> Amplitudes {
-    let free = 1.0 - 2.0 * nu;
-    let spread = free * loads.sum(|u| surface_spread(k, u));
-    let shear = if central { 0.0 } else { free * loads.sum(|u| surface_spread_shear(k, u)) };
-    [-2.0 * nu * p - spread, -p + spread, -p, shear, 0.0, 0.0]
 }
 
 /// Share of an end face's normal stress that the reconstructed correction of

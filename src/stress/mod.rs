@@ -3,7 +3,10 @@
 pub mod curves;
 pub mod field;
 pub mod grid;
+mod pressure;
+mod waves;
 
 pub use curves::{BodyKind, CurveSpec};
-pub use field::{Field, Pressure, Work};
+pub use field::{Field, Work};
 pub use grid::{Grid, GridStress};
+pub use pressure::Pressure;

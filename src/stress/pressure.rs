@@ -1,0 +1,79 @@
+//! The contact pressure as a function of place.
+
+use crate::base::{Panels, Wavenumbers};
+use crate::kernels::strip;
+use nalgebra::DMatrix;
+
+/// The contact pressure as a function of place.
+#[derive(Debug, Clone)]
+pub struct Pressure {
+    axis: Panels,
+    half_widths: Vec<f64>,
+    coefficients: Vec<Vec<f64>>,
+}
+
+impl Pressure {
+    /// The pressure whose half-width and coefficients of the modes are given at the nodes of `axis`;
+    /// modes that a node lacks are zero there.
+    pub fn new(axis: Panels, half_widths: Vec<f64>, mut coefficients: Vec<Vec<f64>>) -> Self {
+        let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
+        coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
+        Self { axis, half_widths, coefficients }
+    }
+
+    /// Axis along the contact.
+    pub fn axis(&self) -> &Panels {
+        &self.axis
+    }
+
+    /// Half-width and modes at node `j`.
+    pub fn at_node(&self, j: usize) -> (f64, &[f64]) {
+        (self.half_widths[j], &self.coefficients[j])
+    }
+
+    /// Half-width and modes at `y`; none outside the contact.
+    pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
+        let neighbours = self.neighbours(y.abs())?;
+        let mut coefficients = vec![0.0; self.coefficients[0].len()];
+        let mut half_width = 0.0;
+        for (j, w) in neighbours {
+            half_width += w * self.half_widths[j];
+            for (sum, c) in coefficients.iter_mut().zip(&self.coefficients[j]) {
+                *sum += w * c;
+            }
+        }
+        Some((half_width, coefficients))
+    }
+
+    /// Pressure at (`x`, `y`) (p0).
+    pub fn at(&self, x: f64, y: f64) -> f64 {
+        self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
+    }
+
+    /// Fourier transform over x at every node, into `out`.
+    pub(super) fn transform(&self, k: f64, out: &mut [f64]) {
+        let mut modes = vec![0.0; self.coefficients[0].len()];
+        for ((into, a), c) in out.iter_mut().zip(&self.half_widths).zip(&self.coefficients) {
+            strip::transforms(*a, k, &mut modes);
+            *into = modes.iter().zip(c).map(|(t, c)| t * c).sum();
+        }
+    }
+
+    /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for each of
+    /// the coarse ones, over the nodes.
+    pub fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {
+        let (fine, n) = (wavenumbers.fine().nodes(), self.axis.len());
+        let mut transforms = vec![0.0; n * fine.len()];
+        for (k, out) in fine.iter().zip(transforms.chunks_exact_mut(n)) {
+            self.transform(*k, out);
+        }
+        let moments = wavenumbers.moments(&transforms, n);
+        DMatrix::from_row_slice(wavenumbers.coarse().len(), n, &moments)
+    }
+
+    /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
+    pub(super) fn neighbours(&self, y: f64) -> Option<impl Iterator<Item = (usize, f64)>> {
+        let inside = y <= self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12);
+        inside.then(|| self.axis.interpolation(y))
+    }
+}
