@@ -82,7 +82,7 @@ impl Resolution {
             k_step: 3.0,
             k_min: 0.05,
             face_reach: 10.0,
-            reach: 10.0,
+            reach: 8.0,
             ..usual.clone()
         };
         if tolerance >= 1e-2 {
@@ -203,7 +203,7 @@ impl Resolution {
                 (1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))),
             );
         };
-        equal(smallest, SLOW, 4.0 * self.k_ratio, &mut breaks);
+        equal(smallest, SLOW, 8.0 * self.k_ratio, &mut breaks);
         equal(SLOW, self.k_max, self.k_ratio, &mut breaks);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }
@@ -211,7 +211,7 @@ impl Resolution {
     /// End of the first panel of wavenumbers: waves longer than the body and than the contact's
     /// width see little more than the load's total.
     fn smallest_wavenumber(&self, half: f64) -> f64 {
-        self.k_min.min(0.25 / half)
+        self.k_min.min(1.0 / half)
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
