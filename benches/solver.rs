@@ -162,6 +162,15 @@ fn complete(c: &mut Criterion) {
     }
 }
 
+/// The pressure alone of the problem that general contact codes solve; within 1 % at this tolerance
+/// (tests/verification.rs).
+fn half_space(c: &mut Criterion) {
+    let scene = Scene::new(&Case { tolerance: 1e-2, ..case(5.0, 1.0) }, EdgeModel::HalfSpace, None);
+    c.bench_function("half-space/pressure, S_l 5", |b| {
+        b.iter(|| SolvedScene::new(&scene).expect("it converges"));
+    });
+}
+
 fn main() {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("it is the first pool");
     let mut criterion = Criterion::default()
@@ -173,5 +182,6 @@ fn main() {
     compliance_and_contact(&mut criterion);
     stress(&mut criterion);
     complete(&mut criterion);
+    half_space(&mut criterion);
     criterion.final_summary();
 }

@@ -95,6 +95,22 @@ fn pressures_of_an_independent_calculation() {
 
 /// Mid-plane of a long contact whose ends lose no load sideways. (Free ends do: a flush one still
 /// raises the middle by 1.3 % of p0 at S_l = 200, as what its ends carry less has to go somewhere.)
+/// The half-space's pressure, which grows without bound at the end, from coarse answers: 1 % of itself as
+/// far as 0.1 C from there.
+#[test]
+fn coarse_half_spaces_are_good_to_one_percent() {
+    let line = |tolerance| {
+        let scene = scene(5.0, 1.0, 0.3, EdgeModel::HalfSpace);
+        let solved = SolvedScene::new(&Scene { tolerance, ..scene }).unwrap();
+        (0..=980).map(move |i| solved.pressure.at(0.0, 4.9 * f64::from(i) / 980.0))
+    };
+    for tolerance in [1e-2, 5e-3] {
+        let pairs = line(tolerance).zip(line(1e-3));
+        let worst = pairs.map(|(got, want)| (got / want - 1.0).abs()).fold(0.0, f64::max);
+        small(&format!("tolerance {tolerance:e}, relative"), worst, 0.8e-2);
+    }
+}
+
 #[test]
 fn long_contact_is_plane_strain() {
     let solved = solved(200.0, 1.0, 0.3, EdgeModel::Mirror);

@@ -9,6 +9,9 @@ const SLOW: f64 = 0.5;
 /// Widest panel of wavenumbers along an end face: it resolves depths of some ten C.
 const WIDEST: f64 = 1.0;
 
+/// Tolerance from which on a resolution counts as coarse.
+const COARSE: f64 = 5e-3;
+
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
 
@@ -35,7 +38,7 @@ pub struct Resolution {
     pub k_order: usize,
     /// Largest width of the panels on which the pressure's transform is resolved.
     pub k_step: f64,
-    /// Growth of the wavenumber panels above 0.5; below it panels grow four times as fast.
+    /// Growth of the wavenumber panels above 0.5; below it panels grow four to eight times as fast.
     pub k_ratio: f64,
     /// Largest end of the first wavenumber panel.
     pub k_min: f64,
@@ -95,7 +98,7 @@ impl Resolution {
                 k_ratio: 3.0,
                 ..coarse
             }
-        } else if tolerance >= 5e-3 {
+        } else if tolerance >= COARSE {
             coarse
         } else if tolerance >= 1e-3 {
             usual
@@ -116,6 +119,24 @@ impl Resolution {
                 ..usual
             }
         }
+    }
+
+    /// [`Resolution::for_tolerance`] where the pressure grows without bound at a free end: the coarse levels
+    /// want smaller panels there, to keep to their tolerance from 0.1 C on.
+    pub fn for_singular_end(tolerance: f64) -> Self {
+        let usual = Self::for_tolerance(tolerance);
+        let factor = if tolerance >= COARSE { 0.5 } else { 1.0 };
+        Self { corner: factor * usual.corner, ..usual }
+    }
+
+    /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is steepest, and more nodes to
+    /// a panel cost little where there are no end faces.
+    pub fn for_half_space(tolerance: f64) -> Self {
+        let usual = Self::for_tolerance(tolerance);
+        if tolerance < COARSE {
+            return usual;
+        }
+        Self { order: 5, corner: 0.04, ratio: 3.0, modes: 3, k_max: 20.0, spacing: 0.1, ..usual }
     }
 
     /// Every panel halved (its growth ratio's root taken) and every extent doubled.
@@ -197,14 +218,16 @@ impl Resolution {
     pub fn wavenumbers(&self, half: f64) -> Wavenumbers {
         let smallest = self.smallest_wavenumber(half);
         let mut breaks = vec![0.0, smallest];
-        let equal = |from: f64, to: f64, ratio: f64, breaks: &mut Vec<f64>| {
+        let mut equal = |from: f64, to: f64, ratio: f64| {
             let count = ((to / from).ln() / ratio.ln()).ceil().max(1.0) as i32;
             breaks.extend(
                 (1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))),
             );
         };
-        equal(smallest, SLOW, 8.0 * self.k_ratio, &mut breaks);
-        equal(SLOW, self.k_max, self.k_ratio, &mut breaks);
+        // One panel does for bodies that are not much longer than the contact is wide.
+        let growth = if SLOW <= 8.0 * self.k_ratio * smallest { 8.0 } else { 4.0 };
+        equal(smallest, SLOW, growth * self.k_ratio);
+        equal(SLOW, self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }
 

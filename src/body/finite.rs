@@ -10,7 +10,7 @@ use super::model::EdgeModel;
 use super::stencil::{Image, Peak, Sources, Stencil};
 use crate::base::{Panels, linear};
 use crate::kernels::bessel::k0;
-use crate::kernels::k0_table::k0_of_all;
+use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
 use crate::kernels::wave::{WaveTable, WwPlaces};
 use nalgebra::DMatrix;

@@ -1,10 +1,10 @@
 //! Closed forms only: pure functions, no allocation.
 
 pub mod bessel;
+pub mod bessel_table;
 pub mod boussinesq;
 pub mod deflection;
 pub mod hertz;
-pub mod k0_table;
 pub mod line_load;
 pub mod love;
 pub mod patches;

@@ -3,7 +3,7 @@
 //! The pressure on |x| <= a is p(x) = sum_m c_m sqrt(1 - t^2) U_2m(t), t = x/a; the Hertz pressure
 //! is the first mode alone. Every integral of these modes that the contact needs is closed.
 
-use super::bessel::bessel_j_odd;
+use super::bessel_table::tabulated_j_odd;
 use std::f64::consts::{LN_2, PI};
 
 /// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the modes `coefficients` on
@@ -94,7 +94,7 @@ pub fn cumulative(half_width: f64, coefficients: &[f64], x: f64) -> f64 {
 /// 1/sqrt(1 - t^2), pi a J_0(k a) (Abramowitz and Stegun 1964, 9.1.20 and 9.1.21).
 pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
     let s = k * half_width;
-    let j0 = bessel_j_odd(s, out);
+    let j0 = tabulated_j_odd(s, out);
     for (m, o) in out.iter_mut().enumerate() {
         let sign = if m % 2 == 0 { 1.0 } else { -1.0 };
         // J_1(s)/s tends to 1/2; the others vanish.

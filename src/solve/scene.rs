@@ -1,5 +1,6 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
+use super::edge::corner_exponent;
 use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer, Resolution};
 use crate::case::Case;
@@ -124,7 +125,15 @@ impl SolvedScene {
     /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
     /// breaks a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        Self::with_resolution(scene, &Resolution::for_tolerance(scene.tolerance))
+        let choice = match scene.model {
+            EdgeModel::HalfSpace => Resolution::for_half_space,
+            EdgeModel::QuarterSpace if corner_exponent(scene).is_some() => {
+                Resolution::for_singular_end
+            }
+            _ => Resolution::for_tolerance,
+        };
+        let resolution = choice(scene.tolerance);
+        Self::with_resolution(scene, &resolution)
     }
 
     /// Solves a scene at a given resolution.
