@@ -242,17 +242,18 @@ fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &m
     let times = |a: f64, b: f64, c: f64| -> f64 {
         if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
     };
-    let ceiling = CEILING.min(k * reach);
+    let (floor, ceiling) = (FLOOR as f32, CEILING.min(k * reach) as f32);
     let directions = places.patches.iter().zip(&places.factors);
     for ((distance, (direction, factors)), value) in
         places.distances.iter().zip(directions).zip(out.iter_mut())
     {
-        let rho = k * distance;
-        if !(FLOOR..ceiling).contains(&rho) {
+        // Rounded first: what is below the ceiling then has a row.
+        let rho = (k * distance) as f32;
+        if !(floor..ceiling).contains(&rho) {
             *value = 0.0;
             continue;
         }
-        let (row, a) = WW.row(rho as f32);
+        let (row, a) = WW.row(rho);
         let (patch, a) = (&patches[row + *direction as usize], f64::from(a));
         let mut sum = patch[WW.order - 1];
         for c in patch[..WW.order - 1].iter().rev() {
