@@ -63,7 +63,7 @@ fn kernels(c: &mut Criterion) {
             b.iter(|| places.iter().map(|&u| table.line_load(1.3, u, 0.5).xx).sum::<f64>());
         });
         group.bench_with_input(BenchmarkId::new("line_load_table_sum", n), &seen, |b, seen| {
-            b.iter(|| table.sum_even(1.3, black_box(seen), f64::INFINITY, &loads, 1));
+            b.iter(|| table.sum(1.3, black_box(seen), f64::INFINITY, &loads, 1));
         });
     }
     group.bench_function("line_load_table_build", |b| b.iter(|| WaveTable::new(black_box(NU))));

@@ -79,6 +79,11 @@ impl Panels {
         &self.breaks
     }
 
+    /// The last panel's end.
+    pub fn end(&self) -> f64 {
+        self.breaks[self.breaks.len() - 1]
+    }
+
     /// The panel that holds `x`; the nearest one where `x` lies outside the axis.
     pub fn panel_of(&self, x: f64) -> usize {
         self.breaks[1..self.breaks.len() - 1].partition_point(|&b| b <= x)

@@ -46,6 +46,8 @@ pub struct Body {
     resolution: Resolution,
     compliance_stencils: Vec<Stencil>,
     to_face: Vec<(Stencil, WwPlaces)>,
+    /// The strips behind y = 0 as the face's nodes feel them.
+    strips_to_face: Vec<WwPlaces>,
     from_faces: Vec<[(Stencil, WwPlaces); 2]>,
     reach: f64,
     /// Distance from the contact's end to the end face.
@@ -115,6 +117,7 @@ impl Body {
             strips: Vec::new(),
             compliance_stencils: Vec::new(),
             to_face: Vec::new(),
+            strips_to_face: Vec::new(),
             from_faces: Vec::new(),
             kernel: WaveTable::shared(nu),
             reach: resolution.reach,
@@ -142,7 +145,7 @@ impl Body {
         let near = (2 * self.resolution.images + 1) as f64 * half;
         let mut breaks = vec![near];
         let mut last = near;
-        let deepest = self.face.axis.breaks()[self.face.axis.panel_count()];
+        let deepest = self.face.axis.end();
         while last < near + deepest {
             last *= 2.5;
             breaks.push(last);
@@ -163,6 +166,9 @@ impl Body {
         };
         self.to_face =
             self.face.axis.nodes().iter().map(|&z| seen(&self.surface, &before, half, z)).collect();
+        let offsets: Vec<f64> = self.strips.iter().map(|(s, _)| half + s).collect();
+        self.strips_to_face =
+            self.face.axis.nodes().iter().map(|&z| WwPlaces::new(&offsets, z)).collect();
         let both = [Image { sign: 1.0, shift: 0.0, weight: 2.0 }];
         self.from_faces = self
             .surface
@@ -312,7 +318,8 @@ impl Body {
     fn surface_matrix(&self, k: f64) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
         let mut values = Vec::new();
-        for (i, (stencil, places)) in self.to_face[..self.face_len(k)].iter().enumerate() {
+        let faces = self.to_face.iter().zip(&self.strips_to_face).take(self.face_len(k));
+        for (i, ((stencil, places), strips)) in faces.enumerate() {
             let z = self.face.axis.nodes()[i];
             matrix.push(|charges, nodes| {
                 if k * z > self.reach {
@@ -320,16 +327,9 @@ impl Body {
                 }
                 self.press(k, places, &mut values);
                 stencil.add_row(&values, charges, nodes);
+                self.press(k, strips, &mut values);
                 // The strip behind y = 0 and its mirror image in the face.
-                let (mut offsets, mut weights) = (Vec::new(), Vec::new());
-                self.for_strips(k, self.half, z, |u, w| {
-                    if u > 0.0 {
-                        offsets.push(u);
-                        weights.push(w);
-                    }
-                });
-                self.press(k, &WwPlaces::new(&offsets, z), &mut values);
-                let strip: f64 = values.iter().zip(&weights).map(|(v, w)| v * w).sum();
+                let strip: f64 = values.iter().zip(&self.strips).map(|(v, (_, w))| v * w).sum();
                 self.add_mean(2.0 * strip, nodes);
             });
         }

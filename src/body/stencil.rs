@@ -62,7 +62,7 @@ impl Sources {
         let order = axis.order();
         let mut clusters = vec![Cluster {
             panels: 0..axis.panel_count(),
-            ends: [axis.breaks()[0], axis.breaks()[axis.panel_count()]],
+            ends: [axis.breaks()[0], axis.end()],
             halves: None,
         }];
         let mut next = 0;

@@ -32,8 +32,7 @@ pub(super) fn check(
         (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
         (0.0, "the largest pull (p0)"),
     ];
-    let end = axis.breaks()[axis.panel_count()];
-    let counted = axis.nodes().partition_point(|y| *y <= end - END).max(1);
+    let counted = axis.nodes().partition_point(|y| *y <= axis.end() - END).max(1);
     for (t, gaps) in PLACES.iter().zip(gaps_of(compliance, remainders, axis, solution, &PLACES)) {
         for (gap, coefficients) in gaps[..counted].iter().zip(&solution.coefficients) {
             // A number that is none must not pass as small.

@@ -221,7 +221,7 @@ struct Layout {
 
 impl Layout {
     fn new(axis: &Panels, settings: &ContactSettings) -> Self {
-        let mut limit = axis.breaks()[axis.panel_count()] - settings.spacing;
+        let mut limit = axis.end() - settings.spacing;
         let mut free = Vec::new();
         for (j, &y) in axis.nodes().iter().enumerate().rev() {
             if y <= limit || j == 0 && free.is_empty() {
@@ -245,7 +245,7 @@ impl Layout {
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let inner = axis.breaks()[axis.panel_count()] - DISTURBED;
+        let inner = axis.end() - DISTURBED;
         let modes_at =
             |y: &f64| if *y < inner { settings.modes.min(INNER_MODES) } else { settings.modes };
         let counts = axis.nodes().iter().map(modes_at).collect();

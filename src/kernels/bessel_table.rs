@@ -2,8 +2,9 @@
 //! arguments, as polynomials of the place within a row, in [-1, 1].
 
 use super::bessel::{bessel_j_odd, k0};
+use super::patches::chebyshev_node;
 use multiversion::{multiversion, target::target_cfg_f};
-use std::f64::consts::PI;
+use nalgebra::SMatrix;
 use std::sync::LazyLock;
 
 /// Coefficients of a row of [`K0_ROWS`], and the range of its rows in octaves of x: 2^LOW to 2^HIGH.
@@ -45,25 +46,17 @@ static J_ROWS: LazyLock<Vec<[[f64; J_ORDER]; J_COUNT]>> = LazyLock::new(|| {
 fn polynomials<const N: usize, const C: usize>(
     functions: impl Fn(f64) -> [f64; C],
 ) -> [[f64; N]; C] {
-    let angle = |j: usize| PI * (j as f64 + 0.5) / N as f64;
-    let values: [[f64; C]; N] = std::array::from_fn(|j| functions(angle(j).cos()));
-    let mut powers = [[0.0; N]; C];
-    // Chebyshev coefficients, and their sum in powers by the recurrence of the polynomials.
-    let (mut before, mut here) = ([0.0; N], [0.0; N]);
-    (before[0], here[1]) = (1.0, 1.0);
-    for n in 0..N {
-        let scale = if n == 0 { 1.0 } else { 2.0 } / N as f64;
-        for (c, powers) in powers.iter_mut().enumerate() {
-            let sum: f64 = (0..N).map(|j| values[j][c] * (n as f64 * angle(j)).cos()).sum();
-            powers.iter_mut().zip(&before).for_each(|(p, t)| *p += scale * sum * t);
-        }
-        let mut next = before.map(|t| -t);
-        for i in 1..N {
-            next[i] += 2.0 * here[i - 1];
-        }
-        (before, here) = (here, next);
-    }
-    powers
+    let values: [[f64; C]; N] = std::array::from_fn(|j| functions(chebyshev_node(N, j)));
+    let inverse = to_powers::<N>();
+    std::array::from_fn(|c| {
+        std::array::from_fn(|power| (0..N).map(|j| inverse[(power, j)] * values[j][c]).sum())
+    })
+}
+
+/// From values at Chebyshev's `N` nodes to coefficients of powers: so few keep this well conditioned.
+pub(super) fn to_powers<const N: usize>() -> SMatrix<f64, N, N> {
+    let powers = SMatrix::<f64, N, N>::from_fn(|j, power| chebyshev_node(N, j).powi(power as i32));
+    powers.try_inverse().expect("distinct nodes")
 }
 
 /// J1(s), J3(s), ..., of the first `out.len()` odd orders, s >= 0; returns J0(s). Absolute error below

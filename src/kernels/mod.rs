@@ -1,4 +1,4 @@
-//! Closed forms only: pure functions, no allocation.
+//! Closed forms as pure functions, and tables of those that are wanted often.
 
 pub mod bessel;
 pub mod bessel_table;

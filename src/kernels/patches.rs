@@ -48,11 +48,6 @@ impl Fineness {
         (angle, 2.0 * (around - angle as f64) - 1.0)
     }
 
-    /// Chebyshev nodes in [-1, 1], the places of a patch's values in either coordinate.
-    pub fn node(&self, i: usize) -> f64 {
-        (std::f64::consts::PI * (i as f64 + 0.5) / self.order as f64).cos()
-    }
-
     /// Offsets and depths of all values, patch by patch, in a patch the direction running fastest.
     pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
         let (n, rows) = (self.order, (HIGH - LOW) as usize * self.rows);
@@ -60,12 +55,17 @@ impl Fineness {
         (0..count).map(move |at| {
             let (patch, i, j) = (at / (n * n), at / n % n, at % n);
             let (row, angle) = (patch / self.angles, patch % self.angles);
-            let part = (row % self.rows) as f64 + 0.5 + 0.5 * self.node(i);
+            let part = (row % self.rows) as f64 + 0.5 + 0.5 * chebyshev_node(n, i);
             let octave = LOW + (row / self.rows) as i32;
             let rho = 2f64.powi(octave) * (1.0 + part / self.rows as f64);
-            let share = (angle as f64 + 0.5 + 0.5 * self.node(j)) / self.angles as f64;
+            let share = (angle as f64 + 0.5 + 0.5 * chebyshev_node(n, j)) / self.angles as f64;
             let (sin, cos) = share.atan2(1.0 - share).sin_cos();
             (rho * sin, rho * cos)
         })
     }
+}
+
+/// Node number `i` of Chebyshev's `order` in [-1, 1], the places of a patch's values in either coordinate.
+pub fn chebyshev_node(order: usize, i: usize) -> f64 {
+    (std::f64::consts::PI * (i as f64 + 0.5) / order as f64).cos()
 }

@@ -1,8 +1,9 @@
 //! Stresses of line loads that vary as cos(k x) along their line, tabulated; the conventions and the
 //! closed forms are those of [`crate::kernels::line_load`].
 
+use super::bessel_table::to_powers;
 use super::line_load::{WaveStress, near};
-use super::patches::{CEILING, FLOOR, Fineness, STRESS, WW};
+use super::patches::{CEILING, FLOOR, STRESS, WW};
 use multiversion::{multiversion, target::target_cfg_f};
 use std::sync::{Arc, Mutex};
 
@@ -46,15 +47,12 @@ const STRESS_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_stre
 const WW_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_ww.f64"));
 
 /// Calls `add` with the monomial coefficients [radial][angular] of each patch of `C` functions, whose
-/// `values` are given in the order of [`Fineness::places`].
+/// `values` are given in the order of [`super::patches::Fineness::places`].
 fn interpolate<const N: usize, const C: usize>(
-    fineness: &Fineness,
     values: impl Iterator<Item = [f64; C]>,
     mut add: impl FnMut([[[f64; C]; N]; N]),
 ) {
-    // From values at Chebyshev nodes to powers; so few powers keep this well conditioned.
-    let powers = nalgebra::SMatrix::<f64, N, N>::from_fn(|i, j| fineness.node(i).powi(j as i32));
-    let inverse = powers.try_inverse().expect("distinct nodes");
+    let inverse = to_powers::<N>();
     let mut values = values.peekable();
     while values.peek().is_some() {
         // One direction after the other.
@@ -108,7 +106,7 @@ impl WaveTable {
             let value = |i: usize| single(&place[4 * i..4 * i + 4]);
             std::array::from_fn(|c| value(c) + nu * value(6 + c))
         });
-        interpolate::<{ STRESS.order }, 6>(&STRESS, stresses, |patch| {
+        interpolate::<{ STRESS.order }, 6>(stresses, |patch| {
             let lanes = |stress: [usize; STRESSES]| -> Patch {
                 std::array::from_fn(|a| {
                     std::array::from_fn(|i| {
@@ -124,7 +122,7 @@ impl WaveTable {
         let values = WW_VALUES
             .chunks_exact(16)
             .map(|place| [double(&place[..8]) + nu * double(&place[8..])]);
-        interpolate::<{ WW.order }, 1>(&WW, values, |patch| {
+        interpolate::<{ WW.order }, 1>(values, |patch| {
             ww.push(patch.map(|row| std::array::from_fn(|b| row.get(b).map_or(0.0, |[c]| *c))));
         });
         Self { nu, even, odd, ww }
@@ -132,66 +130,40 @@ impl WaveTable {
 
     /// As [`super::line_load::exact`].
     pub fn line_load(&self, k: f64, u: f64, v: f64) -> WaveStress {
-        let places = Places::new(vec![u], v, false);
-        let (even, _) = self.sum_even(k, &places, f64::INFINITY, &[1.0], 1);
-        let odd = self.sum_odd(k, &places, f64::INFINITY, &[1.0], 1);
-        let ([xx, ww, dd, wd], [xw, xd]) = (even, odd);
-        WaveStress { xx, ww, dd, xw, xd, wd }
+        self.sum(k, &Places::new(vec![u], v, false), f64::INFINITY, &[1.0], 1).0
     }
 
-    /// The stresses xx, ww, dd, wd of line loads at `places` no farther away than `reach`, and the
-    /// number of these loads. Place i's load is `loads[i * stride]`.
-    pub fn sum_even(
+    /// The stresses of line loads at `places` no farther away than `reach`, and the number of these
+    /// loads. Place i's load is `loads[i * stride]`.
+    pub fn sum(
         &self,
         k: f64,
         places: &Places,
         reach: f64,
         loads: &[f32],
         stride: usize,
-    ) -> ([f64; 4], usize) {
+    ) -> (WaveStress, usize) {
         let ([mut xx, mut ww, mut dd, mut wd], count) =
             sum_loads(&self.even, k, places, &places.even, reach, loads, stride);
-        self.for_near(k, places, loads, stride, |s, load| {
-            (xx, ww, dd, wd) =
-                (xx + load * s.xx, ww + load * s.ww, dd + load * s.dd, wd + load * s.wd);
-        });
-        ([xx, ww, dd, wd], count)
-    }
-
-    /// The stresses xw and xd, see [`WaveTable::sum_even`].
-    pub fn sum_odd(
-        &self,
-        k: f64,
-        places: &Places,
-        reach: f64,
-        loads: &[f32],
-        stride: usize,
-    ) -> [f64; 2] {
-        let ([mut xw, mut xd, ..], _) =
-            sum_loads(&self.odd, k, places, &places.odd, reach, loads, stride);
-        self.for_near(k, places, loads, stride, |s, load| {
-            (xw, xd) = (xw + load * s.xw, xd + load * s.xd);
-        });
-        [xw, xd]
-    }
-
-    /// Calls `add` with the stresses and the load of those that are nearer than the table begins.
-    fn for_near(
-        &self,
-        k: f64,
-        places: &Places,
-        loads: &[f32],
-        stride: usize,
-        mut add: impl FnMut(WaveStress, f64),
-    ) {
-        if k * places.depth >= FLOOR {
-            return;
+        let (mut xw, mut xd) = (0.0, 0.0);
+        if !places.central {
+            ([xw, xd, ..], _) = sum_loads(&self.odd, k, places, &places.odd, reach, loads, stride);
         }
-        for (i, (&u, distance)) in places.offsets.iter().zip(&places.distances).enumerate() {
-            if k as f32 * distance < FLOOR as f32 {
-                add(near(k, self.nu, u, places.depth), loads[i * stride].into());
+        if k * places.depth < FLOOR {
+            for (i, (&u, distance)) in places.offsets.iter().zip(&places.distances).enumerate() {
+                // The table begins farther away.
+                if k as f32 * distance < FLOOR as f32 {
+                    let (s, load) =
+                        (near(k, self.nu, u, places.depth), f64::from(loads[i * stride]));
+                    (xx, ww, dd) = (xx + load * s.xx, ww + load * s.ww, dd + load * s.dd);
+                    wd += load * s.wd;
+                    if !places.central {
+                        (xw, xd) = (xw + load * s.xw, xd + load * s.xd);
+                    }
+                }
             }
         }
+        (WaveStress { xx, ww, dd, xw, xd, wd }, count)
     }
 
     /// The stress ww alone, of a unit load at each of `places`, into `out`; none from beyond `reach`.
@@ -274,6 +246,7 @@ fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &m
 pub struct Places {
     offsets: Vec<f64>,
     depth: f64,
+    central: bool,
     distances: Vec<f32>,
     /// First patch of the direction, in any row of patches.
     patches: Vec<u32>,
@@ -285,15 +258,16 @@ pub struct Places {
 
 impl Places {
     /// Line loads at the `offsets` target - source along the surface, of a target at `depth` > 0.
-    /// `even_alone` are for [`WaveTable::sum_even`] only.
-    pub fn new(offsets: Vec<f64>, depth: f64, even_alone: bool) -> Self {
+    /// Only what does not vanish in the plane x = 0 is summed for a target that is `central`.
+    pub fn new(offsets: Vec<f64>, depth: f64, central: bool) -> Self {
         let count = offsets.len();
         let mut places = Self {
             depth,
+            central,
             distances: Vec::with_capacity(count),
             patches: Vec::with_capacity(count),
             even: Vec::with_capacity(count),
-            odd: Vec::with_capacity(if even_alone { 0 } else { count }),
+            odd: Vec::with_capacity(if central { 0 } else { count }),
             offsets: Vec::new(),
         };
         for &u in &offsets {
@@ -308,7 +282,7 @@ impl Places {
             places.distances.push(distance as f32);
             places.patches.push(patch as u32);
             places.even.push(factors([1.0, 1.0, 1.0, sign]));
-            if !even_alone {
+            if !central {
                 places.odd.push(factors([sign, 1.0, 1.0, 1.0]));
             }
         }

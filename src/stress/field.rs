@@ -177,14 +177,10 @@ impl<'a> Field<'a> {
             return waves.clone();
         }
         let numbers = self.wavenumbers.resolving(2f64.powi(level));
-        let (k, n) = (numbers.fine().nodes().to_vec(), self.pressure.axis().len());
-        let mut transforms = DMatrix::zeros(n, k.len());
-        for (k, mut column) in k.iter().zip(transforms.column_iter_mut()) {
-            self.pressure.transform(*k, column.as_mut_slice());
-        }
+        let k = numbers.fine().nodes().to_vec();
+        let transforms = self.pressure.transforms(&k).transpose();
         let weights = Some(numbers.fine().weights());
         let shares = |i: usize| numbers.interpolation(i);
-        let transforms = transforms.transpose();
         let waves = Arc::new(Waves::new(self.body, k, weights, transforms, self.layers, shares));
         made.push((level, waves.clone()));
         waves
@@ -223,8 +219,7 @@ impl<'a> Field<'a> {
     /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
     /// [`Field::at`] gives, interpolated where points lie closer than the field varies.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
-        let breaks = self.pressure.axis().breaks();
-        let end = breaks[breaks.len() - 1];
+        let end = self.pressure.axis().end();
         if z > ON_SURFACE {
             return self.along_below(x, z, ys, end);
         }

@@ -50,30 +50,27 @@ impl Pressure {
         self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
     }
 
-    /// Fourier transform over x at every node, into `out`.
-    pub(super) fn transform(&self, k: f64, out: &mut [f64]) {
+    /// Fourier transforms over x: a column for each of the wavenumbers `k`, over the nodes.
+    pub(super) fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
         let mut modes = vec![0.0; self.coefficients[0].len()];
-        for ((into, a), c) in out.iter_mut().zip(&self.half_widths).zip(&self.coefficients) {
-            strip::transforms(*a, k, &mut modes);
-            *into = modes.iter().zip(c).map(|(t, c)| t * c).sum();
-        }
+        DMatrix::from_fn(self.axis.len(), k.len(), |j, i| {
+            strip::transforms(self.half_widths[j], k[i], &mut modes);
+            modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum()
+        })
     }
 
     /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for each of
     /// the coarse ones, over the nodes.
     pub fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {
-        let (fine, n) = (wavenumbers.fine().nodes(), self.axis.len());
-        let mut transforms = vec![0.0; n * fine.len()];
-        for (k, out) in fine.iter().zip(transforms.chunks_exact_mut(n)) {
-            self.transform(*k, out);
-        }
-        let moments = wavenumbers.moments(&transforms, n);
+        let n = self.axis.len();
+        let transforms = self.transforms(wavenumbers.fine().nodes());
+        let moments = wavenumbers.moments(transforms.as_slice(), n);
         DMatrix::from_row_slice(wavenumbers.coarse().len(), n, &moments)
     }
 
     /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
     pub(super) fn neighbours(&self, y: f64) -> Option<impl Iterator<Item = (usize, f64)>> {
-        let inside = y <= self.axis.breaks()[self.axis.panel_count()] * (1.0 + 1e-12);
+        let inside = y <= self.axis.end() * (1.0 + 1e-12);
         inside.then(|| self.axis.interpolation(y))
     }
 }

@@ -1,8 +1,8 @@
 //! The loads of all wavenumbers on the superposed bodies, and what a target feels of them.
 
 use crate::base::Panels;
-use crate::body::stencil::{LANES, Stencil};
-use crate::body::{Body, EdgeModel, Layer};
+use crate::body::stencil::{LANES, Sources, Stencil};
+use crate::body::{Body, Layer};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
 use crate::kernels::wave::{Places, add_surface_spread};
@@ -50,10 +50,9 @@ impl Waves {
         layers: &[Layer],
         shares: impl Fn(usize) -> (usize, S),
     ) -> Self {
-        let complete = body.model == EdgeModel::QuarterSpace;
         let stride = k.len().next_multiple_of(LANES);
         let mut surface = DMatrix::zeros(stride, body.surface.axis.len());
-        let mut face = DMatrix::zeros(stride, if complete { body.face.axis.len() } else { 0 });
+        let mut face = DMatrix::zeros(stride, body.face.axis.len());
         let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
         let mut ends = vec![false; k.len()];
         for (i, k) in k.iter().enumerate() {
@@ -80,14 +79,9 @@ impl Waves {
             plate_waves.push(if ends[i] { body.plate_waves(*k) } else { Vec::new() });
         }
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
-        let charges = |sources: &crate::body::stencil::Sources, values: DMatrix<f64>| {
-            [sources.charges(&values).cast(), values.cast()]
-        };
-        let [surface_charges, surface] = charges(&body.surface, surface);
-        let [face_charges, face] = if complete {
-            charges(&body.face, face)
-        } else {
-            [DMatrix::zeros(stride, 0), face.cast()]
+        let with_charges = |values: DMatrix<f64>, sources: &Sources| {
+            let charges = sources.charges(&values).cast();
+            [values.cast(), charges]
         };
         Self {
             weights: match weights {
@@ -96,8 +90,8 @@ impl Waves {
             },
             central: weights.is_none(),
             mean: total.iter().map(|t| (t / body.half) as f32).collect(),
-            surface: [surface, surface_charges],
-            face: [face, face_charges],
+            surface: with_charges(surface, &body.surface),
+            face: with_charges(face, &body.face),
             single: k.iter().map(|k| *k as f32).collect(),
             square_reaches: k.iter().map(|k| body.reach(*k).powi(2)).collect(),
             k,
@@ -227,20 +221,14 @@ impl Sight {
             Self::Within(..) => return (WaveStress::default(), 0),
             Self::Upon(_, stresses) => return stresses[i],
         };
-        let (even, count) = body.kernel.sum_even(k, places, reach, loads, stride);
-        let mut stress = WaveStress::default();
-        [stress.xx, stress.ww, stress.dd, stress.wd] = even;
-        if !waves.central {
-            [stress.xw, stress.xd] = body.kernel.sum_odd(k, places, reach, loads, stride);
-        }
-        (stress, count)
+        body.kernel.sum(k, places, reach, loads, stride)
     }
 }
 
 /// Values at `at` of functions given in rows at the nodes of `axis`; zeros beyond it.
 fn local(axis: &Panels, values: &DMatrix<f32>, at: f64) -> Vec<f64> {
     let mut sums = vec![0.0; values.nrows()];
-    if at <= axis.breaks()[axis.panel_count()] * (1.0 + 1e-12) {
+    if at <= axis.end() * (1.0 + 1e-12) {
         for (node, weight) in axis.interpolation(at) {
             let own = values.column(node);
             sums.iter_mut().zip(own.iter()).for_each(|(s, v)| *s += weight * f64::from(*v));
