@@ -4,6 +4,7 @@
 use edgeline::case::{Case, Study, Sweep, builtin_case};
 use edgeline::fem::{MeshResult, MeshSummary, Reference, ResultTexts};
 use std::path::Path;
+use std::sync::LazyLock;
 
 /// The bytes as text, as the program reads files; `None` is refused before any parser sees it.
 fn text(data: &[u8]) -> Option<&str> {
@@ -15,6 +16,10 @@ fn texts<const N: usize>(data: &[u8]) -> Option<[&str; N]> {
     let mut parts = text(data)?.splitn(N, "\n%%\n");
     Some(std::array::from_fn(|_| parts.next().unwrap_or_default()))
 }
+
+/// Built-in cases that texts belong to, read once: trying an input takes less time than that.
+static FLUSH: LazyLock<Case> = LazyLock::new(|| built_in("flush-short"));
+static HALF: LazyLock<Case> = LazyLock::new(|| built_in("half-short"));
 
 /// A built-in case.
 fn built_in(name: &str) -> Case {
@@ -87,8 +92,7 @@ pub fn sweep(data: &[u8]) {
 /// The table of a sweep, alone and with a base.
 pub fn table(data: &[u8]) {
     let Some(text) = text(data) else { return };
-    let base = built_in("half-short");
-    for base in [None, Some(&base)] {
+    for base in [None, Some(&*HALF)] {
         match Sweep::parse_csv(text, Path::new("f.csv"), base) {
             Ok(sweep) => rows(&sweep),
             Err(e) => refusal(&e, "f.csv"),
@@ -99,8 +103,7 @@ pub fn table(data: &[u8]) {
 /// A file of points.
 pub fn points(data: &[u8]) {
     let Some(text) = text(data) else { return };
-    let case = built_in("half-short");
-    match edgeline::cli::points::parse(text, Path::new("f.csv"), &case) {
+    match edgeline::cli::points::parse(text, Path::new("f.csv"), &HALF) {
         Ok(points) => {
             assert!(!points.is_empty());
             for point in points {
@@ -114,9 +117,8 @@ pub fn points(data: &[u8]) {
 /// The files of a finished finite-element run: `fem.json`, `curves.csv`, `pressure.csv`.
 pub fn fem_result(data: &[u8]) {
     let Some([summary, curves, pressure]) = texts(data) else { return };
-    let case = built_in("flush-short");
     let texts = ResultTexts { summary, curves, pressure };
-    match MeshResult::parse(&case, 1.0, 1, texts, Path::new("run")) {
+    match MeshResult::parse(&FLUSH, 1.0, 1, texts, Path::new("run")) {
         Ok(result) => assert!(result.summary.unknowns > 0 && !result.curves.is_empty()),
         Err(e) => refusal(&e, "run/"),
     }
