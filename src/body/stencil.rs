@@ -2,7 +2,7 @@
 
 use crate::base::{Panels, gauss_legendre};
 use multiversion::multiversion;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView, Dyn};
 
 /// A copy of the axis: the point s of the axis acts at `sign` s + `shift`, `weight` times.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -106,8 +106,8 @@ impl Sources {
     }
 
     /// Adds rows over the charges to rows over the axis's first nodes.
-    pub fn scatter(&self, charges: &DMatrix<f64>, nodes: &mut DMatrix<f64>) {
-        nodes.gemm(1.0, charges, &self.charges.columns(0, nodes.ncols()), 1.0);
+    pub fn scatter(&self, charges: DMatrixView<f64, Dyn, Dyn>, nodes: &mut DMatrix<f64>) {
+        nodes.gemm(1.0, &charges, &self.charges.columns(0, nodes.ncols()), 1.0);
     }
 
     /// Number of charges.
@@ -346,7 +346,7 @@ mod tests {
                 let mut charge_row = DMatrix::zeros(1, sources.charge_count());
                 let kernel: Vec<f64> = stencil.offsets().iter().map(|u| -u.abs().ln()).collect();
                 stencil.add_row(&kernel, charge_row.as_mut_slice(), row.as_mut_slice());
-                sources.scatter(&charge_row, &mut row);
+                sources.scatter(charge_row.as_view(), &mut row);
                 let got = row.sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
                 let mut loads = vec![0.0; LANES * kernel.len()];

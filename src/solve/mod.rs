@@ -364,17 +364,22 @@ fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
     let pressure = &solved.pressure;
     let axis = pressure.axis();
     let mut cells = Vec::new();
-    let nodes = axis.nodes().iter().zip(axis.weights()).enumerate();
-    let sides = nodes.clone().rev().map(|n| (-1.0, n)).chain(nodes.map(|n| (1.0, n)));
-    for (side, (j, (&y, &dy))) in sides {
+    // Alike to either side of both planes of symmetry: computed once.
+    let profile = |j: usize| -> Vec<f64> {
         let (a, coefficients) = pressure.at_node(j);
         let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;
         let carried = |i: i32| strip::cumulative(a, coefficients, (f64::from(i) - 0.5) * CELL);
-        let mut low = carried(-reach);
+        let sums: Vec<f64> = (0..=reach + 1).map(carried).collect();
+        sums.windows(2).map(|sum| ((sum[1] - sum[0]) / CELL).max(0.0)).collect()
+    };
+    let profiles: Vec<Vec<f64>> = (0..axis.len()).map(profile).collect();
+    let nodes = axis.nodes().iter().zip(axis.weights()).zip(&profiles);
+    let sides = nodes.clone().rev().map(|n| (-1.0, n)).chain(nodes.map(|n| (1.0, n)));
+    for (side, ((&y, &dy), profile)) in sides {
+        let reach = profile.len() as i32 - 1;
         for i in -reach..=reach {
-            let (x, high) = (f64::from(i) * CELL, carried(i + 1));
-            let p = ((high - low) / CELL).max(0.0);
-            low = high;
+            let p = profile[i.unsigned_abs() as usize];
+            let x = f64::from(i) * CELL;
             cells.push(PressureCell { x_m: x, y_m: side * y, dx_m: CELL, dy_m: dy, p_pa: p });
         }
     }

@@ -198,22 +198,41 @@ impl<'a> Field<'a> {
     /// Stresses at the points (`x`, `y`, z) for each z >= 0 of `zs`, in their order: what [`Field::at`]
     /// gives, with the smooth part interpolated where points lie closer than it varies.
     ///
-    /// Under a load at the distance u along the surface the field's poles are at z = +-i u, so in
-    /// ln z it is analytic for imaginary parts within pi/2.
+    /// Under a load at the distance u along the surface the field's poles are at z = +-i u, of which
+    /// those count where the load is not smooth: at the nearest one asinh(z / u) has them at +-i pi/2.
+    /// Below these places themselves ln z, in which all poles are that far off, serves in some depth.
     pub fn down(&self, x: f64, y: f64, zs: &[f64]) -> Vec<StressTensor> {
-        let below = zs.iter().filter(|z| **z >= SMOOTH_DEPTH).map(|z| z.ln());
-        let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), FRAC_PI_2)];
+        let near = self.smooth_within(x, y);
+        let smooth = near >= SMOOTH_DEPTH;
+        let least = if smooth { 0.0 } else { SMOOTH_DEPTH };
+        let place = |z: f64| if smooth { (z / near).asinh() } else { z.ln() };
+        let depth = |t: f64| if smooth { near * t.sinh() } else { t.exp() };
+        let poles =
+            |[from, to]: [f64; 2]| vec![(if smooth { 0.0 } else { 0.5 * (from + to) }, FRAC_PI_2)];
+        let below = zs.iter().filter(|z| **z >= least).map(|z| place(*z));
         let Some(axis) = self.sampling(below, poles) else {
             return zs.iter().map(|&z| self.at(y, z, &[x])[0]).collect();
         };
         let nodes: Vec<StressTensor> =
-            axis.nodes().iter().map(|t| self.remainders(y, t.exp(), &[x])[0]).collect();
+            axis.nodes().iter().map(|t| self.remainders(y, depth(*t), &[x])[0]).collect();
         zs.iter()
-            .map(|&z| match z >= SMOOTH_DEPTH {
-                true => self.complete(x, y, z, interpolated(&axis, &nodes, z.ln())),
+            .map(|&z| match z >= least {
+                true => self.complete(x, y, z, interpolated(&axis, &nodes, place(z))),
                 false => self.at(y, z, &[x])[0],
             })
             .collect()
+    }
+
+    /// Distance along the surface from (`x`, `y`) to where its load is not smooth: the contact's edges and
+    /// ends, and the body's. None where stresses are corrected by a [`transition`], which is singular on
+    /// the surface itself.
+    fn smooth_within(&self, x: f64, y: f64) -> f64 {
+        if self.body.model == EdgeModel::Guilbault {
+            return 0.0;
+        }
+        let ends = [self.pressure.axis().end(), self.body.half].map(|end| (end - y.abs()).abs());
+        // Half-widths are near 1.
+        ends[0].min(ends[1]).min((1.0 - x.abs()).abs())
     }
 
     /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
