@@ -191,8 +191,8 @@ impl Reference {
     /// only named in errors.
     ///
     /// # Errors
-    /// [`Error::File`] when one is damaged or of another version, when a run did not carry its load, or
-    /// when the points are not the standard curves'.
+    /// [`Error::File`] when one is damaged or of another version, when its case is not legal, when a run
+    /// did not carry its load, or when the points are not the standard curves'.
     pub fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
         let path = folder.join(FILES[0]);
         let record: Record = serde_json::from_str(record)
@@ -213,6 +213,9 @@ impl Reference {
             force_n,
             tolerance: Case::DEFAULT_TOLERANCE,
         };
+        if let Err(Error::File { message, .. }) = Case::parse(&case.to_toml(), &path) {
+            return Err(nonsense(&path, None, format!("is not of a legal case: {message}")));
+        }
         let mut curves = parse_curves(curves, &folder.join(FILES[1]))?;
         let mut lines = parse_lines(lines, &folder.join(FILES[2]))?;
         let mut meshes = Vec::new();

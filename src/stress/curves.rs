@@ -69,10 +69,12 @@ fn end_distances(half_length: f64) -> Vec<f64> {
     'grow: loop {
         for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
             let next = 10.0 * decade * step;
-            if next >= below {
+            // Nothing is below a length that is no number.
+            if next < below {
+                s.push(next);
+            } else {
                 break 'grow;
             }
-            s.push(next);
         }
         decade *= 10.0;
     }
@@ -138,6 +140,7 @@ mod tests {
         assert_eq!(contact_line(5.0).len(), 20);
         assert_eq!(end_distances(20.0)[20..], [6.5, 8.0, 10.0, 13.0, 16.0, 20.0]);
         assert_eq!(end_distances(120.0)[30..], [64.0, 80.0, 100.0, 120.0]);
+        assert_eq!(end_distances(f64::NAN).len(), 1);
         let curves = standard_curves(BodyKind::Block, 5.0, 10.0);
         assert_eq!(curves[0].points.last(), Some(&[0.0, 8.0, 0.0]));
         let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
