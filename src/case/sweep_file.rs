@@ -581,6 +581,14 @@ mod tests {
     }
 
     #[test]
+    fn the_example_is_what_it_promises() {
+        let sweep = parse(include_str!("../../examples/sweep.toml")).unwrap();
+        assert_eq!(sweep.len(), 1050);
+        assert_eq!(sweep.columns(), ["dimensionless.W", "dimensionless.S_l", "dimensionless.L_r"]);
+        assert!((0..sweep.len()).all(|i| sweep.case(i).is_ok()));
+    }
+
+    #[test]
     fn one_case_is_a_sweep_of_one_row() {
         let sweep = parse(include_str!("../../cases/flush-short.toml")).unwrap();
         assert_eq!((sweep.len(), sweep.columns().len()), (1, 0));

@@ -19,7 +19,7 @@ use std::time::Instant;
 /// Writes one CSV file with one row a case, in the order of the input: pressures at the centre and
 /// towards the end, the critical stress and its place, approach; a case that cannot be solved is a
 /// row whose `err` says why. Run again, it goes on where it was stopped. Cases that differ in scale
-/// only are solved once. Takes some ten milliseconds a case and processor at a tolerance of 1e-2.
+/// only are solved once. Takes about ten milliseconds a case and processor at a tolerance of 1e-2.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file in which numbers may be lists or ranges (TOML), or a table with a column for each
