@@ -136,7 +136,7 @@ impl Resolution {
         if tolerance < COARSE {
             return usual;
         }
-        Self { order: 5, corner: 0.04, ratio: 3.0, modes: 3, k_max: 20.0, spacing: 0.1, ..usual }
+        Self { order: 5, corner: 0.04, ratio: 3.0, modes: 3, k_max: 20.0, ..usual }
     }
 
     /// Every panel halved (its growth ratio's root taken) and every extent doubled.
