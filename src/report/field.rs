@@ -9,6 +9,7 @@ use crate::base::{Error, Result, StressTensor};
 use crate::case::Case;
 use crate::solve::{Point, Solution};
 use crate::stress::BodyKind;
+use rayon::prelude::*;
 
 /// Number of grid points of a quarter of a body across, along and into it.
 pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
@@ -71,47 +72,81 @@ impl Quarter<'_> {
     }
 
     /// The whole body in the global frame (m, Pa), in which z points into the block: the roller lies
-    /// at z < 0 and its shears across z change their sign.
+    /// at z < 0 and its shears across z change their sign. The arrays are `sigma_xx_pa` ... `sigma_yz_pa`,
+    /// `von_mises_pa` and `tau_max_pa`.
     fn grid(&self) -> Grid {
-        let hertz = self.case.hertz();
+        let p0 = self.case.hertz().p0_pa;
         let roller = self.body == BodyKind::Roller;
-        let mirrored = |axis: &[f64]| -> Vec<(usize, f64)> {
-            let left = axis.iter().enumerate().skip(1).rev().map(|(i, _)| (i, -1.0));
-            left.chain((0..axis.len()).map(|i| (i, 1.0))).collect()
-        };
-        let [x, y, z] = &self.axes;
-        let (xs, ys) = (mirrored(x), mirrored(y));
-        let mut zs: Vec<usize> = (0..z.len()).collect();
+        let mut zs: Vec<usize> = (0..self.axes[2].len()).collect();
         if roller {
             zs.reverse();
         }
         let side = if roller { -1.0 } else { 1.0 };
-        let mut stress = Vec::with_capacity(xs.len() * ys.len() * zs.len());
-        for &k in &zs {
-            for &(j, sy) in &ys {
-                for &(i, sx) in &xs {
-                    let s = self.at(i, j, k) * hertz.p0_pa;
-                    let (xy, xz, yz) = (s.xy * sx * sy, s.xz * sx * side, s.yz * sy * side);
-                    stress.push(StressTensor { xy, xz, yz, ..s });
-                }
-            }
-        }
-        let metres = |axis: &[f64], order: &[(usize, f64)]| -> Vec<f64> {
-            order.iter().map(|&(i, sign)| sign * axis[i] * hertz.c_m).collect()
+        // What is even or odd in x and y is computed once and copied.
+        let quarter: Vec<[f32; 8]> = self
+            .stress
+            .par_iter()
+            .map(|s| {
+                let s = *s * p0;
+                let [xx, yy, zz, xy, xz, yz] = s.components();
+                let all = [xx, yy, zz, xy, side * xz, side * yz, s.von_mises(), s.tau_max()];
+                all.map(|v| v as f32)
+            })
+            .collect();
+        let odd = |name: &str| {
+            [["sigma_xy", "sigma_xz"], ["sigma_xy", "sigma_yz"]].map(|n| n.contains(&name))
         };
-        let depth = zs.iter().map(|&k| side * z[k] * hertz.c_m).collect();
-        Grid::of_stress([metres(x, &xs), metres(y, &ys), depth], &stress)
+        let arrays = StressTensor::NAMES.iter().chain(&["von_mises", "tau_max"]).enumerate().map(
+            |(array, name)| {
+                let value = |index: usize| quarter[index][array];
+                (format!("{name}_pa"), self.mirrored(&zs, odd(name), value))
+            },
+        );
+        let arrays = arrays.collect();
+        Grid { axes_m: self.axes_m(zs.iter().map(|&k| side * self.axes[2][k])), arrays }
     }
 
     /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
     fn pressure(&self) -> Grid {
-        let mut grid = self.grid();
-        let layer = grid.axes_m[0].len() * grid.axes_m[1].len();
-        grid.axes_m[2] = vec![0.0];
-        let (_, zz) = grid.arrays.swap_remove(2);
-        let values = zz[..layer].iter().map(|v| (-v).max(0.0)).collect();
-        grid.arrays = vec![("pressure_pa".to_string(), values)];
-        grid
+        let p0 = self.case.hertz().p0_pa;
+        let value = |index: usize| (-(self.stress[index].zz * p0) as f32).max(0.0);
+        let values = self.mirrored(&[0], [false; 2], value);
+        Grid {
+            axes_m: self.axes_m(std::iter::once(0.0)),
+            arrays: vec![("pressure_pa".to_string(), values)],
+        }
+    }
+
+    /// Indices and signs of the points along an axis and its mirror image, ascending.
+    fn mirror(count: usize) -> impl Iterator<Item = (usize, f32)> + Clone {
+        (1..count).rev().map(|i| (i, -1.0)).chain((0..count).map(|i| (i, 1.0)))
+    }
+
+    /// A scalar of the layers `zs` of the whole body, from its `value` at each point of the quarter;
+    /// `odd` in x and in y.
+    fn mirrored(&self, zs: &[usize], odd: [bool; 2], value: impl Fn(usize) -> f32) -> Vec<f32> {
+        let [nx, ny] = [self.axes[0].len(), self.axes[1].len()];
+        let sign = |odd: bool, side: f32| if odd { side } else { 1.0 };
+        let mut values = Vec::with_capacity((2 * nx - 1) * (2 * ny - 1) * zs.len());
+        for &k in zs {
+            for (j, y) in Self::mirror(ny) {
+                let row = (k * ny + j) * nx;
+                values.extend(
+                    Self::mirror(nx)
+                        .map(|(i, x)| sign(odd[0], x) * sign(odd[1], y) * value(row + i)),
+                );
+            }
+        }
+        values
+    }
+
+    /// Coordinates of the whole body (m), at the depths `z` (C, in the global frame).
+    fn axes_m(&self, z: impl Iterator<Item = f64>) -> [Vec<f64>; 3] {
+        let c_m = self.case.hertz().c_m;
+        let whole = |axis: &[f64]| -> Vec<f64> {
+            Self::mirror(axis.len()).map(|(i, side)| f64::from(side) * axis[i] * c_m).collect()
+        };
+        [whole(&self.axes[0]), whole(&self.axes[1]), z.map(|z| z * c_m).collect()]
     }
 
     /// Whether a point is near enough to the roller's edge for stresses to be singular.

@@ -3,7 +3,8 @@
 //! Files are XML with the numbers appended as they are in memory (little-endian, 64-bit headers;
 //! VTK User's Guide, 11th ed., section 19.3, "XML File Formats").
 
-use crate::base::StressTensor;
+/// Bytes of an array's length before the array.
+const HEADER: usize = size_of::<u64>();
 
 /// A field on a rectilinear grid, in SI units.
 #[derive(Debug, Clone, PartialEq)]
@@ -15,24 +16,6 @@ pub struct Grid {
 }
 
 impl Grid {
-    /// A grid of stresses (Pa) with the arrays `sigma_xx_pa` ... `sigma_yz_pa`, `von_mises_pa` and
-    /// `tau_max_pa`.
-    pub fn of_stress(axes_m: [Vec<f64>; 3], stress_pa: &[StressTensor]) -> Self {
-        let mut arrays: Vec<(String, Vec<f32>)> = StressTensor::NAMES
-            .iter()
-            .enumerate()
-            .map(|(i, name)| {
-                let values = stress_pa.iter().map(|s| s.components()[i] as f32).collect();
-                (format!("{name}_pa"), values)
-            })
-            .collect();
-        let von_mises = stress_pa.iter().map(|s| s.von_mises() as f32).collect();
-        let tau_max = stress_pa.iter().map(|s| s.tau_max() as f32).collect();
-        arrays.push(("von_mises_pa".to_string(), von_mises));
-        arrays.push(("tau_max_pa".to_string(), tau_max));
-        Self { axes_m, arrays }
-    }
-
     /// The file's bytes.
     ///
     /// # Panics
@@ -46,36 +29,37 @@ impl Grid {
         );
         text += &format!("  <RectilinearGrid WholeExtent=\"{extent}\">\n");
         text += &format!("    <Piece Extent=\"{extent}\">\n      <PointData>\n");
-        let mut data: Vec<u8> = Vec::new();
-        let mut append = |bytes: &[u8]| {
-            let offset = data.len();
-            data.extend_from_slice(&(bytes.len() as u64).to_le_bytes());
-            data.extend_from_slice(bytes);
-            offset
+        let mut offset = 0;
+        let mut array = |name: &str, kind: &str, bytes: usize| {
+            let line = format!(
+                "        <DataArray type=\"{kind}\" Name=\"{name}\" format=\"appended\" \
+                 offset=\"{offset}\"/>\n"
+            );
+            offset += HEADER + bytes;
+            line
         };
         for (name, values) in &self.arrays {
             assert_eq!(values.len(), nx * ny * nz, "{name} has a value for every point");
-            let bytes: Vec<u8> = values.iter().flat_map(|v| v.to_le_bytes()).collect();
-            let offset = append(&bytes);
-            text += &format!(
-                "        <DataArray type=\"Float32\" Name=\"{name}\" format=\"appended\" \
-                 offset=\"{offset}\"/>\n"
-            );
+            text += &array(name, "Float32", size_of_val(values.as_slice()));
         }
         text += "      </PointData>\n      <Coordinates>\n";
         for (name, axis) in ["x_m", "y_m", "z_m"].iter().zip(&self.axes_m) {
-            let bytes: Vec<u8> = axis.iter().flat_map(|v| v.to_le_bytes()).collect();
-            let offset = append(&bytes);
-            text += &format!(
-                "        <DataArray type=\"Float64\" Name=\"{name}\" format=\"appended\" \
-                 offset=\"{offset}\"/>\n"
-            );
+            text += &array(name, "Float64", size_of_val(axis.as_slice()));
         }
         text += "      </Coordinates>\n    </Piece>\n  </RectilinearGrid>\n  \
                  <AppendedData encoding=\"raw\">\n_";
-        let mut bytes = text.into_bytes();
-        bytes.extend_from_slice(&data);
-        bytes.extend_from_slice(b"\n  </AppendedData>\n</VTKFile>\n");
+        let end = b"\n  </AppendedData>\n</VTKFile>\n";
+        let mut bytes = Vec::with_capacity(text.len() + offset + end.len());
+        bytes.extend_from_slice(text.as_bytes());
+        for (_, values) in &self.arrays {
+            bytes.extend_from_slice(&(size_of_val(values.as_slice()) as u64).to_le_bytes());
+            bytes.extend(values.iter().flat_map(|v| v.to_le_bytes()));
+        }
+        for axis in &self.axes_m {
+            bytes.extend_from_slice(&(size_of_val(axis.as_slice()) as u64).to_le_bytes());
+            bytes.extend(axis.iter().flat_map(|v| v.to_le_bytes()));
+        }
+        bytes.extend_from_slice(end);
         bytes
     }
 }
@@ -87,9 +71,10 @@ mod tests {
     #[test]
     fn arrays_stand_where_the_header_says() {
         let axes = [vec![0.0, 1.0], vec![-2.0, 0.0, 2.0], vec![0.5]];
-        let stress: Vec<StressTensor> =
-            (0..6).map(|i| StressTensor { zz: f64::from(i), ..Default::default() }).collect();
-        let grid = Grid::of_stress(axes, &stress);
+        let arrays = [("zeros", 0.0), ("sigma_zz_pa", 1.0)].map(|(name, scale)| {
+            (name.to_string(), (0..6u8).map(|i| scale * f32::from(i)).collect())
+        });
+        let grid = Grid { axes_m: axes, arrays: arrays.into() };
         let bytes = grid.to_vtr();
         let marker = b"<AppendedData encoding=\"raw\">\n_";
         let start = bytes.windows(marker.len()).position(|w| w == marker).unwrap() + marker.len();

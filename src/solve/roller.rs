@@ -21,10 +21,14 @@
 use crate::base::{HertzScales, StressTensor};
 use crate::kernels::strip;
 use crate::stress::Pressure;
+use multiversion::multiversion;
 use std::f64::consts::PI;
 
-/// Points of Gauss's rule for the weight sqrt(1 - t^2) across the contact.
-const POINTS: usize = 40;
+/// Points of Gauss's rule for the weight sqrt(1 - t^2) across the contact, in groups that are summed side by
+/// side.
+const POINTS: usize = GROUPS * LANES;
+const GROUPS: usize = 5;
+const LANES: usize = 8;
 
 /// Step of the difference quotient along x (C).
 const STEP: f64 = 1e-4;
@@ -35,17 +39,21 @@ pub struct RollerShape {
     /// C / R.
     curvature: f64,
     /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
-    rule: Vec<(f64, f64)>,
+    rule: [[[f64; LANES]; 2]; GROUPS],
 }
 
 impl RollerShape {
     /// A roller of the radius `radius_m` (m).
     pub fn new(hertz: &HertzScales, radius_m: f64) -> Self {
-        let rule = (1..=POINTS).map(|i| {
-            let angle = PI * i as f64 / (POINTS + 1) as f64;
-            (angle.cos(), PI / (POINTS + 1) as f64 * angle.sin().powi(2))
+        let angle = |i: usize| PI * (i + 1) as f64 / (POINTS + 1) as f64;
+        let rule = std::array::from_fn(|group| {
+            let angles: [f64; LANES] = std::array::from_fn(|lane| angle(group * LANES + lane));
+            [
+                angles.map(f64::cos),
+                angles.map(|angle| PI / (POINTS + 1) as f64 * angle.sin().powi(2)),
+            ]
         });
-        Self { curvature: hertz.c_m / radius_m, rule: rule.collect() }
+        Self { curvature: hertz.c_m / radius_m, rule }
     }
 
     /// The even sigma_xx of a disc squeezed across its diameter (p0): w' / (pi R) with the mean line
@@ -60,18 +68,7 @@ impl RollerShape {
         let [x, y, z] = at;
         let mut s = *flat;
         s.xx += self.diametral_tension();
-        let mut sums = [0.0; 3];
-        for &(t, w) in &self.rule {
-            let u = x - t;
-            let (u2, z2) = (u * u, z * z);
-            let r4 = (u2 + z2).powi(2);
-            let r6 = r4 * (u2 + z2);
-            if r6 > 0.0 {
-                sums[0] -= w * (u2 * u2 / r4 + 4.0 * u2 * u2 * z2 / r6);
-                sums[1] += w * (u2 * z2 / r4 - 4.0 * u2 * z2 * z2 / r6);
-                sums[2] -= w * 4.0 * u2 * u * z2 * z / r6;
-            }
-        }
+        let sums = tilted(&self.rule, x, z);
         let [xx, zz, xz] = sums.map(|sum| self.curvature / PI * sum);
         s.xx += xx;
         s.zz += zz;
@@ -98,6 +95,26 @@ impl RollerShape {
         }
         s
     }
+}
+
+/// Sums over the rule's loads of what their tilt and the surface's fall add to xx, zz and xz at (`x`, `z`), compiled
+/// for the processor's vector units too.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn tilted(rule: &[[[f64; LANES]; 2]; GROUPS], x: f64, z: f64) -> [f64; 3] {
+    let mut sums = [[0.0; LANES]; 3];
+    for [nodes, weights] in rule {
+        for lane in 0..LANES {
+            let (u, w) = (x - nodes[lane], weights[lane]);
+            let square = u * u + z * z;
+            // A load at the place itself adds nothing.
+            let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
+            let (along, down) = (u * u * inverse, z * z * inverse);
+            sums[0][lane] -= w * along * along * (1.0 + 4.0 * down);
+            sums[1][lane] += w * along * down * (1.0 - 4.0 * down);
+            sums[2][lane] -= w * 4.0 * (u * z * inverse).powi(3);
+        }
+    }
+    sums.map(|lanes| lanes.iter().sum())
 }
 
 #[cfg(test)]
