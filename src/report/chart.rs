@@ -153,6 +153,9 @@ pub fn register_font() {
 }
 
 const TITLE_HEIGHT: i32 = 34;
+/// Where the legend begins, and the height of a row of it.
+const LEGEND_LEFT: i32 = 16;
+const LEGEND_TOP: i32 = TITLE_HEIGHT + 10;
 const LEGEND_HEIGHT: i32 = 26;
 /// Mean width of a character relative to the font's size, as SVG viewers' sans-serif has it.
 const CHARACTER: f64 = 0.55;
@@ -163,9 +166,9 @@ impl Figure {
     /// Draws the figure as SVG.
     pub fn to_svg(&self) -> String {
         let rows = self.panels.len().div_ceil(self.columns.max(1));
-        let legend = self.legend();
-        let legend_height = if legend.is_empty() { 0 } else { LEGEND_HEIGHT };
         let width = self.panel_size.0 * self.columns as u32;
+        let legend = self.legend(width as i32);
+        let legend_height = legend.last().map_or(0, |(_, (_, y))| y - LEGEND_TOP + LEGEND_HEIGHT);
         let height = self.panel_size.1 * rows as u32 + (TITLE_HEIGHT + legend_height) as u32 + 6;
         let mut text = String::new();
         {
@@ -176,36 +179,45 @@ impl Figure {
         text
     }
 
-    /// The first series of every name.
-    fn legend(&self) -> Vec<&Series> {
+    /// The first series of every name, and where its entry begins; entries that leave no place for another one in
+    /// `width` are followed by a new row.
+    fn legend(&self, width: i32) -> Vec<(&Series, (i32, i32))> {
         let mut all: Vec<&Series> = Vec::new();
         for s in self.panels.iter().flat_map(|p| &p.series).filter(|s| !s.name.is_empty()) {
             if !all.iter().any(|a| a.name == s.name) {
                 all.push(s);
             }
         }
-        all
+        let (mut x, mut y) = (LEGEND_LEFT, LEGEND_TOP);
+        let place = |s: &Series| {
+            let entry = 40 + (s.name.len() as f64 * 13.0 * CHARACTER) as i32;
+            if x > LEGEND_LEFT && x + entry > width {
+                (x, y) = (LEGEND_LEFT, y + LEGEND_HEIGHT);
+            }
+            let place = (x, y);
+            x += entry + 26;
+            place
+        };
+        let places: Vec<(i32, i32)> = all.iter().copied().map(place).collect();
+        all.into_iter().zip(places).collect()
     }
 
     fn draw<B: DrawingBackend<ErrorType = std::io::Error>>(
         &self,
         root: &DrawingArea<B, Shift>,
-        legend: &[&Series],
+        legend: &[(&Series, (i32, i32))],
         legend_height: i32,
     ) -> Result<(), Fault> {
         root.fill(&PAPER)?;
         let bold = FontDesc::new(FontFamily::Name(FONT), 16.0, FontStyle::Bold).color(&INK);
         root.draw(&Text::new(self.title.clone(), (14, 10), bold))?;
-        let mut x = 16;
-        for s in legend {
-            let y = TITLE_HEIGHT + 10;
+        for &(s, (x, y)) in legend {
             draw_line(root, &[(x, y), (x + 34, y)], s.look, s.line)?;
             if s.markers {
                 draw_marker(root, (x + 17, y), s.look)?;
             }
             let style = (FONT, 13).into_font().color(&INK).pos(Pos::new(HPos::Left, VPos::Center));
             root.draw(&Text::new(s.name.clone(), (x + 40, y), style))?;
-            x += 40 + (s.name.len() as f64 * 13.0 * CHARACTER) as i32 + 26;
         }
         let (_, body) = root.split_vertically(TITLE_HEIGHT + legend_height);
         let rows = self.panels.len().div_ceil(self.columns.max(1));
@@ -629,6 +641,19 @@ mod tests {
         let panel = Panel { series: vec![series], ..Default::default() };
         let (x, y) = panel.axes(400, 300, 60);
         assert!(x.high > 2.0 && y.high < 3.0 && y.low < 1.0);
+    }
+
+    #[test]
+    fn a_legend_goes_on_in_a_new_row_before_it_is_cut() {
+        let series = ["one", "a name of some length", "another name of some length"]
+            .map(|name| Series::curve(name, look("fem"), vec![(0.0, 1.0), (1.0, 2.0)]));
+        let panel = Panel { series: series.to_vec(), ..Default::default() };
+        let figure = Figure { columns: 1, panels: vec![panel], ..Default::default() };
+        let places = |width| figure.legend(width).iter().map(|(_, p)| *p).collect::<Vec<_>>();
+        assert!(places(1000).iter().all(|(_, y)| *y == LEGEND_TOP));
+        let [first, second, third] = places(400)[..] else { panic!("three names") };
+        assert!(first.1 == second.1 && second.0 > first.0);
+        assert_eq!(third, (LEGEND_LEFT, LEGEND_TOP + LEGEND_HEIGHT));
     }
 
     #[test]
