@@ -136,7 +136,7 @@ const LAWS: [(&str, f64); 12] = [
     ("mirror symmetry (p0)", 1e-9),
     ("exchange of the bodies (p0)", 1e-8),
     ("units (relative)", 2e-12),
-    ("inputs 1e-12 off (p0)", 5e-6),
+    ("inputs 1e-12 off (p0)", 1e-6),
     ("traction on the end faces (tolerances)", 8.0),
     ("approach against the load", 0.0),
     ("finer grid (tolerances)", 6.0),

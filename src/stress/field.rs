@@ -199,22 +199,20 @@ impl<'a> Field<'a> {
     /// gives, with the smooth part interpolated where points lie closer than it varies.
     ///
     /// Under a load at the distance u along the surface the field's poles are at z = +-i u, of which
-    /// those count where the load is not smooth: at the nearest one asinh(z / u) has them at +-i pi/2.
-    /// Below these places themselves ln z, in which all poles are that far off, serves in some depth.
+    /// those count where the load is not smooth: with the nearest one's u in asinh(z / u), all of them are
+    /// at imaginary parts of +-pi/2. Below such a place this is ln z, and serves in some depth.
     pub fn down(&self, x: f64, y: f64, zs: &[f64]) -> Vec<StressTensor> {
         let near = self.smooth_within(x, y);
-        let smooth = near >= SMOOTH_DEPTH;
-        let least = if smooth { 0.0 } else { SMOOTH_DEPTH };
-        let place = |z: f64| if smooth { (z / near).asinh() } else { z.ln() };
-        let depth = |t: f64| if smooth { near * t.sinh() } else { t.exp() };
-        let poles =
-            |[from, to]: [f64; 2]| vec![(if smooth { 0.0 } else { 0.5 * (from + to) }, FRAC_PI_2)];
+        let least = if near >= SMOOTH_DEPTH { 0.0 } else { SMOOTH_DEPTH };
+        let scale = near.max(ON_SURFACE);
+        let place = |z: f64| (z / scale).asinh();
+        let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), FRAC_PI_2)];
         let below = zs.iter().filter(|z| **z >= least).map(|z| place(*z));
         let Some(axis) = self.sampling(below, poles) else {
             return zs.iter().map(|&z| self.at(y, z, &[x])[0]).collect();
         };
         let nodes: Vec<StressTensor> =
-            axis.nodes().iter().map(|t| self.remainders(y, depth(*t), &[x])[0]).collect();
+            axis.nodes().iter().map(|t| self.remainders(y, scale * t.sinh(), &[x])[0]).collect();
         zs.iter()
             .map(|&z| match z >= least {
                 true => self.complete(x, y, z, interpolated(&axis, &nodes, place(z))),
@@ -224,7 +222,7 @@ impl<'a> Field<'a> {
     }
 
     /// Distance along the surface from (`x`, `y`) to where its load is not smooth: the contact's edges and
-    /// ends, and the body's. None where stresses are corrected by a [`transition`], which is singular on
+    /// ends, and the body's. Zero where stresses are corrected by a [`transition`], which is singular on
     /// the surface itself.
     fn smooth_within(&self, x: f64, y: f64) -> f64 {
         if self.body.model == EdgeModel::Guilbault {
