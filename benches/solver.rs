@@ -8,7 +8,7 @@ use edgeline::base::Material;
 use edgeline::body::{Body, EdgeModel, Layer, Resolution};
 use edgeline::case::{Case, Factors};
 use edgeline::contact::{self, Compliance, ContactSettings};
-use edgeline::kernels::wave::{Places, WaveTable};
+use edgeline::kernels::wave::{Places, WAVES, WaveTable};
 use edgeline::kernels::{deflection, line_load, love};
 use edgeline::solve::{Options, Scene, SolvedScene, guilbault_psi, solve};
 use edgeline::stress::grid::on_grid;
@@ -40,7 +40,7 @@ fn kernels(c: &mut Criterion) {
     for n in [16usize, 256, 4096] {
         // Places from a hundredth to ten half-widths away, as a field asks for them.
         let places: Vec<f64> = (0..n).map(|i| 0.01 * 1000f64.powf(i as f64 / n as f64)).collect();
-        let (seen, loads) = (Places::new(places.clone(), 0.5, true), vec![1.0; n]);
+        let (seen, loads) = (Places::new(places.clone(), 0.5, true), vec![[1.0; WAVES]; n]);
         group.throughput(Throughput::Elements(n as u64));
         group.bench_with_input(BenchmarkId::new("love_rectangle", n), &places, |b, places| {
             b.iter(|| {
@@ -62,8 +62,9 @@ fn kernels(c: &mut Criterion) {
         group.bench_with_input(BenchmarkId::new("line_load_table", n), &places, |b, places| {
             b.iter(|| places.iter().map(|&u| table.line_load(1.3, u, 0.5).xx).sum::<f64>());
         });
+        group.throughput(Throughput::Elements((n * WAVES) as u64));
         group.bench_with_input(BenchmarkId::new("line_load_table_sum", n), &seen, |b, seen| {
-            b.iter(|| table.sum(1.3, black_box(seen), f64::INFINITY, &loads, 1));
+            b.iter(|| table.sum(&[1.3; WAVES], black_box(seen), f64::INFINITY, &loads));
         });
     }
     group.bench_function("line_load_table_build", |b| b.iter(|| WaveTable::new(black_box(NU))));

@@ -1,6 +1,7 @@
 //! From values at an axis's nodes to an integral against a kernel that peaks at a target.
 
 use crate::base::{Panels, gauss_legendre};
+use crate::kernels::wave::WAVES;
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DMatrixView, Dyn};
 
@@ -262,55 +263,46 @@ impl Stencil {
         }
     }
 
-    /// The loads of the source points into `loads`, zeros at first, `values.nrows()` a point and that a
-    /// multiple of [`LANES`], from functions whose `values` at the axis's nodes and whose `charges` stand in
-    /// columns. Of each point the first `wanted` are asked for.
+    /// The loads of the source points into `loads`, of those whose `distances` are below `limit`, from
+    /// functions whose `values` at the axis's nodes and whose `charges` are given.
     pub fn gather(
         &self,
-        values: &DMatrix<f32>,
-        charges: &DMatrix<f32>,
-        wanted: &[usize],
-        loads: &mut [f32],
+        values: &[[f32; WAVES]],
+        charges: &[[f32; WAVES]],
+        distances: &[f32],
+        limit: f32,
+        loads: &mut [[f32; WAVES]],
     ) {
-        gather(self, values.nrows(), values.as_slice(), charges.as_slice(), wanted, loads);
+        gather(self, values, charges, distances, limit, loads);
     }
 }
-
-/// Loads that are gathered together.
-pub const LANES: usize = 8;
 
 /// [`Stencil::gather`], compiled for the processor's vector units too.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn gather(
     stencil: &Stencil,
-    count: usize,
-    values: &[f32],
-    charges: &[f32],
-    wanted: &[usize],
-    loads: &mut [f32],
+    values: &[[f32; WAVES]],
+    charges: &[[f32; WAVES]],
+    distances: &[f32],
+    limit: f32,
+    loads: &mut [[f32; WAVES]],
 ) {
-    let blocks = |row: &[f32], at: usize| -> [f32; LANES] {
-        row[at..at + LANES].try_into().expect("whole blocks")
-    };
-    let mut rows = loads.chunks_exact_mut(count).zip(wanted);
-    for (&(charge, w), (row, wanted)) in stencil.far.iter().zip(&mut rows) {
-        let (own, w) = (&charges[charge as usize * count..][..count], w as f32);
-        for at in (0..*wanted).step_by(LANES) {
-            row[at..at + LANES].copy_from_slice(&blocks(own, at).map(|c| w * c));
+    let mut rows = loads.iter_mut().zip(distances);
+    for (&(charge, w), (row, distance)) in stencil.far.iter().zip(&mut rows) {
+        if *distance < limit {
+            *row = charges[charge as usize].map(|c| w as f32 * c);
         }
     }
     let weights = stencil.near_weights.chunks_exact(stencil.order);
-    for ((&first, w), (row, wanted)) in stencil.near.iter().zip(weights).zip(rows) {
-        let own = &values[first as usize * count..][..stencil.order * count];
-        for at in (0..*wanted).step_by(LANES) {
-            let mut sum = [0.0; LANES];
-            for (i, w) in w.iter().enumerate() {
-                let (w, own) = (*w as f32, blocks(own, i * count + at));
-                for lane in 0..LANES {
-                    sum[lane] += w * own[lane];
+    for ((&first, w), (row, distance)) in stencil.near.iter().zip(weights).zip(rows) {
+        if *distance < limit {
+            let mut sum = [0.0; WAVES];
+            for (w, own) in w.iter().zip(&values[first as usize..]) {
+                for wave in 0..WAVES {
+                    sum[wave] += *w as f32 * own[wave];
                 }
             }
-            row[at..at + LANES].copy_from_slice(&sum);
+            *row = sum;
         }
     }
 }
@@ -336,9 +328,10 @@ mod tests {
             let part = |d: f64| if d == 0.0 { 0.0 } else { d * (d.abs().ln() - 1.0) };
             -(part(b - y) - part(a - y))
         };
-        let values = DMatrix::from_element(LANES, axis.len(), 1.0);
-        let charges = sources.charges(&values).cast::<f32>();
-        let values = values.cast::<f32>();
+        let values = DMatrix::from_element(1, axis.len(), 1.0);
+        let charges: Vec<[f32; WAVES]> =
+            sources.charges(&values).iter().map(|v| [*v as f32; WAVES]).collect();
+        let values = vec![[1.0; WAVES]; axis.len()];
         for y in [0.0, 0.01, 0.5, 1.0, 2.9, 3.0, 3.1, 7.0] {
             for (images, a, b) in [(&direct, 0.0, 3.0), (&mirrored, 3.0, 6.0)] {
                 let stencil = Stencil::new(&sources, images, y, 0.0, 0.01, Peak::Logarithm);
@@ -349,10 +342,9 @@ mod tests {
                 sources.scatter(charge_row.as_view(), &mut row);
                 let got = row.sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
-                let mut loads = vec![0.0; LANES * kernel.len()];
-                stencil.gather(&values, &charges, &vec![1; kernel.len()], &mut loads);
-                let loads = loads.iter().step_by(LANES);
-                let again: f64 = kernel.iter().zip(loads).map(|(k, l)| k * f64::from(*l)).sum();
+                let (mut loads, near) = (vec![[0.0; WAVES]; kernel.len()], vec![0.0; kernel.len()]);
+                stencil.gather(&values, &charges, &near, 1.0, &mut loads);
+                let again: f64 = kernel.iter().zip(loads).map(|(k, l)| k * f64::from(l[0])).sum();
                 assert!((again - got).abs() < 1e-5);
             }
         }

@@ -26,9 +26,10 @@ pub const FLOOR: f64 = 1.0 / 512.0;
 pub const CEILING: f64 = 32.0;
 
 impl Fineness {
-    /// Of the distance `rho` the first patch of its row, and the place in it, in [-1, 1].
+    /// Of the distance `rho` the first patch of its row, below zero before the table begins, and the place
+    /// in it, in [-1, 1].
     #[inline(always)]
-    pub fn row(&self, rho: f32) -> (usize, f32) {
+    pub fn row(&self, rho: f32) -> (i32, f32) {
         const MANTISSA: u32 = 23;
         const ONE: u32 = 127 << MANTISSA;
         // The octave's halves, and so on, are the mantissa's first digits; what follows is the place.
@@ -36,7 +37,7 @@ impl Fineness {
         let bits = rho.to_bits();
         let row = (bits >> (MANTISSA - halves)) as i32 - ((127 + LOW) << halves);
         let place = f32::from_bits((bits << halves) & ((1 << MANTISSA) - 1) | ONE);
-        (row as usize * self.angles, 2.0 * place - 3.0)
+        (row * self.angles as i32, 2.0 * place - 3.0)
     }
 
     /// Of `share`, the offset's part in the sum of offset and depth, the patch in its row, and the

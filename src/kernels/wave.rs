@@ -17,29 +17,33 @@ pub struct WaveTable {
     /// xx, ww, dd and wd: all that a plane of symmetry x = 0 needs.
     even: Vec<Patch>,
     /// xw and xd.
-    odd: Vec<Patch>,
+    odd: Vec<OddPatch>,
     /// ww alone, more exactly: the faces' matrices are solved with.
     ww: Vec<WwPatch>,
 }
 
-/// Monomial coefficients of four stresses: for each power of the radial coordinate a vector of
+/// Monomial coefficients of some stresses: for each power of the radial coordinate a vector of
 /// [power of the angular one][stress].
 ///
 /// In single precision, whose rounding is below the interpolation's error: a look-up is bound by
 /// the memory it touches.
 type Patch = [[f32; LANES]; STRESS.order];
+type OddPatch = [[f32; ODD_LANES]; STRESS.order];
 
 /// Monomial coefficients of ww: for each power of the radial coordinate a vector over those of the angular
 /// one, filled up with zeros.
 type WwPatch = [[f64; WW_LANES]; WW.order];
 const WW_LANES: usize = 8;
 
-/// Stresses that are looked up together.
-const STRESSES: usize = 4;
-const LANES: usize = STRESSES * STRESS.order;
+/// Stresses that are looked up together: those that are even in the distance along the line, and those
+/// that are odd.
+const EVEN: usize = 4;
+const ODD: usize = 2;
+const LANES: usize = EVEN * STRESS.order;
+const ODD_LANES: usize = ODD * STRESS.order;
 
-/// No stress of the six.
-const NONE: usize = 6;
+/// Wavenumbers whose sums are taken together: what they share of a load is looked up once.
+pub const WAVES: usize = 8;
 
 /// Stresses times rho at the places of [`STRESS`] and of [`WW`] (ww alone), k = 1, for nu = 0 and what
 /// nu = 1 adds, in little-endian: they are linear in nu. Evaluated when the program is built.
@@ -107,16 +111,13 @@ impl WaveTable {
             std::array::from_fn(|c| value(c) + nu * value(6 + c))
         });
         interpolate::<{ STRESS.order }, 6>(stresses, |patch| {
-            let lanes = |stress: [usize; STRESSES]| -> Patch {
-                std::array::from_fn(|a| {
-                    std::array::from_fn(|i| {
-                        let c = patch[a][i / STRESSES];
-                        c.get(stress[i % STRESSES]).map_or(0.0, |c| *c as f32)
-                    })
-                })
-            };
-            even.push(lanes([0, 1, 2, 3]));
-            odd.push(lanes([4, 5, NONE, NONE]));
+            let single = |a: usize, b: usize, stress: usize| patch[a][b][stress] as f32;
+            even.push(std::array::from_fn(|a| {
+                std::array::from_fn(|i| single(a, i / EVEN, i % EVEN))
+            }));
+            odd.push(std::array::from_fn(|a| {
+                std::array::from_fn(|i| single(a, i / ODD, EVEN + i % ODD))
+            }));
         });
         let double = |b: &[u8]| f64::from_le_bytes(b.try_into().expect("eight bytes"));
         let values = WW_VALUES
@@ -130,40 +131,49 @@ impl WaveTable {
 
     /// As [`super::line_load::exact`].
     pub fn line_load(&self, k: f64, u: f64, v: f64) -> WaveStress {
-        self.sum(k, &Places::new(vec![u], v, false), f64::INFINITY, &[1.0], 1).0
+        let mut waves = [f64::INFINITY; WAVES];
+        waves[0] = k;
+        let places = Places::new(vec![u], v, false);
+        self.sum(&waves, &places, f64::INFINITY, &[[1.0; WAVES]])[0].0
     }
 
-    /// The stresses of line loads at `places` no farther away than `reach`, and the number of these
-    /// loads. Place i's load is `loads[i * stride]`.
+    /// For each of the wavenumbers `k`, ascending, the stresses of line loads at `places` that are less than
+    /// `reach` / k away, and the number of these loads. `loads` are those of a place at all wavenumbers; an
+    /// infinite wavenumber feels none.
     pub fn sum(
         &self,
-        k: f64,
+        k: &[f64; WAVES],
         places: &Places,
         reach: f64,
-        loads: &[f32],
-        stride: usize,
-    ) -> (WaveStress, usize) {
-        let ([mut xx, mut ww, mut dd, mut wd], count) =
-            sum_loads(&self.even, k, places, &places.even, reach, loads, stride);
-        let (mut xw, mut xd) = (0.0, 0.0);
-        if !places.central {
-            ([xw, xd, ..], _) = sum_loads(&self.odd, k, places, &places.odd, reach, loads, stride);
-        }
-        if k * places.depth < FLOOR {
-            for (i, (&u, distance)) in places.offsets.iter().zip(&places.distances).enumerate() {
+        loads: &[[f32; WAVES]],
+    ) -> [(WaveStress, usize); WAVES] {
+        let single = k.map(|k| k as f32);
+        let sums = sum_loads(&self.even, &self.odd, &single, places, reach, loads);
+        let mut of_waves = [(WaveStress::default(), 0); WAVES];
+        for (wave, into) in of_waves.iter_mut().enumerate() {
+            let [xx, ww, dd, wd] = from_powers(&sums.even[wave]);
+            let [xw, xd] = from_powers(&sums.odd[wave]);
+            *into = (WaveStress { xx, ww, dd, xw, xd, wd }, sums.counts[wave] as usize);
+            if k[wave] * places.depth >= FLOOR {
+                continue;
+            }
+            for ((&u, distance), loads) in places.offsets.iter().zip(&places.distances).zip(loads) {
                 // The table begins farther away.
-                if k as f32 * distance < FLOOR as f32 {
-                    let (s, load) =
-                        (near(k, self.nu, u, places.depth), f64::from(loads[i * stride]));
-                    (xx, ww, dd) = (xx + load * s.xx, ww + load * s.ww, dd + load * s.dd);
-                    wd += load * s.wd;
+                if single[wave] * distance < FLOOR as f32 {
+                    let s = near(k[wave], self.nu, u, places.depth);
+                    let (sum, load) = (&mut into.0, f64::from(loads[wave]));
+                    sum.xx += load * s.xx;
+                    sum.ww += load * s.ww;
+                    sum.dd += load * s.dd;
+                    sum.wd += load * s.wd;
                     if !places.central {
-                        (xw, xd) = (xw + load * s.xw, xd + load * s.xd);
+                        sum.xw += load * s.xw;
+                        sum.xd += load * s.xd;
                     }
                 }
             }
         }
-        (WaveStress { xx, ww, dd, xw, xd, wd }, count)
+        of_waves
     }
 
     /// The stress ww alone, of a unit load at each of `places`, into `out`; none from beyond `reach`.
@@ -226,7 +236,7 @@ fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &m
             continue;
         }
         let (row, a) = WW.row(rho);
-        let (patch, a) = (&patches[row + *direction as usize], f64::from(a));
+        let (patch, a) = (&patches[row as usize + *direction as usize], f64::from(a));
         let mut sum = patch[WW.order - 1];
         for c in patch[..WW.order - 1].iter().rev() {
             for i in 0..WW_LANES {
@@ -253,7 +263,7 @@ pub struct Places {
     /// Powers of the angular coordinate as [`Patch`] wants them, over the distance, with the signs of
     /// the stresses that are odd in the offset: of [`WaveTable::even`] and of [`WaveTable::odd`].
     even: Vec<[f32; LANES]>,
-    odd: Vec<[f32; LANES]>,
+    odd: Vec<[f32; ODD_LANES]>,
 }
 
 impl Places {
@@ -276,14 +286,13 @@ impl Places {
             let (b, inverse) = (b as f32, (1.0 / distance) as f32);
             let powers = [inverse, inverse * b, inverse * b * b, inverse * b * b * b];
             let sign = if u < 0.0 { -1.0 } else { 1.0 };
-            let factors = |signs: [f32; STRESSES]| -> [f32; LANES] {
-                std::array::from_fn(|i| powers[i / STRESSES] * signs[i % STRESSES])
-            };
             places.distances.push(distance as f32);
             places.patches.push(patch as u32);
-            places.even.push(factors([1.0, 1.0, 1.0, sign]));
+            let signs = [1.0, 1.0, 1.0, sign];
+            places.even.push(std::array::from_fn(|i| powers[i / EVEN] * signs[i % EVEN]));
             if !central {
-                places.odd.push(factors([sign, 1.0, 1.0, 1.0]));
+                let signs = [sign, 1.0];
+                places.odd.push(std::array::from_fn(|i| powers[i / ODD] * signs[i % ODD]));
             }
         }
         places.offsets = offsets;
@@ -300,23 +309,31 @@ impl Places {
         self.offsets.is_empty()
     }
 
-    /// Depth of the target.
-    pub fn depth(&self) -> f64 {
-        self.depth
+    /// How far each load is away.
+    pub fn distances(&self) -> &[f32] {
+        &self.distances
     }
 }
 
 /// What spreads on a half-space's surface from line loads at the offset `u`: adds
-/// (k / 2) e^(-k |u|) times the load, and the same with the sign of `u` to `shear` unless that is empty, for
-/// each of the wavenumbers `k`. J and N of [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
+/// (k / 2) e^(-k |u|) times the load to the first row of `sums`, and the same with the sign of `u` to the
+/// second, for each of the wavenumbers `k` that is less than `reach` / |u|. J and N of
+/// [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-pub fn add_surface_spread(k: &[f32], u: f32, loads: &[f32], spread: &mut [f32], shear: &mut [f32]) {
-    for ((k, load), sum) in k.iter().zip(loads).zip(&mut *spread) {
-        *sum += load * 0.5 * k * fade(k * u.abs());
-    }
+pub fn add_surface_spread(
+    k: &[f32; WAVES],
+    u: f32,
+    reach: f32,
+    loads: &[f32; WAVES],
+    sums: &mut [[f32; WAVES]; 2],
+) {
     let sign = if u == 0.0 { 0.0 } else { u.signum() };
-    for ((k, load), sum) in k.iter().zip(loads).zip(shear) {
-        *sum += load * 0.5 * k * sign * fade(k * u.abs());
+    for wave in 0..WAVES {
+        let rho = k[wave] * u.abs();
+        let spread = loads[wave] * 0.5 * k[wave] * fade(rho.min(reach));
+        let spread = if rho < reach { spread } else { 0.0 };
+        sums[0][wave] += spread;
+        sums[1][wave] += sign * spread;
     }
 }
 
@@ -333,50 +350,88 @@ fn fade(x: f32) -> f32 {
     power * SERIES.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
+/// Sums over loads for each of some wavenumbers, in the lanes of a [`Patch`] and of an [`OddPatch`], and
+/// how many loads there were.
+#[derive(Debug, Clone, Copy)]
+struct Sums {
+    even: [[f32; LANES]; WAVES],
+    odd: [[f32; ODD_LANES]; WAVES],
+    counts: [u32; WAVES],
+}
+
 /// Sums of the tabulated stresses over the loads that the table reaches, compiled for the
-/// processor's vector units too, and the number of these loads. `factors` are those of the table.
+/// processor's vector units too.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn sum_loads(
-    patches: &[Patch],
-    k: f64,
+    even: &[Patch],
+    odd: &[OddPatch],
+    k: &[f32; WAVES],
     places: &Places,
-    factors: &[[f32; LANES]],
     reach: f64,
-    loads: &[f32],
-    stride: usize,
-) -> ([f64; STRESSES], usize) {
+    loads: &[[f32; WAVES]],
+) -> Sums {
     let times = |a: f32, b: f32, c: f32| -> f32 {
         if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
     };
-    let (floor, ceiling) = (FLOOR as f32, CEILING.min(k * reach) as f32);
-    let k = k as f32;
-    let mut total = [0f32; LANES];
-    let mut count = 0;
-    let directions = places.patches.iter().zip(factors);
-    for ((distance, (direction, factors)), load) in
-        places.distances.iter().zip(directions).zip(loads.iter().step_by(stride))
-    {
-        let rho = k * distance;
-        if !(floor..ceiling).contains(&rho) {
+    let (floor, ceiling) = (FLOOR as f32, CEILING.min(reach) as f32);
+    let mut sums =
+        Sums { even: [[0.0; LANES]; WAVES], odd: [[0.0; ODD_LANES]; WAVES], counts: [0; WAVES] };
+    for (i, (distance, direction)) in places.distances.iter().zip(&places.patches).enumerate() {
+        if k[0] * distance >= ceiling {
             continue;
         }
-        count += 1;
-        let (row, a) = STRESS.row(rho);
-        let patch = &patches[row + *direction as usize];
-        let mut sum = patch[STRESS.order - 1];
-        for c in patch[..STRESS.order - 1].iter().rev() {
-            for i in 0..LANES {
-                sum[i] = times(sum[i], a, c[i]);
-            }
+        let (loads, factors) = (&loads[i], &places.even[i]);
+        let (mut rho, mut rows, mut at) = ([0.0; WAVES], [0; WAVES], [0.0; WAVES]);
+        for wave in 0..WAVES {
+            rho[wave] = k[wave] * distance;
+            (rows[wave], at[wave]) = STRESS.row(rho[wave]);
         }
-        for i in 0..LANES {
-            total[i] = times(load * factors[i], sum[i], total[i]);
+        let odd_factors = places.odd.get(i);
+        for wave in 0..WAVES {
+            if !(floor..ceiling).contains(&rho[wave]) {
+                continue;
+            }
+            let (a, load) = (at[wave], loads[wave]);
+            let patch = rows[wave] as usize + *direction as usize;
+            add_patch(&even[patch], a, load, factors, &mut sums.even[wave], times);
+            if let Some(factors) = odd_factors {
+                add_patch(&odd[patch], a, load, factors, &mut sums.odd[wave], times);
+            }
+            sums.counts[wave] += 1;
         }
     }
-    let sums = std::array::from_fn(|stress| {
-        (0..STRESS.order).map(|b| f64::from(total[b * STRESSES + stress])).sum()
-    });
-    (sums, count)
+    sums
+}
+
+/// Adds a load to the sums over the powers of the angular coordinate: its patch at the place `a` times
+/// the load's `factors`. `times` multiplies and adds.
+#[inline(always)]
+fn add_patch<const L: usize>(
+    patch: &[[f32; L]; STRESS.order],
+    a: f32,
+    load: f32,
+    factors: &[f32; L],
+    total: &mut [f32; L],
+    times: impl Fn(f32, f32, f32) -> f32,
+) {
+    let mut sum = patch[STRESS.order - 1];
+    for c in patch[..STRESS.order - 1].iter().rev() {
+        for lane in 0..L {
+            sum[lane] = times(sum[lane], a, c[lane]);
+        }
+    }
+    for lane in 0..L {
+        total[lane] = times(load * factors[lane], sum[lane], total[lane]);
+    }
+}
+
+/// The `S` stresses whose sums for each power of the angular coordinate stand in `lanes`.
+fn from_powers<const S: usize, const L: usize>(lanes: &[f32; L]) -> [f64; S] {
+    let mut sums = [0.0; S];
+    for (lane, v) in lanes.iter().enumerate() {
+        sums[lane % S] += f64::from(*v);
+    }
+    sums
 }
 
 #[cfg(test)]
@@ -471,9 +526,9 @@ mod tests {
         let (k, nu) = (1.3, 0.3);
         for u in [0.4, -0.9, 12.0] {
             let s = exact(k, nu, u, 1e-9);
-            let (mut spread, mut shear) = ([0.0], [0.0]);
-            add_surface_spread(&[k as f32], u as f32, &[1.0], &mut spread, &mut shear);
-            let [spread, shear] = [spread, shear].map(|s| (1.0 - 2.0 * nu) * f64::from(s[0]));
+            let mut sums = [[0.0; WAVES]; 2];
+            add_surface_spread(&[k as f32; WAVES], u as f32, 80.0, &[1.0; WAVES], &mut sums);
+            let [spread, shear] = sums.map(|s| (1.0 - 2.0 * nu) * f64::from(s[0]));
             assert!((s.xx + spread).abs() < 1e-5 && (s.ww - spread).abs() < 1e-5);
             assert!((s.xw - shear).abs() < 1e-5, "{} {}", s.xw, shear);
         }

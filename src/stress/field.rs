@@ -13,6 +13,7 @@ use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::strip;
+use crate::kernels::wave::WAVES;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -363,23 +364,35 @@ impl<'a> Field<'a> {
         let mut work = Work::default();
         let phases = if complete { body.plate_phases(z) } else { Vec::new() };
         let plates = (complete && central).then(|| self.plates(y));
+        let mut loads = Vec::new();
+        let mut felt = Felt::default();
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
                 work.faded = ((waves.k.len() - i) * (on_surface + on_faces)) as u64;
                 break;
             }
-            let (felt, mut done) = surface.stress(body, &waves, i);
-            let WaveStress { xx, ww, dd, xw, xd, wd } = felt;
+            let wave = i % WAVES;
+            if wave == 0 {
+                let block = &waves.blocks[i / WAVES];
+                felt.surface = surface.stresses(body, block, &mut loads);
+                if let Some((end, _)) = &correction {
+                    felt.end = end.stresses(body, block, &mut loads);
+                }
+                if let Some(faces) = faces.as_ref().filter(|_| waves.ends[i]) {
+                    felt.faces = faces.each_ref().map(|f| f.stresses(body, block, &mut loads));
+                }
+            }
+            let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = felt.surface[wave];
             let mut amplitudes = [xx, ww, dd, xw, xd, wd];
-            if let Some((end, share)) = &correction {
-                let (on_end, count) = end.stress(body, &waves, i);
+            if let Some((_, share)) = &correction {
+                let (on_end, count) = felt.end[wave];
                 amplitudes[1] -= on_end.ww * share;
                 done += count;
             }
             let mut ends = on_faces;
-            if let Some(faces) = faces.as_ref().filter(|_| waves.ends[i]) {
-                for (face, into) in faces.iter().zip([-1.0, 1.0]) {
-                    let (s, count) = face.stress(body, &waves, i);
+            if complete && waves.ends[i] {
+                for (face, into) in felt.faces.iter().zip([-1.0, 1.0]) {
+                    let (s, count) = face[wave];
                     let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
                     amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
                     done += count;
@@ -418,6 +431,16 @@ impl<'a> Field<'a> {
         self.counters.add(&work);
         sums.into_iter().map(StressTensor::from_components).collect()
     }
+}
+
+/// What a target feels of some wavenumbers: stresses, and the numbers of loads that they are from.
+#[derive(Default)]
+struct Felt {
+    surface: [(WaveStress, usize); WAVES],
+    /// Of the surface's loads, at the end face.
+    end: [(WaveStress, usize); WAVES],
+    /// Of the loads on either end face.
+    faces: [[(WaveStress, usize); WAVES]; 2],
 }
 
 /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.

@@ -1,16 +1,15 @@
 //! The loads of all wavenumbers on the superposed bodies, and what a target feels of them.
 
 use crate::base::Panels;
-use crate::body::stencil::{LANES, Sources, Stencil};
+use crate::body::stencil::Stencil;
 use crate::body::{Body, Layer};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
-use crate::kernels::wave::{Places, add_surface_spread};
+use crate::kernels::wave::{Places, WAVES, add_surface_spread};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
-/// The loads of all wavenumbers. Matrices have a row for each of them; those that stresses are summed
-/// from are in single precision, as the kernels' tables are, and are filled up with rows of zeros.
+/// The loads of all wavenumbers.
 #[derive(Debug, Clone)]
 pub(super) struct Waves {
     /// The wavenumbers, ascending.
@@ -19,23 +18,57 @@ pub(super) struct Waves {
     pub weights: Vec<f64>,
     /// Whether the end faces carry anything.
     pub ends: Vec<bool>,
-    /// The wavenumbers in single precision.
-    single: Vec<f32>,
-    /// Squares of how far each wavenumber reaches.
-    square_reaches: Vec<f64>,
-    /// Contact pressure at the contact's nodes.
+    /// What stresses are summed from, [`WAVES`] wavenumbers after [`WAVES`].
+    pub blocks: Vec<Block>,
+    /// Contact pressure at the contact's nodes, a row for each wavenumber.
     pub contact: DMatrix<f64>,
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
     /// Whether they serve the plane x = 0 only, where shears that are odd in x vanish.
     central: bool,
-    /// P at the surface's nodes, and its charges.
-    surface: [DMatrix<f32>; 2],
+}
+
+/// The loads of some wavenumbers, in single precision, as the kernels' tables are.
+#[derive(Debug, Clone)]
+pub(super) struct Block {
+    surface: Loads,
+    face: Loads,
     /// Mean of P over the body's length.
-    mean: Vec<f32>,
-    /// q at the face's nodes, and its charges.
-    face: [DMatrix<f32>; 2],
+    mean: [f32; WAVES],
+}
+
+/// The loads of a [`Block`] on a surface or on the end faces.
+#[derive(Debug, Clone)]
+struct Loads {
+    /// The wavenumbers; infinite, so felt nowhere, in place of those that carry nothing and behind the
+    /// last.
+    k: [f64; WAVES],
+    /// Loads at the axis's nodes, and their charges.
+    values: Vec<[f32; WAVES]>,
+    charges: Vec<[f32; WAVES]>,
+}
+
+impl Loads {
+    /// Those of the wavenumbers `k` from number `first` on; `values` and `charges` have a row for each of
+    /// all wavenumbers, and those that carry nothing are zero in `k`.
+    fn new(first: usize, k: &[f64], values: &DMatrix<f64>, charges: &DMatrix<f64>) -> Self {
+        let rows = |matrix: &DMatrix<f64>| {
+            let columns = matrix.column_iter();
+            columns.map(|column| block(first, column.as_slice()).map(|v| v as f32)).collect()
+        };
+        let carried = block(first, k);
+        Self {
+            k: carried.map(|k| if k > 0.0 { k } else { f64::INFINITY }),
+            values: rows(values),
+            charges: rows(charges),
+        }
+    }
+}
+
+/// Those of `all` from number `first` on, and zeros behind the last.
+fn block(first: usize, all: &[f64]) -> [f64; WAVES] {
+    std::array::from_fn(|wave| all.get(first + wave).copied().unwrap_or(0.0))
 }
 
 impl Waves {
@@ -50,9 +83,8 @@ impl Waves {
         layers: &[Layer],
         shares: impl Fn(usize) -> (usize, S),
     ) -> Self {
-        let stride = k.len().next_multiple_of(LANES);
-        let mut surface = DMatrix::zeros(stride, body.surface.axis.len());
-        let mut face = DMatrix::zeros(stride, body.face.axis.len());
+        let mut surface = DMatrix::zeros(k.len(), body.surface.axis.len());
+        let mut face = DMatrix::zeros(k.len(), body.face.axis.len());
         let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
         let mut ends = vec![false; k.len()];
         for (i, k) in k.iter().enumerate() {
@@ -78,22 +110,24 @@ impl Waves {
             plate.push(if ends[i] { body.plate_transform(*k, &q) } else { Vec::new() });
             plate_waves.push(if ends[i] { body.plate_waves(*k) } else { Vec::new() });
         }
+        let charges = [body.surface.charges(&surface), body.face.charges(&face)];
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
-        let with_charges = |values: DMatrix<f64>, sources: &Sources| {
-            let charges = sources.charges(&values).cast();
-            [values.cast(), charges]
-        };
+        let means = total / body.half;
+        let carried: Vec<f64> =
+            k.iter().zip(&ends).map(|(k, e)| if *e { *k } else { 0.0 }).collect();
+        let blocks = (0..k.len()).step_by(WAVES).map(|first| Block {
+            surface: Loads::new(first, &k, &surface, &charges[0]),
+            face: Loads::new(first, &carried, &face, &charges[1]),
+            mean: block(first, means.as_slice()).map(|mean| mean as f32),
+        });
+        let blocks = blocks.collect();
         Self {
             weights: match weights {
                 Some(weights) => weights.iter().map(|w| w / PI).collect(),
                 None => vec![1.0 / PI; k.len()],
             },
             central: weights.is_none(),
-            mean: total.iter().map(|t| (t / body.half) as f32).collect(),
-            surface: with_charges(surface, &body.surface),
-            face: with_charges(face, &body.face),
-            single: k.iter().map(|k| *k as f32).collect(),
-            square_reaches: k.iter().map(|k| body.reach(*k).powi(2)).collect(),
+            blocks,
             k,
             ends,
             contact,
@@ -101,138 +135,153 @@ impl Waves {
             plate_waves,
         }
     }
-
-    /// For each of the `offsets` from a target at `depth` how many of the wavenumbers, the first ones, reach
-    /// so far.
-    fn reaching(&self, offsets: &[f64], depth: f64) -> Vec<usize> {
-        let count = |u: &f64| {
-            let square = u * u + depth * depth;
-            self.square_reaches.partition_point(|reach| square < *reach)
-        };
-        offsets.iter().map(count).collect()
-    }
 }
 
-/// The loads on one surface of a body as a target feels them.
+/// The loads on one surface of a body, or on an end face, as a target feels them.
 #[derive(Debug, Clone)]
-pub(super) enum Sight {
-    /// From within the body: places, and the loads, all wavenumbers of a place one after the other.
-    Within(Places, Vec<f32>),
-    /// From the loaded surface itself: the number of loads, the stresses for each wavenumber, and how
-    /// many loads it reaches from.
-    Upon(usize, Vec<(WaveStress, usize)>),
+pub(super) struct Sight {
+    side: Side,
+    stencil: Stencil,
+    /// Weights of the mean load on strips, whose places come last.
+    strips: Vec<f32>,
+    target: Target,
+}
+
+/// What is loaded.
+#[derive(Debug, Clone, Copy)]
+enum Side {
+    /// The surface z = 0.
+    Surface,
+    /// The end faces.
+    Face,
+}
+
+/// Where the target is.
+#[derive(Debug, Clone)]
+enum Target {
+    /// Within the body, with the loads at these places.
+    Within(Places),
+    /// On the loaded surface itself: the loads' offsets and distances, and shares of the axis's nodes in
+    /// the target.
+    Upon { offsets: Vec<f32>, distances: Vec<f32>, shares: Vec<(usize, f64)> },
 }
 
 impl Sight {
     /// P on z = 0 and its images, from (`y`, `z`).
     pub fn of_surface(body: &Body, waves: &Waves, y: f64, z: f64) -> Self {
-        let [values, charges] = &waves.surface;
-        let mut stencil = body.surface_stencil(y, z);
         let mut strips = Vec::with_capacity(body.most_strips());
         body.for_strips(waves.k[0], y, z, |u, w| strips.push((u, w as f32)));
-        let mut offsets = stencil.take_offsets();
-        offsets.extend(strips.iter().map(|(u, _)| u));
-        let wanted = waves.reaching(&offsets, z);
-        let mut loads = vec![0.0; waves.mean.len() * offsets.len()];
-        stencil.gather(values, charges, &wanted, &mut loads);
-        let last = &mut loads[waves.mean.len() * (offsets.len() - strips.len())..];
-        for (loads, (_, w)) in last.chunks_exact_mut(waves.mean.len()).zip(&strips) {
-            loads.iter_mut().zip(&waves.mean).for_each(|(l, mean)| *l = w * mean);
-        }
-        if z > 0.0 {
-            return Self::Within(Places::new(offsets, z, waves.central), loads);
-        }
-        Self::upon(body, waves, &offsets, &wanted, &loads, local(&body.surface.axis, values, y))
+        let stencil = body.surface_stencil(y, z);
+        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, waves.central)
     }
 
     /// q on the end faces at +H and -H, `depths` from them, from (`y`, `z`).
     pub fn of_faces(body: &Body, waves: &Waves, y: f64, z: f64, depths: [f64; 2]) -> [Self; 2] {
-        let [values, charges] = &waves.face;
         let [near, far] = body.face_stencils(y, z);
-        [(near, depths[0]), (far, depths[1])].map(|(mut stencil, depth): (Stencil, f64)| {
-            let offsets = stencil.take_offsets();
-            let wanted = waves.reaching(&offsets, depth);
-            let mut loads = vec![0.0; waves.mean.len() * offsets.len()];
-            stencil.gather(values, charges, &wanted, &mut loads);
-            if depth > 0.0 {
-                return Self::Within(Places::new(offsets, depth, waves.central), loads);
-            }
-            Self::upon(body, waves, &offsets, &wanted, &loads, local(&body.face.axis, values, z))
+        [(near, depths[0]), (far, depths[1])].map(|(stencil, depth)| {
+            Self::new(Side::Face, stencil, &[], &body.face.axis, z, depth, waves.central)
         })
     }
 
-    /// On the loaded surface: under a pressure p(u) the stresses are xx = -2 nu p - (1 - 2 nu) s,
-    /// ww = -p + (1 - 2 nu) s, dd = -p and xw = (1 - 2 nu) t, with s and t those of
-    /// [`add_surface_spread`]; `local` is p at the target.
-    fn upon(
-        body: &Body,
-        waves: &Waves,
-        offsets: &[f64],
-        wanted: &[usize],
-        loads: &[f32],
-        local: Vec<f64>,
+    /// The loads on `side` that `stencil` and `strips` (offset, weight) place, from the coordinate `along`
+    /// their `axis` and a `depth`.
+    fn new(
+        side: Side,
+        mut stencil: Stencil,
+        strips: &[(f64, f32)],
+        axis: &Panels,
+        along: f64,
+        depth: f64,
+        central: bool,
     ) -> Self {
-        let (n, stride) = (waves.k.len(), waves.mean.len());
-        let (mut spread, mut shear, mut counts) = (vec![0f32; n], vec![0f32; n], vec![0; n]);
-        for ((u, &wanted), loads) in offsets.iter().zip(wanted).zip(loads.chunks_exact(stride)) {
-            let within = 0..wanted;
-            let k = &waves.single[within.clone()];
-            let shear = if waves.central { &mut [][..] } else { &mut shear[within.clone()] };
-            add_surface_spread(
-                k,
-                *u as f32,
-                &loads[within.clone()],
-                &mut spread[within.clone()],
-                shear,
-            );
-            counts[within].iter_mut().for_each(|c| *c += 1);
-        }
-        let (nu, free) = (body.nu, 1.0 - 2.0 * body.nu);
-        let stress = |i: usize| {
-            let (p, spread) = (local[i], free * f64::from(spread[i]));
-            WaveStress {
-                xx: -2.0 * nu * p - spread,
-                ww: spread - p,
-                dd: -p,
-                xw: free * f64::from(shear[i]),
-                ..WaveStress::default()
-            }
+        let mut offsets = stencil.take_offsets();
+        offsets.extend(strips.iter().map(|(u, _)| u));
+        let target = if depth > 0.0 {
+            Target::Within(Places::new(offsets, depth, central))
+        } else {
+            let beyond = along > axis.end() * (1.0 + 1e-12);
+            let shares = if beyond { Vec::new() } else { axis.interpolation(along).collect() };
+            let offsets: Vec<f32> = offsets.iter().map(|u| *u as f32).collect();
+            Target::Upon { distances: offsets.iter().map(|u| u.abs()).collect(), offsets, shares }
         };
-        Self::Upon(offsets.len(), (0..n).map(|i| (stress(i), counts[i])).collect())
+        Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }
     }
 
     /// Number of loads.
     pub fn len(&self) -> usize {
-        match self {
-            Self::Within(places, _) => places.len(),
-            Self::Upon(count, _) => *count,
+        match &self.target {
+            Target::Within(places) => places.len(),
+            Target::Upon { offsets, .. } => offsets.len(),
         }
     }
 
-    /// The stresses of wavenumber number `i`, in the frame of the loaded surface, and the number of loads
-    /// that it reaches from; no shears across the plane x = 0 where only that is served.
-    pub fn stress(&self, body: &Body, waves: &Waves, i: usize) -> (WaveStress, usize) {
-        let (k, stride) = (waves.k[i], waves.mean.len());
-        let reach = body.reach(k);
-        let (places, loads) = match self {
-            Self::Within(places, loads) if places.depth() < reach && !loads.is_empty() => {
-                (places, &loads[i..])
-            }
-            Self::Within(..) => return (WaveStress::default(), 0),
-            Self::Upon(_, stresses) => return stresses[i],
+    /// The stresses of each wavenumber of `block`, in the frame of the loaded surface, and the number of
+    /// loads that it reaches from; no shears across the plane x = 0 where only that is served. `loads` is
+    /// for scratch.
+    pub fn stresses(
+        &self,
+        body: &Body,
+        block: &Block,
+        loads: &mut Vec<[f32; WAVES]>,
+    ) -> [(WaveStress, usize); WAVES] {
+        let own = match self.side {
+            Side::Surface => &block.surface,
+            Side::Face => &block.face,
         };
-        body.kernel.sum(k, places, reach, loads, stride)
+        // In units of 1/k all wavenumbers reach equally far; the first one is the smallest. Rounding must
+        // not leave out what is felt.
+        let reach = body.reach(1.0);
+        let limit = (1.0001 * reach / own.k[0]) as f32;
+        loads.resize(self.len(), [0.0; WAVES]);
+        let (behind, ahead) = loads.split_at_mut(self.len() - self.strips.len());
+        for (load, w) in ahead.iter_mut().zip(&self.strips) {
+            *load = block.mean.map(|mean| w * mean);
+        }
+        match &self.target {
+            Target::Within(places) => {
+                let distances = places.distances();
+                self.stencil.gather(&own.values, &own.charges, distances, limit, behind);
+                body.kernel.sum(&own.k, places, reach, loads)
+            }
+            Target::Upon { offsets, distances, shares } => {
+                self.stencil.gather(&own.values, &own.charges, distances, limit, behind);
+                upon(body.nu, own, offsets, shares, reach, loads)
+            }
+        }
     }
 }
 
-/// Values at `at` of functions given in rows at the nodes of `axis`; zeros beyond it.
-fn local(axis: &Panels, values: &DMatrix<f32>, at: f64) -> Vec<f64> {
-    let mut sums = vec![0.0; values.nrows()];
-    if at <= axis.end() * (1.0 + 1e-12) {
-        for (node, weight) in axis.interpolation(at) {
-            let own = values.column(node);
-            sums.iter_mut().zip(own.iter()).for_each(|(s, v)| *s += weight * f64::from(*v));
+/// On the loaded surface: under a pressure p(u) the stresses are xx = -2 nu p - (1 - 2 nu) s,
+/// ww = -p + (1 - 2 nu) s, dd = -p and xw = (1 - 2 nu) t, with s and t those of
+/// [`add_surface_spread`]; `shares` of the nodes make p at the target.
+fn upon(
+    nu: f64,
+    own: &Loads,
+    offsets: &[f32],
+    shares: &[(usize, f64)],
+    reach: f64,
+    loads: &[[f32; WAVES]],
+) -> [(WaveStress, usize); WAVES] {
+    let single = own.k.map(|k| k as f32);
+    let mut sums = [[0f32; WAVES]; 2];
+    let mut counts = [0; WAVES];
+    for (u, loads) in offsets.iter().zip(loads) {
+        add_surface_spread(&single, *u, reach as f32, loads, &mut sums);
+        for (count, k) in counts.iter_mut().zip(&single) {
+            *count += usize::from(k * u.abs() < reach as f32);
         }
     }
-    sums
+    let free = 1.0 - 2.0 * nu;
+    std::array::from_fn(|wave| {
+        let p: f64 = shares.iter().map(|(j, w)| w * f64::from(own.values[*j][wave])).sum();
+        let [spread, shear] = sums.map(|s| free * f64::from(s[wave]));
+        let stress = WaveStress {
+            xx: -2.0 * nu * p - spread,
+            ww: spread - p,
+            dd: -p,
+            xw: shear,
+            ..WaveStress::default()
+        };
+        (stress, counts[wave])
+    })
 }
