@@ -103,10 +103,9 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
 
 /// Memory that a point of the field takes (bytes): its stress, four mirror images of it, and their
 /// place in the files.
-const FIELD_POINT_BYTES: f64 = 400.0;
+const FIELD_POINT_BYTES: f64 = 280.0;
 
-/// The files of the fields, by name. They come from a solution of their own, which leaves the other
-/// files as they are without them.
+/// The files of the fields, by name.
 fn fields(case: &Case, options: &Options, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
@@ -122,9 +121,7 @@ fn fields(case: &Case, options: &Options, arguments: &Arguments) -> Result<Vec<(
         2.5 * nx * ny * nz * FIELD_POINT_BYTES,
         "give fewer --field-points",
     )?;
-    let points = field::points(case, counts);
-    let options = Options { points, curves: Vec::new(), ..options.clone() };
-    field::contents(case, &solve(case, &options)?, counts)
+    field::contents(case, options.method, options.psi, counts)
 }
 
 /// The tolerance if it is within its legal range.

@@ -6,9 +6,10 @@
 use super::contour::Plane;
 use super::vtk::Grid;
 use crate::base::{Error, Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::solve::{Point, Solution};
-use crate::stress::BodyKind;
+use crate::solve::solve_on_grid;
+use crate::stress::{self, BodyKind, GridStress};
 use rayon::prelude::*;
 
 /// Number of grid points of a quarter of a body across, along and into it.
@@ -42,40 +43,39 @@ fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     [x, y, z]
 }
 
-/// The points at which [`contents`] needs stresses, for [`crate::solve::Options::points`].
-pub fn points(case: &Case, counts: [usize; 3]) -> Vec<Point> {
-    let c_m = case.hertz().c_m;
-    let mut all = Vec::new();
-    for body in BodyKind::ALL {
-        let [x, y, z] = axes(case, body, counts);
-        for &z in &z {
-            for &y in &y {
-                all.extend(x.iter().map(|&x| Point { body, at_m: [x, y, z].map(|v| v * c_m) }));
-            }
-        }
-    }
-    all
-}
-
-/// A quarter of a body's field in units of C and p0; x runs fastest.
+/// A quarter of a body's field, with axes in units of C and stresses in Pa.
 struct Quarter<'a> {
     axes: [Vec<f64>; 3],
-    stress: Vec<StressTensor>,
+    stress: GridStress,
     case: &'a Case,
     body: BodyKind,
 }
 
-impl Quarter<'_> {
+impl<'a> Quarter<'a> {
+    /// The field of `body`; `method` and `psi` as [`solve_on_grid`] takes them.
+    fn solve(
+        case: &'a Case,
+        method: EdgeModel,
+        psi: Option<f64>,
+        body: BodyKind,
+        counts: [usize; 3],
+    ) -> Result<Self> {
+        let axes = axes(case, body, counts);
+        let c_m = case.hertz().c_m;
+        let [x, y, z] = axes.each_ref().map(|axis| axis.iter().map(|v| v * c_m).collect());
+        let stress = solve_on_grid(case, method, psi, body, &stress::Grid { x, y, z })?;
+        Ok(Self { axes, stress, case, body })
+    }
+
     fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
         let [x, y, _] = &self.axes;
-        self.stress[(k * y.len() + j) * x.len() + i]
+        self.stress.at((k * y.len() + j) * x.len() + i)
     }
 
     /// The whole body in the global frame (m, Pa), in which z points into the block: the roller lies
     /// at z < 0 and its shears across z change their sign. The arrays are `sigma_xx_pa` ... `sigma_yz_pa`,
     /// `von_mises_pa` and `tau_max_pa`.
     fn grid(&self) -> Grid {
-        let p0 = self.case.hertz().p0_pa;
         let roller = self.body == BodyKind::Roller;
         let mut zs: Vec<usize> = (0..self.axes[2].len()).collect();
         if roller {
@@ -83,11 +83,10 @@ impl Quarter<'_> {
         }
         let side = if roller { -1.0 } else { 1.0 };
         // What is even or odd in x and y is computed once and copied.
-        let quarter: Vec<[f32; 8]> = self
-            .stress
-            .par_iter()
-            .map(|s| {
-                let s = *s * p0;
+        let quarter: Vec<[f32; 8]> = (0..self.stress.len())
+            .into_par_iter()
+            .map(|index| {
+                let s = self.stress.at(index);
                 let [xx, yy, zz, xy, xz, yz] = s.components();
                 let all = [xx, yy, zz, xy, side * xz, side * yz, s.von_mises(), s.tau_max()];
                 all.map(|v| v as f32)
@@ -108,8 +107,7 @@ impl Quarter<'_> {
 
     /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
     fn pressure(&self) -> Grid {
-        let p0 = self.case.hertz().p0_pa;
-        let value = |index: usize| (-(self.stress[index].zz * p0) as f32).max(0.0);
+        let value = |index: usize| (-self.stress.at(index).zz as f32).max(0.0);
         let values = self.mirrored(&[0], [false; 2], value);
         Grid {
             axes_m: self.axes_m(std::iter::once(0.0)),
@@ -161,7 +159,8 @@ impl Quarter<'_> {
         let [x, y, z] = &self.axes;
         let half = self.case.factors().slenderness;
         let end = y.iter().position(|v| *v == half).unwrap_or(y.len() - 1);
-        let value = |i: usize, j: usize, k: usize| self.at(i, j, k).von_mises();
+        let p0 = self.case.hertz().p0_pa;
+        let value = |i: usize, j: usize, k: usize| self.at(i, j, k).von_mises() / p0;
         let mut critical = (0, f64::NEG_INFINITY);
         let mut limit = f64::NEG_INFINITY;
         for k in 0..z.len() {
@@ -215,27 +214,20 @@ impl Quarter<'_> {
 /// The files of the field by name: `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the
 /// contours `field-<body>-<plane>.svg` and `.png`.
 ///
-/// `solution` is that of `case` with [`points`] of the same `counts` as its only extra points.
+/// They are those of `case` by `method` and `psi`, as [`solve_on_grid`] takes them, with `counts` of a quarter's points.
 ///
 /// # Errors
-/// [`Error::Io`] when a picture cannot be encoded.
-///
-/// # Panics
-/// When the solution has other points.
+/// Those of [`solve_on_grid`], and [`Error::Io`] when a picture cannot be encoded.
 pub fn contents(
     case: &Case,
-    solution: &Solution,
+    method: EdgeModel,
+    psi: Option<f64>,
     counts: [usize; 3],
 ) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = Vec::new();
     let mut put = |name: String, content: Vec<u8>| files.push((name, content));
-    let mut stress = solution.points.iter().map(|&s| s * (1.0 / solution.hertz.p0_pa));
     for body in BodyKind::ALL {
-        let axes = axes(case, body, counts);
-        let size = axes.iter().map(Vec::len).product();
-        let stress: Vec<StressTensor> = stress.by_ref().take(size).collect();
-        assert_eq!(stress.len(), size, "the solution has a stress for every point of the field");
-        let quarter = Quarter { axes, stress, case, body };
+        let quarter = Quarter::solve(case, method, psi, body, counts)?;
         let name = body.name();
         put(format!("field-{name}.vtr"), quarter.grid().to_vtr());
         if body == BodyKind::Block {
@@ -268,25 +260,19 @@ fn png(pixels: &[u8], (width, height): (u32, u32)) -> std::io::Result<Vec<u8>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::EdgeModel;
-    use crate::solve::{Options, solve};
     use std::path::Path;
 
     #[test]
     fn the_grid_reaches_the_ends_and_mirrors_the_shears() {
         let case = Case::find(Path::new("half-short")).unwrap();
         let counts = [5, 7, 6];
-        let points = points(&case, counts);
+        let quarter = |body| Quarter::solve(&case, EdgeModel::Mirror, None, body, counts).unwrap();
         // The block's grid goes on beyond the roller's end.
-        assert_eq!(points.len(), 5 * 7 * 6 + 5 * (7 + 3) * 6);
-        let options = Options { points, ..Options::new(EdgeModel::Mirror) };
-        let solution = solve(&case, &options).unwrap();
-        let [x, y, z] = axes(&case, BodyKind::Roller, counts);
+        assert_eq!(quarter(BodyKind::Block).stress.len(), 5 * (7 + 3) * 6);
+        let quarter = quarter(BodyKind::Roller);
+        assert_eq!(quarter.stress.len(), 5 * 7 * 6);
+        let [x, y, z] = &quarter.axes;
         assert_eq!((y[6], z[5], x[4]), (case.factors().slenderness, 5.0, 2.5));
-        let stress = solution.points[5 * 10 * 6..].to_vec();
-        let scale = 1.0 / solution.hertz.p0_pa;
-        let stress: Vec<_> = stress.into_iter().map(|s| s * scale).collect();
-        let quarter = Quarter { axes: [x, y, z], stress, case: &case, body: BodyKind::Roller };
         let grid = quarter.grid();
         let [nx, ny, nz] = [0, 1, 2].map(|k| grid.axes_m[k].len());
         assert_eq!([nx, ny, nz], [9, 13, 6]);
