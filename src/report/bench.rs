@@ -219,12 +219,16 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
     }
 }
 
-/// Run time against error: all cases together where there are several, then each.
+/// Run time against error: all cases together where there are several, then each; against what at least
+/// one case has.
 fn figure(bench: &Bench) -> Figure {
-    let titles = [
+    let titles: Vec<(Against, String)> = [
         (Against::Fem, "against FEM's finest mesh".to_string()),
         (Against::Limit, format!("against quarter-space at {:e}", bench.limit)),
-    ];
+    ]
+    .into_iter()
+    .filter(|(against, _)| bench.cases.iter().any(|case| !entries(case, *against).is_empty()))
+    .collect();
     let several = bench.cases.len() > 1;
     let together = titles.iter().filter(|_| several).map(|(against, title)| {
         let title = format!("all cases (median time, worst error), {title}");
@@ -232,12 +236,14 @@ fn figure(bench: &Bench) -> Figure {
     });
     let each = bench.cases.iter().flat_map(|case| {
         titles.iter().map(move |(against, title)| {
-            panel(format!("{}, {title}", case.case.name), &entries(case, *against))
+            let entries = entries(case, *against);
+            let missing = if entries.is_empty() { " (this case has none)" } else { "" };
+            panel(format!("{}, {title}{missing}", case.case.name), &entries)
         })
     });
     Figure {
         title: "Run time against error".to_string(),
-        columns: 2,
+        columns: titles.len().max(1),
         panels: together.chain(each).collect(),
         panel_size: (560, 380),
     }
@@ -285,6 +291,22 @@ mod tests {
             include_str!("../../results/bench.json"),
             "the record is as it was written"
         );
+    }
+
+    #[test]
+    fn what_no_case_has_is_not_drawn() {
+        let mut bench = Bench::recorded().unwrap();
+        assert_eq!(figure(&bench).panels.len(), 2 * (1 + bench.cases.len()));
+        for point in &mut bench.cases[0].points {
+            point.to_fem = None;
+        }
+        let panels = figure(&bench).panels;
+        assert!(panels[2].title.ends_with("(this case has none)"), "{}", panels[2].title);
+        for point in bench.cases.iter_mut().flat_map(|c| &mut c.points) {
+            point.to_fem = None;
+        }
+        let figure = figure(&bench);
+        assert_eq!((figure.panels.len(), figure.columns), (1 + bench.cases.len(), 1));
     }
 
     fn json_accuracy(worst: f64) -> serde_json::Value {
