@@ -1,6 +1,6 @@
 //! What a solved contact has to satisfy, evaluated away from the points where it was solved.
 
-use super::solver::{Compliance, ContactSolution, Remainder, remainders, screened};
+use super::solver::{Compliance, ContactSolution, Remainders, screened};
 use crate::base::{Error, Panels, Result};
 use crate::kernels::strip;
 
@@ -22,7 +22,7 @@ const END: f64 = 0.2;
 /// [`Error::Unsound`] with the law that is broken worst.
 pub(super) fn check(
     compliance: &Compliance,
-    remainders: &[Remainder],
+    remainders: &Remainders,
     axis: &Panels,
     solution: &ContactSolution,
     tolerance: f64,
@@ -65,27 +65,32 @@ pub fn gaps(
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
-    gaps_of(compliance, &remainders(compliance, axis.len(), 0.0), axis, solution, places)
+    gaps_of(compliance, &Remainders::new(compliance, axis.len(), 0.0), axis, solution, places)
 }
 
 /// [`gaps`] with the compliance's remainders at hand.
 fn gaps_of(
     compliance: &Compliance,
-    remainders: &[Remainder],
+    remainders: &Remainders,
     axis: &Panels,
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
     let mut gaps = vec![vec![0.0; axis.len()]; places.len()];
     let fine = compliance.wavenumbers.fine();
-    for ((&k, w), remainder) in fine.nodes().iter().zip(fine.weights()).zip(remainders) {
-        // All rows and columns: those that the solver leaves out are what is to be checked, too.
-        let amplitudes = &remainder.matrix * solution.transform(k);
+    let transforms: Vec<_> = fine.nodes().iter().map(|k| solution.transform(*k)).collect();
+    let mut amplitudes = vec![0.0; fine.len()];
+    for (i, a) in solution.half_widths.iter().enumerate() {
+        amplitudes.fill(0.0);
+        // All of them: what the solver leaves out is to be checked, too.
+        for j in 0..axis.len() {
+            let caused = remainders.entries(i, j).iter().zip(&transforms).map(|(e, t)| e * t[j]);
+            amplitudes.iter_mut().zip(caused).for_each(|(sum, caused)| *sum += caused);
+        }
         for (row, t) in gaps.iter_mut().zip(places) {
-            for ((gap, amplitude), a) in row.iter_mut().zip(&amplitudes).zip(&solution.half_widths)
-            {
-                *gap += w / (PI * PI) * amplitude * (k * t * a).cos();
-            }
+            let waves = fine.nodes().iter().zip(fine.weights()).zip(&amplitudes);
+            let waves = waves.map(|((k, w), s)| w / (PI * PI) * s * (k * t * a).cos());
+            row[i] = waves.sum();
         }
     }
     let mut modes = Vec::new();
@@ -140,7 +145,7 @@ mod tests {
             assert!(row.iter().all(|gap| (gap - want).abs() < 1e-4), "at {x}: {row:?}, {want}");
         }
 
-        let all = remainders(&compliance, axis.len(), 0.0);
+        let all = Remainders::new(&compliance, axis.len(), 0.0);
         let law = |change: &dyn Fn(&mut ContactSolution)| {
             let mut changed = solution.clone();
             change(&mut changed);

@@ -1,7 +1,7 @@
 use super::check::check;
 use crate::base::{Error, Panels, Result, Wavenumbers, linear};
 use crate::kernels::strip;
-use multiversion::multiversion;
+use multiversion::{multiversion, target::target_cfg_f};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -104,7 +104,7 @@ pub fn solve(
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
-    let remainders = remainders(compliance, axis.len(), NEGLIGIBLE * settings.tolerance);
+    let remainders = Remainders::new(compliance, axis.len(), NEGLIGIBLE * settings.tolerance);
     // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
@@ -127,7 +127,7 @@ pub fn solve(
 /// [`solve`] with the spacing as it is given.
 fn solve_once(
     compliance: &Compliance,
-    remainders: &[Remainder],
+    remainders: &Remainders,
     axis: &Panels,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
@@ -348,58 +348,69 @@ impl Layout {
     }
 }
 
-/// C(k) at one fine wavenumber, less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the
+/// C(k) at the fine wavenumbers, less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the
 /// diagonal.
-pub(super) struct Remainder {
-    pub matrix: DMatrix<f64>,
-    /// Rows of each column that matter: where waves are short, only those near the line's end.
-    rows: Vec<Range<usize>>,
-    /// Rows and columns that matter.
-    nodes: Range<usize>,
+pub(super) struct Remainders {
+    nodes: usize,
+    /// For each column, each row of it, all wavenumbers.
+    entries: Vec<f64>,
+    wavenumbers: usize,
+    /// For each column and row how many wavenumbers matter, the first ones: short waves are felt at their
+    /// own node only, and near the line's end.
+    counts: Vec<usize>,
 }
 
-/// The remainders at the fine wavenumbers, interpolated from the coarse ones; `negligible` is the
-/// displacement that one entry may leave out.
-pub(super) fn remainders(compliance: &Compliance, n: usize, negligible: f64) -> Vec<Remainder> {
-    let numbers = compliance.wavenumbers;
-    let coarse: Vec<_> = numbers
-        .coarse()
-        .nodes()
-        .iter()
-        .zip(compliance.matrices)
-        .map(|(&k, c)| c - DMatrix::identity(n, n) * (-2.0 * PI / k * (-k * SCREEN).exp_m1()))
-        .collect();
-    let interpolated = |(fine, (&k, w)): (usize, (&f64, &f64))| {
-        let (first, weights) = numbers.interpolation(fine);
-        let mut matrix = DMatrix::<f64>::zeros(n, n);
-        for (weight, part) in weights.iter().zip(&coarse[first..]) {
-            if *weight != 0.0 {
-                matrix.zip_apply(part, |s, m| *s += weight * m);
-            }
-        }
-        // The singular mode's transform, pi J0(k), falls least.
-        let limit = negligible * PI / (w * (0.8 / k.sqrt()).min(1.0));
-        let rows: Vec<Range<usize>> = matrix
-            .column_iter()
-            .map(|column| {
-                let strong = |value: &f64| value.abs() > limit;
-                let first = column.iter().position(strong).unwrap_or(0);
-                first..n - column.iter().rev().position(strong).unwrap_or(n - first)
+/// Points of a node, or modes of one, that are summed side by side.
+const TILE: usize = 4;
+type Tile = [f64; TILE];
+
+impl Remainders {
+    /// Those that are interpolated from the coarse wavenumbers; `negligible` is the displacement that one
+    /// entry may leave out.
+    pub fn new(compliance: &Compliance, nodes: usize, negligible: f64) -> Self {
+        let numbers = compliance.wavenumbers;
+        let coarse: Vec<_> = numbers
+            .coarse()
+            .nodes()
+            .iter()
+            .zip(compliance.matrices)
+            .map(|(&k, c)| {
+                c - DMatrix::identity(nodes, nodes) * (-2.0 * PI / k * (-k * SCREEN).exp_m1())
             })
             .collect();
-        let used = || rows.iter().enumerate().filter(|(_, r)| !r.is_empty());
-        let first = used().map(|(j, r)| j.min(r.start)).min().unwrap_or(0);
-        let last = used().map(|(j, r)| (j + 1).max(r.end)).max().unwrap_or(0);
-        Remainder { matrix, rows, nodes: first..last.max(first) }
-    };
-    numbers
-        .fine()
-        .nodes()
-        .iter()
-        .zip(numbers.fine().weights())
-        .enumerate()
-        .map(interpolated)
-        .collect()
+        let fine = numbers.fine();
+        let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
+        // The singular mode's transform, pi J0(k), falls least.
+        let limits = fine.nodes().iter().zip(fine.weights());
+        let limits: Vec<f64> =
+            limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
+        let mut entries = vec![0.0; nodes * nodes * fine.len()];
+        let mut own = vec![0.0; coarse.len()];
+        let mut counts = Vec::with_capacity(nodes * nodes);
+        for (at, entries) in entries.chunks_exact_mut(fine.len()).enumerate() {
+            own.iter_mut().zip(&coarse).for_each(|(own, matrix)| *own = matrix.as_slice()[at]);
+            let mut count = 0;
+            for (i, ((first, weights), limit)) in shares.iter().zip(&limits).enumerate() {
+                entries[i] = weights.iter().zip(&own[*first..]).map(|(w, c)| w * c).sum();
+                if entries[i].abs() > *limit {
+                    count = i + 1;
+                }
+            }
+            counts.push(count);
+        }
+        Self { nodes, entries, wavenumbers: fine.len(), counts }
+    }
+
+    /// What node `j` does at node `i`, at all wavenumbers.
+    pub fn entries(&self, i: usize, j: usize) -> &[f64] {
+        let at = j * self.nodes + i;
+        &self.entries[at * self.wavenumbers..(at + 1) * self.wavenumbers]
+    }
+
+    /// How many wavenumbers of [`Remainders::entries`] matter, the first ones.
+    fn count(&self, i: usize, j: usize) -> usize {
+        self.counts[j * self.nodes + i]
+    }
 }
 
 /// Points x' = cos(f) of Gauss-Chebyshev's rule of the first kind: cos f, sin f and 2 cos 2 f.
@@ -425,7 +436,7 @@ pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (ScreenP
 /// The linear problem for held half-widths: the unknowns of each node, then the approach.
 struct Linear<'a> {
     compliance: &'a Compliance<'a>,
-    remainders: &'a [Remainder],
+    remainders: &'a Remainders,
     axis: &'a Panels,
     layout: &'a Layout,
     half_widths: &'a [f64],
@@ -450,41 +461,61 @@ impl Linear<'_> {
 
     /// Adds what the remainders of the compliance displace.
     fn add_waves(&self, matrix: &mut DMatrix<f64>) {
-        let (layout, n) = (self.layout, self.axis.len());
-        let mut transform = vec![0.0; layout.size() - 1];
-        let mut singular_transform = vec![0.0; n];
-        let mut cosine = vec![0.0; layout.size() - 1];
-        let mut shape = Vec::with_capacity(layout.size());
-        let points: Vec<f64> = (0..n).flat_map(|j| layout.points(j)).collect();
-        let wavenumbers = self.compliance.wavenumbers.fine();
-        let terms = wavenumbers.nodes().iter().zip(wavenumbers.weights());
-        for ((&k, w), remainder) in terms.zip(self.remainders) {
-            for j in remainder.nodes.clone() {
-                let a = self.half_widths[j];
-                singular_transform[j] = strip::transforms(a, k, &mut transform[layout.modes(j)]);
-                let own = layout.unknowns(j);
-                for (c, t) in cosine[own.clone()].iter_mut().zip(&points[own]) {
-                    *c = (k * a * t).cos();
+        let (layout, n, all) = (self.layout, self.axis.len(), self.remainders.wavenumbers);
+        let fine = self.compliance.wavenumbers.fine();
+        let most = |counts: &dyn Fn(usize) -> usize| (0..n).map(counts).max().unwrap_or(0);
+        // Tiles of all wavenumbers: the cosines at the points of each node, ...
+        let mut first_tiles = vec![0];
+        for i in 0..n {
+            first_tiles.push(first_tiles[i] + layout.unknowns(i).len().div_ceil(TILE));
+        }
+        let mut cosines = vec![[0.0; TILE]; first_tiles[n] * all];
+        for (i, a) in self.half_widths.iter().enumerate() {
+            let felt = &fine.nodes()[..most(&|j| self.remainders.count(i, j))];
+            for (point, t) in layout.points(i).enumerate() {
+                let tiles = &mut cosines[(first_tiles[i] + point / TILE) * all..];
+                for (tile, k) in tiles.iter_mut().zip(felt) {
+                    tile[point % TILE] = (k * a * t).cos();
                 }
             }
-            for j in remainder.nodes.clone() {
-                let singular = layout
-                    .singular_parts(j, self.slopes)
-                    .map(|(column, factor)| (column, factor * singular_transform[j]));
-                let rows = &remainder.rows[j];
-                if rows.is_empty() {
-                    continue;
+        }
+        // ... and the transforms of a node's modes, the singular one last.
+        let modes_most = layout.counts.iter().copied().max().unwrap_or(0);
+        let mut transforms = vec![[0.0; TILE]; (modes_most + 1).div_ceil(TILE) * all];
+        let mut of_one = vec![0.0; modes_most];
+        for (j, a) in self.half_widths.iter().enumerate() {
+            let modes = layout.modes(j);
+            let singular: Vec<(usize, f64)> = layout.singular_parts(j, self.slopes).collect();
+            let caused = most(&|i| self.remainders.count(i, j));
+            for (at, (k, w)) in fine.nodes().iter().zip(fine.weights()).take(caused).enumerate() {
+                let of_singular = strip::transforms(*a, *k, &mut of_one[..modes.len()]);
+                for (mode, transform) in
+                    of_one[..modes.len()].iter().chain([&of_singular]).enumerate()
+                {
+                    let tile = &mut transforms[mode / TILE * all + at];
+                    tile[mode % TILE] = w / (PI * PI) * transform;
                 }
-                let span = layout.starts[rows.start]..layout.starts[rows.end];
-                let entries = remainder.matrix.column(j);
-                shape.clear();
-                for i in rows.clone() {
-                    shape.extend(cosine[layout.unknowns(i)].iter().map(|c| entries[i] * c));
-                }
-                for (m, transform) in layout.modes(j).map(|m| (m, transform[m])).chain(singular) {
-                    let factor = w / (PI * PI) * transform;
-                    let mut column = matrix.column_mut(m);
-                    add_scaled(&mut column.as_mut_slice()[span.clone()], factor, &shape);
+            }
+            for i in 0..n {
+                let entries = &self.remainders.entries(i, j)[..self.remainders.count(i, j)];
+                let rows = layout.unknowns(i);
+                for (mode, transforms) in
+                    (0..=modes.len()).step_by(TILE).zip(transforms.chunks_exact(all))
+                {
+                    let tiles = cosines[first_tiles[i] * all..].chunks_exact(all);
+                    for (row, cosines) in rows.clone().step_by(TILE).zip(tiles) {
+                        let sums = sum_waves(entries, transforms, cosines);
+                        let rows = row..rows.end.min(row + TILE);
+                        for (mode, sums) in (mode..=modes.len()).zip(sums) {
+                            let one = [(modes.start + mode, 1.0)];
+                            let columns = if mode < modes.len() { &one[..] } else { &singular };
+                            for (column, factor) in columns {
+                                for (row, sum) in rows.clone().zip(sums) {
+                                    matrix[(row, *column)] += factor * sum;
+                                }
+                            }
+                        }
+                    }
                 }
             }
         }
@@ -530,10 +561,23 @@ impl Linear<'_> {
     }
 }
 
-/// Adds `factor` times `shape`, compiled for the processor's vector units too.
+/// For each transform of a tile and each of its cosines the sum over wavenumbers of their products with the
+/// `entries`, compiled for the processor's vector units too.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-fn add_scaled(sum: &mut [f64], factor: f64, shape: &[f64]) {
-    sum.iter_mut().zip(shape).for_each(|(entry, s)| *entry += factor * s);
+fn sum_waves(entries: &[f64], transforms: &[Tile], cosines: &[Tile]) -> [Tile; TILE] {
+    let times = |a: f64, b: f64, c: f64| -> f64 {
+        if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+    };
+    let mut sums = [[0.0; TILE]; TILE];
+    for ((entry, transforms), cosines) in entries.iter().zip(transforms).zip(cosines) {
+        let displaced = cosines.map(|c| entry * c);
+        for mode in 0..TILE {
+            for point in 0..TILE {
+                sums[mode][point] = times(transforms[mode], displaced[point], sums[mode][point]);
+            }
+        }
+    }
+    sums
 }
 
 /// Wavenumber (1/C) below which a displacement at a depth counts as its difference to the surface's.
