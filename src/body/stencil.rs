@@ -342,8 +342,13 @@ mod tests {
                 sources.scatter(charge_row.as_view(), &mut row);
                 let got = row.sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
-                let (mut loads, near) = (vec![[0.0; WAVES]; kernel.len()], vec![0.0; kernel.len()]);
-                stencil.gather(&values, &charges, &near, 1.0, &mut loads);
+                // What stood there before, and what is too far away, stays.
+                let mut loads = vec![[9.0; WAVES]; kernel.len()];
+                let mut distances = vec![0.0; kernel.len()];
+                distances[0] = 1.0;
+                stencil.gather(&values, &charges, &distances, 1.0, &mut loads);
+                assert_eq!(loads[0], [9.0; WAVES]);
+                stencil.gather(&values, &charges, &distances, 1.1, &mut loads);
                 let again: f64 = kernel.iter().zip(loads).map(|(k, l)| k * f64::from(l[0])).sum();
                 assert!((again - got).abs() < 1e-5);
             }

@@ -5,7 +5,7 @@ use crate::base::{Error, Lock, Result, check_memory};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::report::{field, solution};
-use crate::solve::{Options, Solution, solve};
+use crate::solve::{MOST_POINTS, Options, Solution, solve};
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -90,7 +90,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         options.points = super::points::read(path, &case)?;
     }
     let _lock = Lock::claim(&arguments.out)?;
-    let fields = if arguments.field { fields(&case, &options, &arguments)? } else { Vec::new() };
+    let fields = if arguments.field { fields(&case, &arguments)? } else { Vec::new() };
     let found = solve(&case, &options)?;
     solution::write(&found, &options, fields, &arguments.out)?;
     if arguments.json {
@@ -106,7 +106,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
 const FIELD_POINT_BYTES: f64 = 280.0;
 
 /// The files of the fields, by name.
-fn fields(case: &Case, options: &Options, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> {
+fn fields(case: &Case, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
             key: "--field-points".into(),
@@ -121,7 +121,15 @@ fn fields(case: &Case, options: &Options, arguments: &Arguments) -> Result<Vec<(
         2.5 * nx * ny * nz * FIELD_POINT_BYTES,
         "give fewer --field-points",
     )?;
-    field::contents(case, options.method, options.psi, counts)
+    if 1.5 * nx * ny * nz > MOST_POINTS as f64 {
+        return Err(Error::Value {
+            key: "--field-points".into(),
+            value: format!("{nx} x {ny} x {nz}"),
+            reason: format!("a body has at most {MOST_POINTS} points, those on a ledge included"),
+            remedy: "give fewer".into(),
+        });
+    }
+    field::contents(case, arguments.method, counts)
 }
 
 /// The tolerance if it is within its legal range.

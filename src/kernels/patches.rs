@@ -26,8 +26,8 @@ pub const FLOOR: f64 = 1.0 / 512.0;
 pub const CEILING: f64 = 32.0;
 
 impl Fineness {
-    /// Of the distance `rho` the first patch of its row, below zero before the table begins, and the place
-    /// in it, in [-1, 1].
+    /// Of the distance `rho` the first patch of its row, and the place in it, in [-1, 1]. A distance that is
+    /// not in the table has no patch of it.
     #[inline(always)]
     pub fn row(&self, rho: f32) -> (i32, f32) {
         const MANTISSA: u32 = 23;

@@ -138,8 +138,8 @@ impl WaveTable {
     }
 
     /// For each of the wavenumbers `k`, ascending, the stresses of line loads at `places` that are less than
-    /// `reach` / k away, and the number of these loads. `loads` are those of a place at all wavenumbers; an
-    /// infinite wavenumber feels none.
+    /// `reach` / k away, and the number of those that the table gave. `loads` are those of a place at all
+    /// wavenumbers; an infinite wavenumber feels none.
     pub fn sum(
         &self,
         k: &[f64; WAVES],
@@ -519,6 +519,46 @@ mod tests {
         }
         println!("worst {worst:e}");
         assert!(worst < 5e-5, "{worst:e}");
+    }
+
+    #[test]
+    fn sums_take_each_wavenumber_by_itself() {
+        let (nu, reach) = (0.3, 8.0);
+        let table = WaveTable::new(nu);
+        // From next to the target, before the table begins, to beyond what is felt.
+        let offsets: Vec<f64> =
+            (0..30).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 } * 1e-3 * 1.45f64.powi(i)).collect();
+        let mut k: [f64; WAVES] = std::array::from_fn(|wave| 0.3 * 1.9f64.powi(wave as i32));
+        k[WAVES - 1] = f64::INFINITY;
+        let load = |i: usize, wave: usize| 1.0 + ((3 * i + 5 * wave) % 7) as f32;
+        let loads: Vec<[f32; WAVES]> =
+            (0..30).map(|i| std::array::from_fn(|wave| load(i, wave))).collect();
+        for (depth, central) in [(1e-4, false), (0.2, false), (0.2, true)] {
+            let places = Places::new(offsets.clone(), depth, central);
+            let sums = table.sum(&k, &places, reach, &loads);
+            for (wave, (got, count)) in sums.into_iter().enumerate() {
+                let (mut want, mut size, mut near, mut felt) = ([0.0; 6], 0.0, 0, 0);
+                for (i, &u) in offsets.iter().enumerate() {
+                    let rho = k[wave] * u.hypot(depth);
+                    if rho < reach {
+                        let s = exact(k[wave], nu, u, depth);
+                        let own = [s.xx, s.ww, s.dd, s.wd, s.xw, s.xd];
+                        let load = f64::from(load(i, wave));
+                        want.iter_mut().zip(own).for_each(|(sum, s)| *sum += load * s);
+                        size += load * k[wave] / rho;
+                        (near, felt) = (near + usize::from(rho < FLOOR), felt + 1);
+                    }
+                }
+                if central {
+                    (want[4], want[5]) = (0.0, 0.0);
+                }
+                assert_eq!(count, felt - near, "wave {wave} at {depth}");
+                let got = [got.xx, got.ww, got.dd, got.wd, got.xw, got.xd];
+                for (got, want) in got.into_iter().zip(want) {
+                    assert!((got - want).abs() <= 5e-5 * size, "wave {wave}: {got} {want}");
+                }
+            }
+        }
     }
 
     #[test]

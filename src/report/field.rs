@@ -52,18 +52,17 @@ struct Quarter<'a> {
 }
 
 impl<'a> Quarter<'a> {
-    /// The field of `body`; `method` and `psi` as [`solve_on_grid`] takes them.
+    /// The field of `body`.
     fn solve(
         case: &'a Case,
         method: EdgeModel,
-        psi: Option<f64>,
         body: BodyKind,
         counts: [usize; 3],
     ) -> Result<Self> {
         let axes = axes(case, body, counts);
         let c_m = case.hertz().c_m;
         let [x, y, z] = axes.each_ref().map(|axis| axis.iter().map(|v| v * c_m).collect());
-        let stress = solve_on_grid(case, method, psi, body, &stress::Grid { x, y, z })?;
+        let stress = solve_on_grid(case, method, body, &stress::Grid { x, y, z })?;
         Ok(Self { axes, stress, case, body })
     }
 
@@ -214,20 +213,19 @@ impl<'a> Quarter<'a> {
 /// The files of the field by name: `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the
 /// contours `field-<body>-<plane>.svg` and `.png`.
 ///
-/// They are those of `case` by `method` and `psi`, as [`solve_on_grid`] takes them, with `counts` of a quarter's points.
+/// They are those of `case` by `method`, with `counts` of a quarter's points.
 ///
 /// # Errors
 /// Those of [`solve_on_grid`], and [`Error::Io`] when a picture cannot be encoded.
 pub fn contents(
     case: &Case,
     method: EdgeModel,
-    psi: Option<f64>,
     counts: [usize; 3],
 ) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = Vec::new();
     let mut put = |name: String, content: Vec<u8>| files.push((name, content));
     for body in BodyKind::ALL {
-        let quarter = Quarter::solve(case, method, psi, body, counts)?;
+        let quarter = Quarter::solve(case, method, body, counts)?;
         let name = body.name();
         put(format!("field-{name}.vtr"), quarter.grid().to_vtr());
         if body == BodyKind::Block {
@@ -266,7 +264,7 @@ mod tests {
     fn the_grid_reaches_the_ends_and_mirrors_the_shears() {
         let case = Case::find(Path::new("half-short")).unwrap();
         let counts = [5, 7, 6];
-        let quarter = |body| Quarter::solve(&case, EdgeModel::Mirror, None, body, counts).unwrap();
+        let quarter = |body| Quarter::solve(&case, EdgeModel::Mirror, body, counts).unwrap();
         // The block's grid goes on beyond the roller's end.
         assert_eq!(quarter(BodyKind::Block).stress.len(), 5 * (7 + 3) * 6);
         let quarter = quarter(BodyKind::Roller);

@@ -9,11 +9,10 @@ use crate::stress::grid::on_grid;
 use crate::stress::{BodyKind, Grid, GridStress};
 
 /// Largest number of points of one grid: the result takes 48 bytes a point.
-const MOST_POINTS: usize = 20_000_000;
+pub const MOST_POINTS: usize = 20_000_000;
 
 /// Solves `case` by `method` and evaluates the six stress components of `body` (Pa) at every point
-/// of `grid_m`, whose coordinates are in metres; z is the depth into that body. `psi` is that of
-/// [`super::Options::psi`].
+/// of `grid_m`, whose coordinates are in metres; z is the depth into that body.
 ///
 /// Runs on all threads of the current pool. Coordinates that mirror each other exactly in x = 0 or
 /// in y = 0 are computed once.
@@ -24,7 +23,6 @@ const MOST_POINTS: usize = 20_000_000;
 pub fn solve_on_grid(
     case: &Case,
     method: EdgeModel,
-    psi: Option<f64>,
     body: BodyKind,
     grid_m: &Grid,
 ) -> Result<GridStress> {
@@ -32,7 +30,7 @@ pub fn solve_on_grid(
     let hertz = case.hertz();
     let in_c = |values: &[f64]| values.iter().map(|v| v / hertz.c_m).collect::<Vec<_>>();
     // The body's end may be a rounding beyond itself once it is divided by C.
-    let scene = Scene::new(case, method, psi);
+    let scene = Scene::new(case, method, None);
     let half = match body {
         BodyKind::Block => scene.bodies[0].half,
         BodyKind::Roller => scene.bodies[1].half,
@@ -116,7 +114,7 @@ mod tests {
             z: [0.0, 0.3, 1.7].map(|v| v * c).to_vec(),
         };
         for body in BodyKind::ALL {
-            let stress = solve_on_grid(&case, EdgeModel::QuarterSpace, None, body, &grid).unwrap();
+            let stress = solve_on_grid(&case, EdgeModel::QuarterSpace, body, &grid).unwrap();
             assert_eq!(stress.len(), 75);
             let mut options = Options::new(EdgeModel::QuarterSpace);
             options.curves.clear();
@@ -144,7 +142,7 @@ mod tests {
         let case = builtin_case("flush-short").unwrap().unwrap();
         let good = Grid { x: vec![0.0], y: vec![0.0], z: vec![0.0] };
         let refused = |grid: Grid| {
-            solve_on_grid(&case, EdgeModel::Mirror, None, BodyKind::Roller, &grid)
+            solve_on_grid(&case, EdgeModel::Mirror, BodyKind::Roller, &grid)
                 .unwrap_err()
                 .to_string()
         };

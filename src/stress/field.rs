@@ -23,7 +23,7 @@ use std::sync::{Arc, Mutex};
 /// wavenumbers would have taken besides.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
-    /// Evaluations done.
+    /// Evaluations that stresses were summed from.
     pub done: u64,
     /// Spared: sources farther away than a wave reaches.
     pub beyond_reach: u64,

@@ -16,7 +16,7 @@ pub(super) struct Waves {
     pub k: Vec<f64>,
     /// Factors of what they cause: the quadrature's weights, if the loads lack them, over pi.
     pub weights: Vec<f64>,
-    /// Whether the end faces carry anything.
+    /// Whether the end faces carry anything: the first wavenumbers.
     pub ends: Vec<bool>,
     /// What stresses are summed from, [`WAVES`] wavenumbers after [`WAVES`].
     pub blocks: Vec<Block>,
@@ -95,6 +95,8 @@ impl Waves {
                 }
             };
             let (first, shares) = shares(i);
+            // The layers that feel their ends are the first ones; with this one the wavenumbers are, too.
+            ends[i] = layers[first].face.is_some();
             let shares = layers[first..].iter().zip(shares.as_ref());
             for (layer, &share) in shares.filter(|(_, share)| **share != 0.0) {
                 match &layer.surface {
@@ -103,7 +105,6 @@ impl Waves {
                 }
                 if let Some(matrix) = &layer.face {
                     add(&mut face, &(matrix * &p), share);
-                    ends[i] = true;
                 }
             }
             let q: Vec<f64> = face.row(i).iter().copied().collect();
@@ -233,18 +234,18 @@ impl Sight {
         let reach = body.reach(1.0);
         let limit = (1.0001 * reach / own.k[0]) as f32;
         loads.resize(self.len(), [0.0; WAVES]);
-        let (behind, ahead) = loads.split_at_mut(self.len() - self.strips.len());
-        for (load, w) in ahead.iter_mut().zip(&self.strips) {
+        let (sources, strips) = loads.split_at_mut(self.len() - self.strips.len());
+        for (load, w) in strips.iter_mut().zip(&self.strips) {
             *load = block.mean.map(|mean| w * mean);
         }
         match &self.target {
             Target::Within(places) => {
                 let distances = places.distances();
-                self.stencil.gather(&own.values, &own.charges, distances, limit, behind);
+                self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
                 body.kernel.sum(&own.k, places, reach, loads)
             }
             Target::Upon { offsets, distances, shares } => {
-                self.stencil.gather(&own.values, &own.charges, distances, limit, behind);
+                self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
                 upon(body.nu, own, offsets, shares, reach, loads)
             }
         }
@@ -284,4 +285,63 @@ fn upon(
         };
         (stress, counts[wave])
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{EdgeModel, Resolution};
+
+    #[test]
+    fn a_block_feels_what_each_wavenumber_does_by_itself() {
+        // The layers that feel their ends are all but some of the last panel, then none of that panel.
+        for (ledge, everywhere) in [(1.2, true), (2.5, false)] {
+            compare(ledge, everywhere);
+        }
+    }
+
+    fn compare(ledge: f64, everywhere: bool) {
+        let resolution = Resolution::for_tolerance(1e-2);
+        let body = Body::new(5.0, 5.0 + ledge, 0.3, EdgeModel::QuarterSpace, 1.0, &resolution);
+        let numbers = resolution.wavenumbers(body.half).resolving(1.0);
+        let layers: Vec<Layer> = numbers.coarse().nodes().iter().map(|k| body.layer(*k)).collect();
+        let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.fine().weights());
+        let loads =
+            DMatrix::from_fn(k.len(), body.contact_len(), |i, j| 1.0 + ((3 * i + j) % 5) as f64);
+        let all = Waves::new(&body, k.clone(), Some(weights), loads.clone(), &layers, |i| {
+            numbers.interpolation(i)
+        });
+        assert!(all.ends.is_sorted_by(|a, b| a >= b) && all.ends[0]);
+        assert_eq!(all.ends[k.len() - 1], everywhere);
+        assert!(layers[layers.len() - 1].face.is_none());
+        let mut scratch = Vec::new();
+        for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
+            let sights = |waves: &Waves| {
+                let faces = Sight::of_faces(&body, waves, y, z, [body.half - y, body.half + y]);
+                [vec![Sight::of_surface(&body, waves, y, z)], faces.into()].concat()
+            };
+            let own = sights(&all);
+            for (i, &k) in k.iter().enumerate() {
+                let one = Waves::new(
+                    &body,
+                    vec![k],
+                    Some(&weights[i..=i]),
+                    loads.rows(i, 1).into_owned(),
+                    &layers,
+                    |_| numbers.interpolation(i),
+                );
+                for (sight, alone) in own.iter().zip(sights(&one)) {
+                    let together = sight.stresses(&body, &all.blocks[i / WAVES], &mut scratch);
+                    let (got, count) = together[i % WAVES];
+                    let (want, alone) = alone.stresses(&body, &one.blocks[0], &mut scratch)[0];
+                    let values = |s: WaveStress| [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
+                    for (got, want) in values(got).into_iter().zip(values(want)) {
+                        assert!((got - want).abs() < 1e-5 * (1.0 + want.abs()), "{i} at {y}, {z}");
+                    }
+                    // Strips that a single, larger wavenumber does not reach are not its loads.
+                    assert_eq!(count, alone, "{i} at {y}, {z}");
+                }
+            }
+        }
+    }
 }
