@@ -76,6 +76,9 @@ fn wrong_usage_exits_with_two() {
     assert!(said.contains("--tolerance") && said.contains("1e-1"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "-1"]);
     assert!(said.contains("--tolerance = -1 is not valid"), "{said}");
+    // Refused by its memory or, where there is enough, by the number of points.
+    let field = ["solve", "half-short", "--field", "--field-points", "2000,100,70"];
+    assert!(refused(folder.path(), &field).contains("--field-points"));
     assert_eq!(files(folder.path()), [""; 0]);
 }
 

@@ -611,8 +611,6 @@ fn requests_that_are_far_too_large_are_refused_with_an_estimate() {
     );
     fs::write(folder.join("grid.toml"), text).unwrap();
     let field = ["solve", "half-short", "--field", "--field-points", "2000,2000,2000"];
-    // Refused by its memory or, where there is enough, by the number of points.
-    let smaller = ["solve", "half-short", "--field", "--field-points", "2000,100,70"];
     let mut mesh = bench.fake("");
     mesh.args(["--size", "0.1"]);
     for (command, wanted) in [
@@ -620,7 +618,6 @@ fn requests_that_are_far_too_large_are_refused_with_an_estimate() {
             edgeline(folder, &field),
             "a field of 2000 x 2000 x 2000 points a quarter of a body takes",
         ),
-        (edgeline(folder, &smaller), "--field-points"),
         (
             edgeline(folder, &["solve", "half-short", "--points", "huge.csv"]),
             "huge.csv asks for takes",

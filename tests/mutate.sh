@@ -26,6 +26,7 @@ mutants=(
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0, ..*i }) @@ .map(|i| Image { weight: 1.0, ..*i }) @@ $solver"
     "src/contact/solver.rs @@ let load = 0.5 * PI * length; @@ let load = 0.4 * PI * length; @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
+    "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )
 # Runs tests in the copy, quietly.

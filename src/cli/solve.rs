@@ -89,8 +89,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     if let Some(path) = &arguments.points {
         options.points = super::points::read(path, &case)?;
     }
+    let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
-    let fields = if arguments.field { fields(&case, &arguments)? } else { Vec::new() };
+    let fields = match counts {
+        Some(counts) => field::contents(&case, arguments.method, counts)?,
+        None => Vec::new(),
+    };
     let found = solve(&case, &options)?;
     solution::write(&found, &options, fields, &arguments.out)?;
     if arguments.json {
@@ -105,8 +109,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
 /// place in the files.
 const FIELD_POINT_BYTES: f64 = 280.0;
 
-/// The files of the fields, by name.
-fn fields(case: &Case, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> {
+/// The numbers of points of a quarter of a body's field, if that is not too large.
+fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
             key: "--field-points".into(),
@@ -129,7 +133,7 @@ fn fields(case: &Case, arguments: &Arguments) -> Result<Vec<(String, Vec<u8>)>> 
             remedy: "give fewer".into(),
         });
     }
-    field::contents(case, arguments.method, counts)
+    Ok(counts)
 }
 
 /// The tolerance if it is within its legal range.
