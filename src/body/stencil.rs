@@ -263,8 +263,8 @@ impl Stencil {
         }
     }
 
-    /// The loads of the source points into `loads`, of those whose `distances` are below `limit`, from
-    /// functions whose `values` at the axis's nodes and whose `charges` are given.
+    /// The loads of the source points into `loads`, of those whose `distances`, of any sign, are below
+    /// `limit`, from functions whose `values` at the axis's nodes and whose `charges` are given.
     pub fn gather(
         &self,
         values: &[[f32; WAVES]],
@@ -289,13 +289,13 @@ fn gather(
 ) {
     let mut rows = loads.iter_mut().zip(distances);
     for (&(charge, w), (row, distance)) in stencil.far.iter().zip(&mut rows) {
-        if *distance < limit {
+        if distance.abs() < limit {
             *row = charges[charge as usize].map(|c| w as f32 * c);
         }
     }
     let weights = stencil.near_weights.chunks_exact(stencil.order);
     for ((&first, w), (row, distance)) in stencil.near.iter().zip(weights).zip(rows) {
-        if *distance < limit {
+        if distance.abs() < limit {
             let mut sum = [0.0; WAVES];
             for (w, own) in w.iter().zip(&values[first as usize..]) {
                 for wave in 0..WAVES {

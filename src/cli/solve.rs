@@ -5,7 +5,7 @@ use crate::base::{Error, Lock, Result, check_memory};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::report::{field, solution};
-use crate::solve::{MOST_POINTS, Options, Solution, solve};
+use crate::solve::{MOST_GRID_POINTS, Options, Solution, solve};
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -125,11 +125,13 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
         2.5 * nx * ny * nz * FIELD_POINT_BYTES,
         "give fewer --field-points",
     )?;
-    if 1.5 * nx * ny * nz > MOST_POINTS as f64 {
+    if 1.5 * nx * ny * nz > MOST_GRID_POINTS as f64 {
         return Err(Error::Value {
             key: "--field-points".into(),
             value: format!("{nx} x {ny} x {nz}"),
-            reason: format!("a body has at most {MOST_POINTS} points, those on a ledge included"),
+            reason: format!(
+                "a body has at most {MOST_GRID_POINTS} points, those on a ledge included"
+            ),
             remedy: "give fewer".into(),
         });
     }

@@ -461,64 +461,60 @@ impl Linear<'_> {
 
     /// Adds what the remainders of the compliance displace.
     fn add_waves(&self, matrix: &mut DMatrix<f64>) {
-        let (layout, n, all) = (self.layout, self.axis.len(), self.remainders.wavenumbers);
-        let fine = self.compliance.wavenumbers.fine();
-        let most = |counts: &dyn Fn(usize) -> usize| (0..n).map(counts).max().unwrap_or(0);
-        // Tiles of all wavenumbers: the cosines at the points of each node, ...
-        let mut first_tiles = vec![0];
-        for i in 0..n {
-            first_tiles.push(first_tiles[i] + layout.unknowns(i).len().div_ceil(TILE));
-        }
-        let mut cosines = vec![[0.0; TILE]; first_tiles[n] * all];
-        for (i, a) in self.half_widths.iter().enumerate() {
-            let felt = &fine.nodes()[..most(&|j| self.remainders.count(i, j))];
-            for (point, t) in layout.points(i).enumerate() {
-                let tiles = &mut cosines[(first_tiles[i] + point / TILE) * all..];
-                for (tile, k) in tiles.iter_mut().zip(felt) {
-                    tile[point % TILE] = (k * a * t).cos();
-                }
-            }
-        }
-        // ... and the transforms of a node's modes, the singular one last.
-        let modes_most = layout.counts.iter().copied().max().unwrap_or(0);
-        let mut transforms = vec![[0.0; TILE]; (modes_most + 1).div_ceil(TILE) * all];
-        let mut of_one = vec![0.0; modes_most];
-        for (j, a) in self.half_widths.iter().enumerate() {
-            let modes = layout.modes(j);
-            let singular: Vec<(usize, f64)> = layout.singular_parts(j, self.slopes).collect();
-            let caused = most(&|i| self.remainders.count(i, j));
-            for (at, (k, w)) in fine.nodes().iter().zip(fine.weights()).take(caused).enumerate() {
-                let of_singular = strip::transforms(*a, *k, &mut of_one[..modes.len()]);
-                for (mode, transform) in
-                    of_one[..modes.len()].iter().chain([&of_singular]).enumerate()
-                {
-                    let tile = &mut transforms[mode / TILE * all + at];
-                    tile[mode % TILE] = w / (PI * PI) * transform;
-                }
-            }
-            for i in 0..n {
+        let (layout, all) = (self.layout, self.remainders.wavenumbers);
+        let nodes = 0..self.axis.len();
+        let cosines: Vec<Vec<Tile>> = nodes.clone().map(|i| self.cosines(i)).collect();
+        for j in nodes {
+            let transforms = self.transforms(j);
+            // Columns and factors of the node's modes, the singular one last.
+            let columns: Vec<Vec<(usize, f64)>> = layout
+                .modes(j)
+                .map(|mode| vec![(mode, 1.0)])
+                .chain([layout.singular_parts(j, self.slopes).collect()])
+                .collect();
+            for (i, cosines) in cosines.iter().enumerate() {
                 let entries = &self.remainders.entries(i, j)[..self.remainders.count(i, j)];
                 let rows = layout.unknowns(i);
-                for (mode, transforms) in
-                    (0..=modes.len()).step_by(TILE).zip(transforms.chunks_exact(all))
+                for (columns, transforms) in columns.chunks(TILE).zip(transforms.chunks_exact(all))
                 {
-                    let tiles = cosines[first_tiles[i] * all..].chunks_exact(all);
-                    for (row, cosines) in rows.clone().step_by(TILE).zip(tiles) {
+                    for (row, cosines) in rows.clone().step_by(TILE).zip(cosines.chunks_exact(all))
+                    {
                         let sums = sum_waves(entries, transforms, cosines);
-                        let rows = row..rows.end.min(row + TILE);
-                        for (mode, sums) in (mode..=modes.len()).zip(sums) {
-                            let one = [(modes.start + mode, 1.0)];
-                            let columns = if mode < modes.len() { &one[..] } else { &singular };
-                            for (column, factor) in columns {
-                                for (row, sum) in rows.clone().zip(sums) {
-                                    matrix[(row, *column)] += factor * sum;
-                                }
-                            }
-                        }
+                        add_tile(matrix, row..rows.end.min(row + TILE), columns, &sums);
                     }
                 }
             }
         }
+    }
+
+    /// Cosines at the points of node `i`: tile by tile at all wavenumbers, zeros where none is felt.
+    fn cosines(&self, i: usize) -> Vec<Tile> {
+        let (all, fine) = (self.remainders.wavenumbers, self.compliance.wavenumbers.fine());
+        let count = (0..self.axis.len()).map(|j| self.remainders.count(i, j)).max().unwrap_or(0);
+        let mut tiles = vec![[0.0; TILE]; self.layout.unknowns(i).len().div_ceil(TILE) * all];
+        for (point, t) in self.layout.points(i).enumerate() {
+            let felt = tiles[point / TILE * all..].iter_mut().zip(&fine.nodes()[..count]);
+            for (tile, k) in felt {
+                tile[point % TILE] = (k * self.half_widths[i] * t).cos();
+            }
+        }
+        tiles
+    }
+
+    /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights: as
+    /// [`Linear::cosines`] has them.
+    fn transforms(&self, j: usize) -> Vec<Tile> {
+        let (all, fine) = (self.remainders.wavenumbers, self.compliance.wavenumbers.fine());
+        let count = (0..self.axis.len()).map(|i| self.remainders.count(i, j)).max().unwrap_or(0);
+        let mut modes = vec![0.0; self.layout.counts[j]];
+        let mut tiles = vec![[0.0; TILE]; (modes.len() + 1).div_ceil(TILE) * all];
+        for (at, (k, w)) in fine.nodes().iter().zip(fine.weights()).take(count).enumerate() {
+            let singular = strip::transforms(self.half_widths[j], *k, &mut modes);
+            for (mode, transform) in modes.iter().chain([&singular]).enumerate() {
+                tiles[mode / TILE * all + at][mode % TILE] = w / (PI * PI) * transform;
+            }
+        }
+        tiles
     }
 
     /// Adds the plane, screened part, the approach, the gap and the load's equation.
@@ -556,6 +552,23 @@ impl Linear<'_> {
             }
             for (column, factor) in &singular {
                 matrix[(last, *column)] += self.axis.weights()[i] * a * PI * factor;
+            }
+        }
+    }
+}
+
+/// Adds the sums of a tile's modes, whose `columns` have these factors, at its points, whose equations are
+/// `rows`.
+fn add_tile(
+    matrix: &mut DMatrix<f64>,
+    rows: Range<usize>,
+    columns: &[Vec<(usize, f64)>],
+    sums: &[Tile; TILE],
+) {
+    for (columns, sums) in columns.iter().zip(sums) {
+        for (column, factor) in columns {
+            for (row, sum) in rows.clone().zip(sums) {
+                matrix[(row, *column)] += factor * sum;
             }
         }
     }

@@ -315,25 +315,35 @@ impl Places {
     }
 }
 
-/// What spreads on a half-space's surface from line loads at the offset `u`: adds
-/// (k / 2) e^(-k |u|) times the load to the first row of `sums`, and the same with the sign of `u` to the
-/// second, for each of the wavenumbers `k` that is less than `reach` / |u|. J and N of
-/// [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
+/// What spreads on a half-space's surface from line loads, for each of some wavenumbers.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SurfaceSpread {
+    /// Sums of (k / 2) e^(-k |u|) times a load.
+    pub even: [f32; WAVES],
+    /// The same with the sign of u.
+    pub odd: [f32; WAVES],
+    /// Numbers of loads.
+    pub counts: [u32; WAVES],
+}
+
+/// Adds what spreads from line loads at the offset `u` to `sums`, for each of the wavenumbers `k` that is less
+/// than `reach` / |u|. J and N of [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 pub fn add_surface_spread(
     k: &[f32; WAVES],
     u: f32,
     reach: f32,
     loads: &[f32; WAVES],
-    sums: &mut [[f32; WAVES]; 2],
+    sums: &mut SurfaceSpread,
 ) {
     let sign = if u == 0.0 { 0.0 } else { u.signum() };
     for wave in 0..WAVES {
         let rho = k[wave] * u.abs();
         let spread = loads[wave] * 0.5 * k[wave] * fade(rho.min(reach));
         let spread = if rho < reach { spread } else { 0.0 };
-        sums[0][wave] += spread;
-        sums[1][wave] += sign * spread;
+        sums.even[wave] += spread;
+        sums.odd[wave] += sign * spread;
+        sums.counts[wave] += u32::from(rho < reach);
     }
 }
 
@@ -566,9 +576,9 @@ mod tests {
         let (k, nu) = (1.3, 0.3);
         for u in [0.4, -0.9, 12.0] {
             let s = exact(k, nu, u, 1e-9);
-            let mut sums = [[0.0; WAVES]; 2];
+            let mut sums = SurfaceSpread::default();
             add_surface_spread(&[k as f32; WAVES], u as f32, 80.0, &[1.0; WAVES], &mut sums);
-            let [spread, shear] = sums.map(|s| (1.0 - 2.0 * nu) * f64::from(s[0]));
+            let [spread, shear] = [sums.even, sums.odd].map(|s| (1.0 - 2.0 * nu) * f64::from(s[0]));
             assert!((s.xx + spread).abs() < 1e-5 && (s.ww - spread).abs() < 1e-5);
             assert!((s.xw - shear).abs() < 1e-5, "{} {}", s.xw, shear);
         }

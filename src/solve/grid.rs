@@ -9,7 +9,7 @@ use crate::stress::grid::on_grid;
 use crate::stress::{BodyKind, Grid, GridStress};
 
 /// Largest number of points of one grid: the result takes 48 bytes a point.
-pub const MOST_POINTS: usize = 20_000_000;
+pub const MOST_GRID_POINTS: usize = 20_000_000;
 
 /// Solves `case` by `method` and evaluates the six stress components of `body` (Pa) at every point
 /// of `grid_m`, whose coordinates are in metres; z is the depth into that body.
@@ -58,9 +58,9 @@ fn check(case: &Case, body: BodyKind, grid: &Grid) -> Result<()> {
     // The product of three lengths may overflow where its factors do not.
     let sizes = [grid.x.len(), grid.y.len(), grid.z.len()];
     let count = sizes.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
-    if count.is_none_or(|n| n == 0 || n > MOST_POINTS) {
+    if count.is_none_or(|n| n == 0 || n > MOST_GRID_POINTS) {
         let value = sizes.map(|n| n.to_string()).join(" x ");
-        let reason = format!("a grid has 1 to {MOST_POINTS} points");
+        let reason = format!("a grid has 1 to {MOST_GRID_POINTS} points");
         return Err(refuse("size", value, &reason, "choose other numbers of points".into()));
     }
     let half_m = 0.5

@@ -16,7 +16,7 @@ use serde::Serialize;
 use serde_json::json;
 use std::time::Instant;
 
-pub use grid::{MOST_POINTS, solve_on_grid};
+pub use grid::{MOST_GRID_POINTS, solve_on_grid};
 pub use key::{END_DISTANCES, KeyResults, key_results};
 pub use roller::RollerShape;
 pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, guilbault_psi};

@@ -378,7 +378,7 @@ impl<'a> Field<'a> {
                 if let Some((end, _)) = &correction {
                     felt.end = end.stresses(body, block, &mut loads);
                 }
-                if let Some(faces) = faces.as_ref().filter(|_| waves.ends[i]) {
+                if let Some(faces) = faces.as_ref().filter(|_| i < waves.ends) {
                     felt.faces = faces.each_ref().map(|f| f.stresses(body, block, &mut loads));
                 }
             }
@@ -390,7 +390,7 @@ impl<'a> Field<'a> {
                 done += count;
             }
             let mut ends = on_faces;
-            if complete && waves.ends[i] {
+            if complete && i < waves.ends {
                 for (face, into) in felt.faces.iter().zip([-1.0, 1.0]) {
                     let (s, count) = face[wave];
                     let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];

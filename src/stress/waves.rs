@@ -5,7 +5,7 @@ use crate::body::stencil::Stencil;
 use crate::body::{Body, Layer};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
-use crate::kernels::wave::{Places, WAVES, add_surface_spread};
+use crate::kernels::wave::{Places, SurfaceSpread, WAVES, add_surface_spread};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 
@@ -16,8 +16,8 @@ pub(super) struct Waves {
     pub k: Vec<f64>,
     /// Factors of what they cause: the quadrature's weights, if the loads lack them, over pi.
     pub weights: Vec<f64>,
-    /// Whether the end faces carry anything: the first wavenumbers.
-    pub ends: Vec<bool>,
+    /// For how many wavenumbers, the first ones, the end faces carry anything.
+    pub ends: usize,
     /// What stresses are summed from, [`WAVES`] wavenumbers after [`WAVES`].
     pub blocks: Vec<Block>,
     /// Contact pressure at the contact's nodes, a row for each wavenumber.
@@ -41,8 +41,7 @@ pub(super) struct Block {
 /// The loads of a [`Block`] on a surface or on the end faces.
 #[derive(Debug, Clone)]
 struct Loads {
-    /// The wavenumbers; infinite, so felt nowhere, in place of those that carry nothing and behind the
-    /// last.
+    /// The wavenumbers; infinite, so felt nowhere, behind the last that carries something.
     k: [f64; WAVES],
     /// Loads at the axis's nodes, and their charges.
     values: Vec<[f32; WAVES]>,
@@ -50,8 +49,8 @@ struct Loads {
 }
 
 impl Loads {
-    /// Those of the wavenumbers `k` from number `first` on; `values` and `charges` have a row for each of
-    /// all wavenumbers, and those that carry nothing are zero in `k`.
+    /// Those of the wavenumbers from number `first` on, of which the first ones, `k`, carry something;
+    /// `values` and `charges` have a row for each of all wavenumbers.
     fn new(first: usize, k: &[f64], values: &DMatrix<f64>, charges: &DMatrix<f64>) -> Self {
         let rows = |matrix: &DMatrix<f64>| {
             let columns = matrix.column_iter();
@@ -86,7 +85,8 @@ impl Waves {
         let mut surface = DMatrix::zeros(k.len(), body.surface.axis.len());
         let mut face = DMatrix::zeros(k.len(), body.face.axis.len());
         let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
-        let mut ends = vec![false; k.len()];
+        // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
+        let ends = (0..k.len()).take_while(|i| layers[shares(*i).0].face.is_some()).count();
         for (i, k) in k.iter().enumerate() {
             let p: DVector<f64> = contact.row(i).transpose();
             let add = |into: &mut DMatrix<f64>, part: &DVector<f64>, share: f64| {
@@ -95,8 +95,6 @@ impl Waves {
                 }
             };
             let (first, shares) = shares(i);
-            // The layers that feel their ends are the first ones; with this one the wavenumbers are, too.
-            ends[i] = layers[first].face.is_some();
             let shares = layers[first..].iter().zip(shares.as_ref());
             for (layer, &share) in shares.filter(|(_, share)| **share != 0.0) {
                 match &layer.surface {
@@ -108,17 +106,15 @@ impl Waves {
                 }
             }
             let q: Vec<f64> = face.row(i).iter().copied().collect();
-            plate.push(if ends[i] { body.plate_transform(*k, &q) } else { Vec::new() });
-            plate_waves.push(if ends[i] { body.plate_waves(*k) } else { Vec::new() });
+            plate.push(if i < ends { body.plate_transform(*k, &q) } else { Vec::new() });
+            plate_waves.push(if i < ends { body.plate_waves(*k) } else { Vec::new() });
         }
         let charges = [body.surface.charges(&surface), body.face.charges(&face)];
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
         let means = total / body.half;
-        let carried: Vec<f64> =
-            k.iter().zip(&ends).map(|(k, e)| if *e { *k } else { 0.0 }).collect();
         let blocks = (0..k.len()).step_by(WAVES).map(|first| Block {
             surface: Loads::new(first, &k, &surface, &charges[0]),
-            face: Loads::new(first, &carried, &face, &charges[1]),
+            face: Loads::new(first, &k[..ends], &face, &charges[1]),
             mean: block(first, means.as_slice()).map(|mean| mean as f32),
         });
         let blocks = blocks.collect();
@@ -162,9 +158,8 @@ enum Side {
 enum Target {
     /// Within the body, with the loads at these places.
     Within(Places),
-    /// On the loaded surface itself: the loads' offsets and distances, and shares of the axis's nodes in
-    /// the target.
-    Upon { offsets: Vec<f32>, distances: Vec<f32>, shares: Vec<(usize, f64)> },
+    /// On the loaded surface itself: the loads' offsets, and shares of the axis's nodes in the target.
+    Upon(Vec<f32>, Vec<(usize, f64)>),
 }
 
 impl Sight {
@@ -202,8 +197,7 @@ impl Sight {
         } else {
             let beyond = along > axis.end() * (1.0 + 1e-12);
             let shares = if beyond { Vec::new() } else { axis.interpolation(along).collect() };
-            let offsets: Vec<f32> = offsets.iter().map(|u| *u as f32).collect();
-            Target::Upon { distances: offsets.iter().map(|u| u.abs()).collect(), offsets, shares }
+            Target::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
         };
         Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }
     }
@@ -212,7 +206,7 @@ impl Sight {
     pub fn len(&self) -> usize {
         match &self.target {
             Target::Within(places) => places.len(),
-            Target::Upon { offsets, .. } => offsets.len(),
+            Target::Upon(offsets, _) => offsets.len(),
         }
     }
 
@@ -244,8 +238,8 @@ impl Sight {
                 self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
                 body.kernel.sum(&own.k, places, reach, loads)
             }
-            Target::Upon { offsets, distances, shares } => {
-                self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
+            Target::Upon(offsets, shares) => {
+                self.stencil.gather(&own.values, &own.charges, offsets, limit, sources);
                 upon(body.nu, own, offsets, shares, reach, loads)
             }
         }
@@ -264,18 +258,14 @@ fn upon(
     loads: &[[f32; WAVES]],
 ) -> [(WaveStress, usize); WAVES] {
     let single = own.k.map(|k| k as f32);
-    let mut sums = [[0f32; WAVES]; 2];
-    let mut counts = [0; WAVES];
+    let mut sums = SurfaceSpread::default();
     for (u, loads) in offsets.iter().zip(loads) {
         add_surface_spread(&single, *u, reach as f32, loads, &mut sums);
-        for (count, k) in counts.iter_mut().zip(&single) {
-            *count += usize::from(k * u.abs() < reach as f32);
-        }
     }
     let free = 1.0 - 2.0 * nu;
     std::array::from_fn(|wave| {
         let p: f64 = shares.iter().map(|(j, w)| w * f64::from(own.values[*j][wave])).sum();
-        let [spread, shear] = sums.map(|s| free * f64::from(s[wave]));
+        let [spread, shear] = [sums.even, sums.odd].map(|s| free * f64::from(s[wave]));
         let stress = WaveStress {
             xx: -2.0 * nu * p - spread,
             ww: spread - p,
@@ -283,7 +273,7 @@ fn upon(
             xw: shear,
             ..WaveStress::default()
         };
-        (stress, counts[wave])
+        (stress, sums.counts[wave] as usize)
     })
 }
 
@@ -311,8 +301,12 @@ mod tests {
         let all = Waves::new(&body, k.clone(), Some(weights), loads.clone(), &layers, |i| {
             numbers.interpolation(i)
         });
-        assert!(all.ends.is_sorted_by(|a, b| a >= b) && all.ends[0]);
-        assert_eq!(all.ends[k.len() - 1], everywhere);
+        assert!(all.ends > 0);
+        assert_eq!(all.ends == k.len(), everywhere);
+        for i in all.ends..k.len() {
+            let (first, shares) = numbers.interpolation(i);
+            assert!(layers[first..first + shares.len()].iter().all(|layer| layer.face.is_none()));
+        }
         assert!(layers[layers.len() - 1].face.is_none());
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
@@ -338,7 +332,6 @@ mod tests {
                     for (got, want) in values(got).into_iter().zip(values(want)) {
                         assert!((got - want).abs() < 1e-5 * (1.0 + want.abs()), "{i} at {y}, {z}");
                     }
-                    // Strips that a single, larger wavenumber does not reach are not its loads.
                     assert_eq!(count, alone, "{i} at {y}, {z}");
                 }
             }
