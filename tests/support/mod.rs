@@ -30,11 +30,14 @@ impl Bench {
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
         let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
-        // A suite that runs under nohup would hand its ignored SIGHUP down, and edgeline respects that.
+        // A suite under nohup, or in the background of a script, would hand its ignored SIGHUP and SIGINT
+        // down, and edgeline respects that.
         // SAFETY: a plain system call that is async-signal-safe.
         unsafe {
             command.pre_exec(|| {
-                libc::signal(libc::SIGHUP, libc::SIG_DFL);
+                for signal in [libc::SIGHUP, libc::SIGINT] {
+                    libc::signal(signal, libc::SIG_DFL);
+                }
                 Ok(())
             });
         }
