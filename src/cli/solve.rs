@@ -119,13 +119,14 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
             remedy: "give for example 33,49,41".into(),
         })?;
     let [nx, ny, nz] = counts.map(|n| n as f64);
-    // Both bodies; the block may have half as many points again on its ledge.
+    // The block may have half as many points again on its ledge.
+    let (roller, block) = (nx * ny * nz, 1.5 * nx * ny * nz);
     check_memory(
         &format!("a field of {nx} x {ny} x {nz} points a quarter of a body"),
-        2.5 * nx * ny * nz * FIELD_POINT_BYTES,
+        (roller + block) * FIELD_POINT_BYTES,
         "give fewer --field-points",
     )?;
-    if 1.5 * nx * ny * nz > MOST_GRID_POINTS as f64 {
+    if block > MOST_GRID_POINTS as f64 {
         return Err(Error::Value {
             key: "--field-points".into(),
             value: format!("{nx} x {ny} x {nz}"),
