@@ -370,8 +370,8 @@ fn limits(values: impl Iterator<Item = f64>, log: bool) -> (f64, f64) {
     if log {
         return (low / 1.6, high * 1.6);
     }
-    // Nothing but rounding is between them: a flat line in the middle.
-    if high - low < 1e-9 * high.abs().max(1e-6) {
+    // Nothing but rounding is between them, the stress sums' single precision included: a flat line in the middle.
+    if high - low < 1e-9 * high.abs().max(100.0) {
         let half = 0.1 * high.abs().max(1e-3);
         return (low - half, high + half);
     }
@@ -425,7 +425,8 @@ impl Panel {
         let (width, height) = area.dim_in_pixel();
         let (width, height) = (width as i32, height as i32);
         let longest = self.bars.iter().map(|b| b.name.len()).max();
-        let left = longest.map_or(64, |n| (n as f64 * 12.0 * CHARACTER) as i32 + 22);
+        // Room for the axis label and for numbers of seven characters.
+        let left = longest.map_or(78, |n| (n as f64 * 12.0 * CHARACTER) as i32 + 22);
         let (x, y) = self.axes(width, height, left);
         let small = |h, v| (FONT, 13).into_font().color(&INK).pos(Pos::new(h, v));
 
@@ -641,6 +642,14 @@ mod tests {
         let panel = Panel { series: vec![series], ..Default::default() };
         let (x, y) = panel.axes(400, 300, 60);
         assert!(x.high > 2.0 && y.high < 3.0 && y.low < 1.0);
+    }
+
+    #[test]
+    fn rounding_is_drawn_as_a_flat_line() {
+        let (low, high) = limits([-2e-8, 0.0, 1e-8].into_iter(), false);
+        assert!(low < -1e-5 && high > 1e-5);
+        let (low, high) = limits([-2e-6, 0.0, 1e-6].into_iter(), false);
+        assert!(low > -3e-6 && high < 2e-6);
     }
 
     #[test]
