@@ -3,8 +3,8 @@
 use super::Panels;
 use std::ops::Range;
 
-/// Coarse nodes beyond a panel's own whose values interpolate to its fine nodes.
-const NEIGHBOURS: usize = 2;
+/// Coarse nodes whose values interpolate to a fine node, a panel's own and its neighbours'.
+const WIDTH: usize = 5;
 
 /// Quadrature over the wavenumbers of a product: one factor varies slowly and is costly, and is
 /// computed at the coarse nodes; the other, the transform of the contact pressure, oscillates with
@@ -38,7 +38,7 @@ impl Wavenumbers {
         }
         let fine = Panels::new(breaks, order);
         let places: Vec<f64> = coarse.nodes().iter().map(|k| k.ln()).collect();
-        let width = (order + NEIGHBOURS).min(places.len());
+        let width = order.max(WIDTH).min(places.len());
         let mut shares = Vec::with_capacity(fine.len());
         let mut basis = Vec::with_capacity(width * fine.len());
         for (&k, panel) in fine.nodes().iter().zip(panels) {

@@ -69,7 +69,7 @@ impl Resolution {
             k_order: 4,
             k_step: 4.0,
             k_min: 0.01,
-            k_ratio: 2.6,
+            k_ratio: 3.2,
             images: 1,
             face_reach: 14.0,
             reach: 14.0,
