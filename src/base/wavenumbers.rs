@@ -127,7 +127,7 @@ mod tests {
 
     #[test]
     fn products_of_slow_and_oscillating_factors_are_integrated() {
-        let numbers = Wavenumbers::new(Panels::new(vec![0.0, 1.0, 4.0, 16.0], 6), 1.5);
+        let numbers = Wavenumbers::new(Panels::new(vec![0.0, 1.0, 2.5, 6.0, 16.0], 6), 1.5);
         let fine = numbers.fine();
         // int_0^16 e^(-k/8) cos(3 k) dk, and with sin.
         let values: Vec<f64> =
