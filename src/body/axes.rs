@@ -38,7 +38,7 @@ pub struct Resolution {
     pub k_order: usize,
     /// Largest width of the panels on which the pressure's transform is resolved.
     pub k_step: f64,
-    /// Growth of the wavenumber panels above 0.5; below it panels grow by 10 or 20.
+    /// Growth of the wavenumber panels above 0.5; below it panels grow four to eight times as fast.
     pub k_ratio: f64,
     /// Largest end of the first wavenumber panel.
     pub k_min: f64,
@@ -69,7 +69,7 @@ impl Resolution {
             k_order: 4,
             k_step: 4.0,
             k_min: 0.01,
-            k_ratio: 3.2,
+            k_ratio: 2.6,
             images: 1,
             face_reach: 14.0,
             reach: 14.0,
@@ -82,9 +82,8 @@ impl Resolution {
             spacing: 0.1,
             k_max: 20.0,
             k_order: 3,
-            k_step: 2.5,
+            k_step: 3.0,
             k_min: 0.05,
-            k_ratio: 6.5,
             face_reach: 10.0,
             reach: 8.0,
             ..usual.clone()
@@ -96,7 +95,7 @@ impl Resolution {
                 modes: 3,
                 spacing: 0.15,
                 k_max: 12.0,
-                k_ratio: 5.0,
+                k_ratio: 3.0,
                 ..coarse
             }
         } else if tolerance >= COARSE {
@@ -226,7 +225,8 @@ impl Resolution {
             );
         };
         // One panel does for bodies that are not much longer than the contact is wide.
-        equal(smallest, SLOW, if SLOW <= 20.0 * smallest { 20.0 } else { 10.0 });
+        let growth = if SLOW <= 8.0 * self.k_ratio * smallest { 8.0 } else { 4.0 };
+        equal(smallest, SLOW, growth * self.k_ratio);
         equal(SLOW, self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }
