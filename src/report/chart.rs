@@ -371,7 +371,7 @@ fn limits(values: impl Iterator<Item = f64>, log: bool) -> (f64, f64) {
         return (low / 1.6, high * 1.6);
     }
     // Nothing but rounding is between them, the stress sums' single precision included: a flat line in the middle.
-    if high - low < 1e-9 * high.abs().max(100.0) {
+    if high - low < (1e-9 * high.abs()).max(1e-7) {
         let half = 0.1 * high.abs().max(1e-3);
         return (low - half, high + half);
     }

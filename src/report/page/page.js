@@ -130,7 +130,7 @@
     }
     if (y0 > y1) [y0, y1] = [0, 1];
     // Nothing but rounding is between them, the stress sums' single precision included: a flat line in the middle.
-    if (y1 - y0 < 1e-9 * Math.max(100, Math.abs(y1))) { const h = Math.max(1e-3, 0.1 * Math.abs(y1)); y0 -= h; y1 += h; }
+    if (y1 - y0 < Math.max(1e-7, 1e-9 * Math.abs(y1))) { const h = Math.max(1e-3, 0.1 * Math.abs(y1)); y0 -= h; y1 += h; }
     const margin = 0.06 * (y1 - y0);
     y0 -= margin; y1 += margin;
     const box = { left: size.left, right: size.width - size.right, top: size.top, bottom: size.height - size.bottom };
