@@ -3,16 +3,22 @@
 use super::Panels;
 use std::ops::Range;
 
+/// Coarse nodes whose values interpolate to a fine node, a panel's own and its neighbours'.
+const WIDTH: usize = 5;
+
 /// Quadrature over the wavenumbers of a product: one factor varies slowly and is costly, and is
 /// computed at the coarse nodes; the other, the transform of the contact pressure, oscillates with
 /// the contact's width, is cheap, and is asked for at the fine nodes.
+///
+/// Between the coarse nodes the slow factor is a polynomial in ln k: what loads at a distance d do at a
+/// wavenumber k depends on k d, so it varies alike in every decade, for every d.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wavenumbers {
     coarse: Panels,
     fine: Panels,
-    /// Of each coarse panel: its fine nodes.
-    members: Vec<Range<usize>>,
-    /// Lagrange polynomials of the coarse panel at each fine node, `order` a node.
+    /// Of each fine node: the first coarse node that it is interpolated from, and where in `basis` the
+    /// weights of it and of those that follow are.
+    shares: Vec<(usize, Range<usize>)>,
     basis: Vec<f64>,
 }
 
@@ -22,23 +28,34 @@ impl Wavenumbers {
     pub fn new(coarse: Panels, widest: f64) -> Self {
         let order = coarse.order();
         let mut breaks = vec![coarse.breaks()[0]];
-        let mut members = Vec::with_capacity(coarse.panel_count());
+        let mut panels = Vec::new();
         for panel in 0..coarse.panel_count() {
             let [a, b] = coarse.panel(panel);
             let parts = ((b - a) / widest).ceil().max(1.0) as usize;
-            let first = (breaks.len() - 1) * order;
             breaks.extend((1..parts).map(|i| a + (b - a) * i as f64 / parts as f64));
             breaks.push(b);
-            members.push(first..(breaks.len() - 1) * order);
+            panels.extend(std::iter::repeat_n(panel, parts * order));
         }
         let fine = Panels::new(breaks, order);
-        let mut basis = Vec::with_capacity(order * fine.len());
-        for (panel, nodes) in members.iter().enumerate() {
-            for node in nodes.clone() {
-                basis.extend(coarse.polynomials(panel, fine.nodes()[node]));
-            }
+        let places: Vec<f64> = coarse.nodes().iter().map(|k| k.ln()).collect();
+        let width = order.max(WIDTH).min(places.len());
+        let mut shares = Vec::with_capacity(fine.len());
+        let mut basis = Vec::with_capacity(width * fine.len());
+        for (&k, panel) in fine.nodes().iter().zip(panels) {
+            let start = basis.len();
+            // Towards k = 0 there is nothing to lean on, and what is asked for stays finite.
+            let first = if panel == 0 {
+                basis.extend(coarse.polynomials(panel, k));
+                0
+            } else {
+                let place = k.ln();
+                let first = around(&places, place, width);
+                basis.extend(polynomials(&places[first..first + width], place));
+                first
+            };
+            shares.push((first, start..basis.len()));
         }
-        Self { coarse, fine, members, basis }
+        Self { coarse, fine, shares, basis }
     }
 
     /// The same coarse nodes, with fine ones for an `oscillation` cos(k x) up to that x besides.
@@ -64,31 +81,44 @@ impl Wavenumbers {
     /// What interpolates from the coarse nodes to a fine node: the first coarse node, and a weight
     /// for it and each of those that follow.
     pub fn interpolation(&self, fine: usize) -> (usize, &[f64]) {
-        let order = self.coarse.order();
-        let panel = self.members.partition_point(|m| m.end <= fine);
-        (panel * order, &self.basis[fine * order..(fine + 1) * order])
+        let (first, basis) = &self.shares[fine];
+        (*first, &self.basis[basis.clone()])
     }
 
-    /// The integrals of the coarse nodes' polynomials times an oscillating function: `values` holds
+    /// The integrals of the coarse nodes' weights in the interpolation times an oscillating function: `values` holds
     /// at `columns` places each the function at the fine nodes, one fine node after the other; the result
     /// the same at the coarse nodes. The integral of the product with a slow factor is the sum over
     /// the coarse nodes of the factor times these.
     pub fn moments(&self, values: &[f64], columns: usize) -> Vec<f64> {
-        let order = self.coarse.order();
         let mut moments = vec![0.0; self.coarse.len() * columns];
-        for (panel, nodes) in self.members.iter().enumerate() {
-            for node in nodes.clone() {
-                let weight = self.fine.weights()[node];
-                let from = &values[node * columns..(node + 1) * columns];
-                for (i, basis) in self.basis[node * order..(node + 1) * order].iter().enumerate() {
-                    let coarse = panel * order + i;
-                    let into = &mut moments[coarse * columns..(coarse + 1) * columns];
-                    into.iter_mut().zip(from).for_each(|(m, v)| *m += weight * basis * v);
-                }
+        for (node, (from, weight)) in
+            values.chunks_exact(columns).zip(self.fine.weights()).enumerate()
+        {
+            let (first, shares) = self.interpolation(node);
+            let into = moments[first * columns..].chunks_exact_mut(columns);
+            for (into, share) in into.zip(shares) {
+                into.iter_mut().zip(from).for_each(|(m, v)| *m += weight * share * v);
             }
         }
         moments
     }
+}
+
+/// The first of `width` consecutive `places`, which ascend, with as many to either side of `place`; the odd
+/// one is on the side of the nearest.
+fn around(places: &[f64], place: f64, width: usize) -> usize {
+    let above = places.partition_point(|p| *p <= place);
+    let nearer = |&p: &f64| above == 0 || p - place < place - places[above - 1];
+    let odd = width % 2 == 1 && places.get(above).is_some_and(nearer);
+    (above + usize::from(odd)).saturating_sub(width.div_ceil(2)).min(places.len() - width)
+}
+
+/// Values at `x` of the Lagrange polynomials of `nodes`.
+fn polynomials(nodes: &[f64], x: f64) -> impl Iterator<Item = f64> {
+    (0..nodes.len()).map(move |i| {
+        let others = nodes.iter().enumerate().filter(|(j, _)| *j != i);
+        others.map(|(_, node)| (x - node) / (nodes[i] - node)).product()
+    })
 }
 
 #[cfg(test)]
@@ -97,7 +127,7 @@ mod tests {
 
     #[test]
     fn products_of_slow_and_oscillating_factors_are_integrated() {
-        let numbers = Wavenumbers::new(Panels::new(vec![0.0, 1.0, 4.0, 16.0], 6), 1.5);
+        let numbers = Wavenumbers::new(Panels::new(vec![0.0, 1.0, 2.5, 6.0, 16.0], 6), 1.5);
         let fine = numbers.fine();
         // int_0^16 e^(-k/8) cos(3 k) dk, and with sin.
         let values: Vec<f64> =
@@ -122,7 +152,7 @@ mod tests {
         let last = fine.len() - 1;
         let (first, weights) = numbers.interpolation(last);
         let sum: f64 =
-            weights.iter().zip(&numbers.coarse().nodes()[first..]).map(|(w, k)| w * k).sum();
-        assert!((sum - fine.nodes()[last]).abs() < 1e-12);
+            weights.iter().zip(&numbers.coarse().nodes()[first..]).map(|(w, k)| w * k.ln()).sum();
+        assert!((sum - fine.nodes()[last].ln()).abs() < 1e-12);
     }
 }

@@ -38,7 +38,7 @@ pub struct Resolution {
     pub k_order: usize,
     /// Largest width of the panels on which the pressure's transform is resolved.
     pub k_step: f64,
-    /// Growth of the wavenumber panels above 0.5; below it panels grow four to eight times as fast.
+    /// Growth of the wavenumber panels above 0.5; below it panels grow by 10 or 20.
     pub k_ratio: f64,
     /// Largest end of the first wavenumber panel.
     pub k_min: f64,
@@ -69,7 +69,7 @@ impl Resolution {
             k_order: 4,
             k_step: 4.0,
             k_min: 0.01,
-            k_ratio: 2.6,
+            k_ratio: 3.2,
             images: 1,
             face_reach: 14.0,
             reach: 14.0,
@@ -82,8 +82,9 @@ impl Resolution {
             spacing: 0.1,
             k_max: 20.0,
             k_order: 3,
-            k_step: 3.0,
+            k_step: 2.5,
             k_min: 0.05,
+            k_ratio: 6.5,
             face_reach: 10.0,
             reach: 8.0,
             ..usual.clone()
@@ -95,7 +96,7 @@ impl Resolution {
                 modes: 3,
                 spacing: 0.15,
                 k_max: 12.0,
-                k_ratio: 3.0,
+                k_ratio: 5.0,
                 ..coarse
             }
         } else if tolerance >= COARSE {
@@ -130,9 +131,10 @@ impl Resolution {
     }
 
     /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is steepest, and more nodes to
-    /// a panel cost little where there are no end faces.
+    /// a panel, and more wavenumbers, cost little where there are no end faces.
     pub fn for_half_space(tolerance: f64) -> Self {
         let usual = Self::for_tolerance(tolerance);
+        let usual = Self { k_ratio: usual.k_ratio.min(2.6), ..usual };
         if tolerance < COARSE {
             return usual;
         }
@@ -225,8 +227,7 @@ impl Resolution {
             );
         };
         // One panel does for bodies that are not much longer than the contact is wide.
-        let growth = if SLOW <= 8.0 * self.k_ratio * smallest { 8.0 } else { 4.0 };
-        equal(smallest, SLOW, growth * self.k_ratio);
+        equal(smallest, SLOW, if SLOW <= 20.0 * smallest { 20.0 } else { 10.0 });
         equal(SLOW, self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }

@@ -348,8 +348,12 @@ impl Layout {
     }
 }
 
-/// C(k) at the fine wavenumbers, less its plane, screened part (2 pi / k)(1 - e^(-k SCREEN)) on the
-/// diagonal.
+/// The plane, screened part of C(k), on its diagonal.
+fn plane(k: f64) -> f64 {
+    -2.0 * PI / k * (-k * SCREEN).exp_m1()
+}
+
+/// C(k) at the fine wavenumbers, less its [`plane`] part.
 pub(super) struct Remainders {
     nodes: usize,
     /// For each column, each row of it, all wavenumbers.
@@ -374,9 +378,7 @@ impl Remainders {
             .nodes()
             .iter()
             .zip(compliance.matrices)
-            .map(|(&k, c)| {
-                c - DMatrix::identity(nodes, nodes) * (-2.0 * PI / k * (-k * SCREEN).exp_m1())
-            })
+            .map(|(&k, c)| c - DMatrix::identity(nodes, nodes) * plane(k))
             .collect();
         let fine = numbers.fine();
         let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
@@ -603,20 +605,31 @@ const LONG: f64 = 0.6;
 /// So does what the contact's few nodes make of displacements like 1/k and ln k: below a wavenumber
 /// the sum over the same nodes is taken, less the integral of what fades on the way down.
 pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
-    let coarse = compliance.wavenumbers.coarse();
-    let numbers = coarse.nodes();
-    let means: Vec<f64> = numbers
+    let wavenumbers = compliance.wavenumbers;
+    let fine = wavenumbers.fine();
+    let numbers = fine.nodes();
+    // Interpolated is what the plane, screened part leaves, as in the contact itself.
+    let rests: Vec<DVector<f64>> = wavenumbers
+        .coarse()
+        .nodes()
         .iter()
         .zip(compliance.matrices)
-        .map(|(&k, c)| (c * solution.transform(k)).mean())
+        .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
         .collect();
-    let first = coarse.breaks()[1];
-    let top = coarse.breaks().partition_point(|k| *k < LONG).min(coarse.panel_count());
-    let top = coarse.breaks()[top];
+    let mean_at = |(i, &k): (usize, &f64)| -> f64 {
+        let transform = solution.transform(k);
+        let (first, shares) = wavenumbers.interpolation(i);
+        let rests = shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
+        plane(k) * transform.mean() + rests.sum::<f64>()
+    };
+    let means: Vec<f64> = numbers.iter().enumerate().map(mean_at).collect();
+    let first = fine.breaks()[1];
+    let top = fine.breaks().partition_point(|k| *k < LONG).min(fine.panel_count());
+    let top = fine.breaks()[top];
     let below = numbers.partition_point(|k| *k < top);
 
     // alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
-    let ends = [0, coarse.order() / 2, coarse.order() - 1];
+    let ends = [0, fine.order() / 2, fine.order() - 1];
     let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
     let system = Matrix3::from_fn(|i, j| rows[i][j]);
     let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
@@ -648,7 +661,7 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
         .zip(own.weights())
         .map(|(&k, w)| -(-k * depth).exp_m1() * w * mean(k))
         .sum();
-    let terms = || numbers.iter().zip(coarse.weights()).zip(&means);
+    let terms = || numbers.iter().zip(fine.weights()).zip(&means);
     let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
     let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
     (long - faded + short) / (PI * PI)
