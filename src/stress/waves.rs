@@ -8,6 +8,7 @@ use crate::kernels::plate::Remainder;
 use crate::kernels::wave::{Places, SurfaceSpread, WAVES, add_surface_spread};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
+use std::ops::AddAssign;
 
 /// The loads of all wavenumbers.
 #[derive(Debug, Clone)]
@@ -82,33 +83,38 @@ impl Waves {
         layers: &[Layer],
         shares: impl Fn(usize) -> (usize, S),
     ) -> Self {
-        let mut surface = DMatrix::zeros(k.len(), body.surface.axis.len());
-        let mut face = DMatrix::zeros(k.len(), body.face.axis.len());
-        let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
-        // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
-        let ends = (0..k.len()).take_while(|i| layers[shares(*i).0].face.is_some()).count();
-        for (i, k) in k.iter().enumerate() {
-            let p: DVector<f64> = contact.row(i).transpose();
-            let add = |into: &mut DMatrix<f64>, part: &DVector<f64>, share: f64| {
-                for (j, value) in part.iter().enumerate() {
-                    into[(i, j)] += share * value;
-                }
+        let shares: Vec<_> = (0..k.len()).map(shares).collect();
+        let mut surface = DMatrix::zeros(body.surface.axis.len(), k.len());
+        let mut face = DMatrix::zeros(body.face.axis.len(), k.len());
+        for (at, layer) in layers.iter().enumerate() {
+            // The wavenumbers that a layer leads to follow each other.
+            let last = |(first, shares): &(usize, S)| first + shares.as_ref().len();
+            let range =
+                shares.partition_point(|s| last(s) <= at)..shares.partition_point(|s| s.0 <= at);
+            let p = DMatrix::from_fn(contact.ncols(), range.len(), |j, i| {
+                let (wave, (first, shares)) = (range.start + i, &shares[range.start + i]);
+                shares.as_ref()[at - first] * contact[(wave, j)]
+            });
+            // Short waves leave an end face's deep nodes without load.
+            let loaded = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
+                into.view_range_mut(..matrix.nrows(), range.clone()).gemm(1.0, matrix, &p, 1.0);
             };
-            let (first, shares) = shares(i);
-            let shares = layers[first..].iter().zip(shares.as_ref());
-            for (layer, &share) in shares.filter(|(_, share)| **share != 0.0) {
-                match &layer.surface {
-                    Some(matrix) => add(&mut surface, &(matrix * &p), share),
-                    None => add(&mut surface, &p, share),
-                }
-                if let Some(matrix) = &layer.face {
-                    add(&mut face, &(matrix * &p), share);
-                }
+            match &layer.surface {
+                Some(matrix) => loaded(&mut surface, matrix),
+                None => surface.view_range_mut(..p.nrows(), range.clone()).add_assign(&p),
             }
-            let q: Vec<f64> = face.row(i).iter().copied().collect();
-            plate.push(if i < ends { body.plate_transform(*k, &q) } else { Vec::new() });
-            plate_waves.push(if i < ends { body.plate_waves(*k) } else { Vec::new() });
+            if let Some(matrix) = &layer.face {
+                loaded(&mut face, matrix);
+            }
         }
+        // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
+        let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
+        let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
+        for (k, q) in k.iter().zip(face.column_iter()).take(ends) {
+            plate.push(body.plate_transform(*k, q.as_slice()));
+            plate_waves.push(body.plate_waves(*k));
+        }
+        let (surface, face) = (surface.transpose(), face.transpose());
         let charges = [body.surface.charges(&surface), body.face.charges(&face)];
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
         let means = total / body.half;
