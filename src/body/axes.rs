@@ -133,8 +133,8 @@ impl Resolution {
     /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is steepest, and more nodes to
     /// a panel, and more wavenumbers, cost little where there are no end faces.
     pub fn for_half_space(tolerance: f64) -> Self {
-        let usual = Self::for_tolerance(tolerance);
-        let usual = Self { k_ratio: usual.k_ratio.min(2.6), ..usual };
+        let mut usual = Self::for_tolerance(tolerance);
+        usual.k_ratio = usual.k_ratio.min(2.6);
         if tolerance < COARSE {
             return usual;
         }

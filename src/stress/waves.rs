@@ -88,23 +88,23 @@ impl Waves {
         let mut face = DMatrix::zeros(body.face.axis.len(), k.len());
         for (at, layer) in layers.iter().enumerate() {
             // The wavenumbers that a layer leads to follow each other.
-            let last = |(first, shares): &(usize, S)| first + shares.as_ref().len();
-            let range =
-                shares.partition_point(|s| last(s) <= at)..shares.partition_point(|s| s.0 <= at);
-            let p = DMatrix::from_fn(contact.ncols(), range.len(), |j, i| {
-                let (wave, (first, shares)) = (range.start + i, &shares[range.start + i]);
-                shares.as_ref()[at - first] * contact[(wave, j)]
+            let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
+            let start = shares.partition_point(|s| end(s) <= at);
+            let waves = start..shares.partition_point(|s| s.0 <= at);
+            let p = DMatrix::from_fn(contact.ncols(), waves.len(), |node, i| {
+                let (first, shares) = &shares[start + i];
+                shares.as_ref()[at - first] * contact[(start + i, node)]
             });
             // Short waves leave an end face's deep nodes without load.
-            let loaded = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
-                into.view_range_mut(..matrix.nrows(), range.clone()).gemm(1.0, matrix, &p, 1.0);
+            let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
+                into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
             };
             match &layer.surface {
-                Some(matrix) => loaded(&mut surface, matrix),
-                None => surface.view_range_mut(..p.nrows(), range.clone()).add_assign(&p),
+                Some(matrix) => add(&mut surface, matrix),
+                None => surface.view_range_mut(..p.nrows(), waves.clone()).add_assign(&p),
             }
             if let Some(matrix) = &layer.face {
-                loaded(&mut face, matrix);
+                add(&mut face, matrix);
             }
         }
         // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
