@@ -19,6 +19,14 @@ fn main() {
     let root = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("set by cargo"));
     let out = PathBuf::from(env::var_os("OUT_DIR").expect("set by cargo"));
 
+    if env::var_os("CARGO_FEATURE_CLI").is_some() {
+        embed_files(&root, &out);
+    }
+    tabulate(&out);
+}
+
+/// Writes the lists of recorded results and of the finite-element side's sources.
+fn embed_files(root: &Path, out: &Path) {
     println!("cargo::rerun-if-changed=results/reference");
     let mut records = String::from("&[");
     for folder in children(&root.join("results/reference")) {
@@ -44,7 +52,10 @@ fn main() {
     }
     sources.push(']');
     fs::write(out.join("fem_sources.rs"), sources).expect("OUT_DIR can be written");
+}
 
+/// Writes the tables of stresses.
+fn tabulate(out: &Path) {
     for file in ["bessel", "line_load", "patches"] {
         println!("cargo::rerun-if-changed=src/kernels/{file}.rs");
     }

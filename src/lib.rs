@@ -24,6 +24,7 @@
 //! | [`body`] | a finite body's compliance per wavenumber, one file per edge model |
 //! | [`contact`] | load-controlled contact of two bodies |
 //! | [`stress`] | stresses at points, standard curves, critical points |
+//! | `host` | files that appear whole or not at all, locked folders, memory, child processes |
 //! | [`case`](mod@case) | case and study files, their validation and expansion |
 //! | [`solve`](mod@solve) | one case and one method to one [`solve::Solution`] |
 //! | [`fem`] | the driver of gmsh and FEniCSx, and the reader of recorded curves |
@@ -31,7 +32,7 @@
 //! | [`report`] | one file per form of output |
 //! | [`cli`] | one file per subcommand |
 
-// The one exception is `fem/system.rs`, which says why.
+// The one exception is `host/system.rs`, which says why.
 #![deny(unsafe_code)]
 
 pub mod base;
@@ -43,14 +44,20 @@ pub mod contact;
 
 pub mod stress;
 
+mod host;
+
 pub mod case;
 
 pub mod solve;
 
+#[cfg(feature = "cli")]
 pub mod fem;
 
+#[cfg(feature = "cli")]
 pub mod study;
 
+#[cfg(feature = "cli")]
 pub mod report;
 
+#[cfg(feature = "cli")]
 pub mod cli;

@@ -67,6 +67,14 @@ cargo fmt --check
 step "clippy"
 cargo clippy --all-targets --quiet -- -D warnings
 
+step "the library without the program"
+cargo check --lib --no-default-features --quiet
+crates=$(cargo tree --no-default-features -e normal --prefix none | sort -u | wc -l)
+if ((crates > 60)); then
+    echo "error: the library alone takes $crates crates, more than 60" >&2
+    exit 1
+fi
+
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --no-deps --quiet
 

@@ -1,7 +1,11 @@
 //! TOML with places: every value knows its key and its line, so that every complaint can name them.
 
+// Study and sweep files, which the program alone reads, need more of it than case files do.
+#![cfg_attr(not(feature = "cli"), allow(dead_code))]
+
 use super::Case;
-use crate::base::{self, Error, Result};
+use crate::base::{Error, Result};
+use crate::host;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -12,7 +16,7 @@ use toml::de::{DeTable, DeValue};
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String> {
-    base::read_text(path, Case::MAX_BYTES, "give a case or study file in TOML")
+    host::read_text(path, Case::MAX_BYTES, "give a case or study file in TOML")
 }
 
 /// A parsed file that can say where things stand in it.

@@ -3,14 +3,19 @@
 mod builtin;
 mod case_file;
 mod document;
+#[cfg(feature = "cli")]
 mod study_file;
+#[cfg(feature = "cli")]
 mod sweep_file;
-#[cfg(test)]
+#[cfg(all(test, feature = "cli"))]
 mod tests;
 
 pub use builtin::{BUILTIN_CASES, builtin_case};
-pub use study_file::{DEFAULT_STUDY, Study};
-pub use sweep_file::Sweep;
+#[cfg(feature = "cli")]
+pub use {
+    study_file::{DEFAULT_STUDY, Study},
+    sweep_file::Sweep,
+};
 
 use crate::base::{HertzScales, Material};
 use serde::{Deserialize, Serialize};

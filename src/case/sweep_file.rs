@@ -7,7 +7,8 @@
 use super::Case;
 use super::case_file::{GivenLoad, given_load};
 use super::document::{Document, Entry, edit_distance, read_text};
-use crate::base::{self, Error, Result, check_memory};
+use crate::base::{Error, Result};
+use crate::host::{self, check_memory};
 use std::path::Path;
 
 /// Parameters of a case, as the case file names them, and their short names for columns.
@@ -112,7 +113,7 @@ impl Sweep {
             size as f64 * TABLE_GROWTH,
             "split it into several files",
         )?;
-        let text = base::read_text(path, MAX_TABLE_BYTES, "split it into several files")?;
+        let text = host::read_text(path, MAX_TABLE_BYTES, "split it into several files")?;
         Sweep::parse_csv(&text, path, base)
     }
 

@@ -5,10 +5,11 @@ use super::fem::FemOptions;
 use super::solve::{checked_tolerance, edge_model};
 use super::study::{FemSource, Records, command_line, now, processor, progress_bar, solve_all};
 use super::{Outcome, print, say};
-use crate::base::{Error, Lock, Result, read_text};
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
-use crate::fem::{self, Driver};
+use crate::fem::Driver;
+use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
 use crate::report::verdict::{duration, rounded};
 use crate::study::bench::{self, Against, BEST, Bench, FemMeshes, Machine, Origin, Setup, Speedup};
@@ -160,7 +161,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         },
     );
     bar.finish_and_clear();
-    fem::check_interrupt()?;
+    host::check_interrupt()?;
     let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
     for (case, point) in points() {
         if let Some(message) = &point.err {

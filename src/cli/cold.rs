@@ -1,8 +1,8 @@
 //! The time of a solve in a process of its own.
 
-use crate::base::write_whole;
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::host::write_whole;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

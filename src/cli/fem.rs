@@ -1,9 +1,10 @@
 //! `edgeline fem`: one case by finite elements, now.
 
 use super::{Outcome, Progress, print, print_json, say};
-use crate::base::{Result, prepare_folder};
+use crate::base::Result;
 use crate::case::Case;
 use crate::fem::{Driver, Linear, MeshResult, Settings};
+use crate::host::prepare_folder;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueHint};
 use serde_json::json;

@@ -2,7 +2,8 @@
 
 use super::study::{What, built_in_baseline, built_in_gates};
 use super::{Outcome, print, print_json};
-use crate::base::{Error, Lock, Result, write_set, write_whole};
+use crate::base::{Error, Result};
+use crate::host::{Lock, write_set, write_whole};
 use crate::report::gates;
 use crate::report::study_files::pretty;
 use crate::report::table::read;

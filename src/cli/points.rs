@@ -1,7 +1,8 @@
 //! The file of points that `edgeline solve --points` takes.
 
-use crate::base::{Error, Result, check_memory, read_text};
+use crate::base::{Error, Result};
 use crate::case::Case;
+use crate::host::{check_memory, read_text};
 use crate::solve::Point;
 use crate::stress::BodyKind;
 use serde::Deserialize;

@@ -1,7 +1,8 @@
 //! `edgeline report`: the page of a finished run again.
 
 use super::{Outcome, print};
-use crate::base::{Lock, Result};
+use crate::base::Result;
+use crate::host::Lock;
 use crate::report::page;
 use crate::report::study_files::StudyFiles;
 use clap::{Args, ValueHint};

@@ -1,9 +1,10 @@
 //! `edgeline solve`: one case by one edge model.
 
 use super::{Outcome, print, print_json};
-use crate::base::{Error, Lock, Result, check_memory};
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::host::{Lock, check_memory};
 use crate::report::{field, solution};
 use crate::solve::{MOST_GRID_POINTS, Options, Solution, solve};
 use crate::stress::BodyKind;

@@ -4,10 +4,11 @@ use super::cold::ColdRuns;
 use super::fem::{FemOptions, Size};
 use super::solve::edge_model;
 use super::{Outcome, print, print_json, say};
-use crate::base::{Error, Lock, Result, check_memory};
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::fem;
+use crate::host::{self, Lock, check_memory};
 use crate::report::page;
 use crate::report::study_files::{Context, StudyFiles};
 use crate::solve::{Options, Solution, solve_group};
@@ -203,7 +204,7 @@ impl What {
         );
         bar.finish_and_clear();
         // What was asked to stop is no study, even though every case has a row.
-        fem::check_interrupt()?;
+        host::check_interrupt()?;
         for case in &run.cases {
             for m in &case.methods {
                 if let Err(message) = &m.answer {

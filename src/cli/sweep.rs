@@ -3,9 +3,10 @@
 use super::solve::{checked_tolerance, edge_model};
 use super::study::progress_bar;
 use super::{Outcome, print, print_json};
-use crate::base::{Result, prepare_folder};
+use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
+use crate::host::prepare_folder;
 use crate::report::sweep::{RowLabel, SweepFile};
 use crate::study::sweep::{self, Group, Settings, Shard};
 use clap::{Args, ValueHint};

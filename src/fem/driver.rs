@@ -6,14 +6,14 @@
 //! tells whether what is there belongs to the same request.
 
 use super::jit_cache;
-use super::process::{Stage, kill_marked};
 use super::result::{MeshResult, MeshSummary, ResultTexts, wanted_curves, wanted_lines};
 use super::tools::{self, Interpreter};
-use crate::base::{
-    Error, Lock, Result, check_memory, prepare_folder, read_text, remove_if_there, write_set,
+use crate::base::{Error, Result};
+use crate::case::Case;
+use crate::host::{
+    Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there, write_set,
     write_whole,
 };
-use crate::case::Case;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -5,7 +5,7 @@
 //! run has a cache of its own, which starts with the complete entries of earlier runs, and
 //! complete new entries are added to those at its end.
 
-use crate::base::write_whole;
+use crate::host::write_whole;
 use std::ffi::OsString;
 use std::fs;
 use std::path::{Path, PathBuf};

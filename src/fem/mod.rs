@@ -2,16 +2,13 @@
 
 mod driver;
 mod jit_cache;
-mod process;
 mod reference;
 mod result;
-mod system;
 #[cfg(test)]
 mod tests;
 pub mod tools;
 
 pub use driver::{Driver, Linear, Settings};
-pub use process::check_interrupt;
 pub use reference::{ErrorEstimate, Reference};
 pub use result::{
     FemSummary, LINE_NAMES, MeshResult, MeshSummary, ResultTexts, check_points, wanted_curves,

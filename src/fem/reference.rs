@@ -1,8 +1,9 @@
 //! Recorded finite-element results, as `results/reference/README.md` describes them.
 
 use super::result::{FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines};
-use crate::base::{Error, Material, Result, read_text};
+use crate::base::{Error, Material, Result};
 use crate::case::{Block, Case, Roller};
+use crate::host::read_text;
 use crate::solve::{Curve, PressureLine};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};

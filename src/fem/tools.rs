@@ -1,7 +1,7 @@
 //! The tools from outside: an interpreter that imports dolfinx, gmsh, and mpirun.
 
-use super::process::capture;
 use crate::base::{Error, Result};
+use crate::host::{capture, check_interrupt};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -74,7 +74,7 @@ pub fn find_interpreter(explicit: Option<&Path>) -> Result<Interpreter> {
             return Ok(Interpreter { path: path.clone(), source, versions });
         }
     }
-    super::process::check_interrupt()?;
+    check_interrupt()?;
     let tried: Vec<String> =
         candidates.iter().map(|(path, source)| format!("{} ({source})", path.display())).collect();
     Err(Error::Missing {
@@ -99,7 +99,7 @@ pub(super) fn require(program: &Path, option: &str) -> Result<()> {
     if version(program).is_some() {
         return Ok(());
     }
-    super::process::check_interrupt()?;
+    check_interrupt()?;
     Err(Error::Missing {
         tool: program.display().to_string(),
         searched: format!("`{} --version` does not run", program.display()),

@@ -2,7 +2,8 @@
 
 use super::chart::{Figure, Look, Marker, Panel, Series, look};
 use super::table::{Table, number, optional};
-use crate::base::{Result, write_set};
+use crate::base::Result;
+use crate::host::write_set;
 use crate::study::bench::{Accuracy, Against, Bench, CaseBench, Origin, Point, front};
 use crate::study::factorial::median;
 use serde_json::Value;

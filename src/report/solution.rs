@@ -1,7 +1,8 @@
 //! The files of one solution: `summary.json`, `pressure.csv`, `curves.csv` and `points.csv`.
 
 use super::study_files::pretty;
-use crate::base::{Result, StressTensor, write_set};
+use crate::base::{Result, StressTensor};
+use crate::host::write_set;
 use crate::solve::{Options, Solution};
 use serde_json::{Value, json};
 use std::fmt::Write;

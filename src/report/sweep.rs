@@ -2,7 +2,8 @@
 //! that a run that is stopped at any moment goes on where it was.
 
 use super::table::{number, optional};
-use crate::base::{Error, Result, check_memory};
+use crate::base::{Error, Result};
+use crate::host::check_memory;
 use crate::solve::{END_DISTANCES, KeyResults};
 use crate::study::sweep::Outcome;
 use std::collections::BTreeMap;

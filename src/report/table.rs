@@ -1,6 +1,7 @@
 //! Tables of text as they stand in CSV files.
 
-use crate::base::{Error, Result, check_memory, read_text};
+use crate::base::{Error, Result};
+use crate::host::{check_memory, read_text};
 use std::path::Path;
 
 /// A CSV table: a header and rows of the same width.

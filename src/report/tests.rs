@@ -26,7 +26,7 @@ fn files(twist: Twist) -> StudyFiles {
 fn a_run_is_read_back_as_it_was_written() {
     let folder = tempfile::tempdir().unwrap();
     let written = files(Twist::None);
-    crate::base::write_set(folder.path(), &written.contents()).unwrap();
+    crate::host::write_set(folder.path(), &written.contents()).unwrap();
     let read = StudyFiles::read(folder.path()).unwrap();
     assert_eq!(read.tables().map(|t| t.rows.len()), written.tables().map(|t| t.rows.len()));
     assert_eq!(read.tables(), written.tables());

@@ -30,7 +30,7 @@ const MAX_LOG_BYTES: u64 = 64 << 20;
 const GRACE: Duration = Duration::from_secs(3);
 
 /// One child process and the bounds that it is kept within.
-pub(super) struct Stage<'a> {
+pub(crate) struct Stage<'a> {
     /// What the messages call it.
     pub name: &'a str,
     /// The program and its arguments.
@@ -141,7 +141,7 @@ impl Stage<'_> {
 
 /// Runs a short command and returns what it printed on both streams, or `None` when it cannot be
 /// started, fails, or takes longer than `timeout`.
-pub(super) fn capture(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
+pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
     let _active = Active::new();
     let reader = |stream: Option<Box<dyn Read + Send>>| {
         std::thread::spawn(move || {
@@ -207,7 +207,7 @@ fn signal_group(child: &Child, signal: i32) {
 }
 
 /// Kills every process that carries the mark of the run in `folder`, until there is none.
-pub(super) fn kill_marked(folder: &Path) {
+pub(crate) fn kill_marked(folder: &Path) {
     use std::os::unix::ffi::OsStrExt;
     let mut wanted = format!("{MARK}=").into_bytes();
     wanted.extend(folder.as_os_str().as_bytes());
@@ -320,7 +320,7 @@ extern "C" fn on_signal(signal: i32) {
 ///
 /// # Errors
 /// [`Error::Interrupted`] if it was.
-pub fn check_interrupt() -> Result<()> {
+pub(crate) fn check_interrupt() -> Result<()> {
     match INTERRUPT.load(Ordering::SeqCst) {
         0 => Ok(()),
         signal => Err(Error::Interrupted { signal }),

@@ -1,6 +1,6 @@
 //! Requests that need more memory than there is, refused before anything is allocated.
 
-use super::{Error, Result};
+use crate::base::{Error, Result};
 
 /// What counts as free where the system does not tell (bytes).
 const UNKNOWN: u64 = 4 << 30;

@@ -2,7 +2,8 @@
 //! however that ends.
 
 use super::files::remove_parts;
-use super::{Error, Result, prepare_folder};
+use super::prepare_folder;
+use crate::base::{Error, Result};
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Write};
 use std::os::unix::fs::MetadataExt;

@@ -1,0 +1,23 @@
+//! What talks to the machine: whole files, locked folders, limits of memory, child processes and signals.
+
+#[cfg(feature = "cli")]
+mod files;
+#[cfg(feature = "cli")]
+mod lock;
+#[cfg(feature = "cli")]
+mod memory;
+#[cfg(feature = "cli")]
+mod process;
+#[cfg(feature = "cli")]
+mod system;
+mod text;
+
+#[cfg(feature = "cli")]
+pub(crate) use {
+    files::{prepare_folder, remove_if_there, write_set, write_whole},
+    lock::Lock,
+    memory::check_memory,
+    process::{Stage, capture, check_interrupt, kill_marked},
+};
+
+pub(crate) use text::read_text;

@@ -1,0 +1,47 @@
+//! Text files that are read up to a limit.
+
+use crate::base::{Error, Result};
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
+
+/// Reads a text file of at most `most` bytes; `remedy` says what to give instead.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be read, [`Error::File`] when it is larger or not UTF-8.
+pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
+    let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
+    let mut bytes = Vec::new();
+    let file = File::open(path).map_err(io)?;
+    // A file can be longer than it says: a pipe, a device, one that grows.
+    file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
+    let refuse = |message: String| Error::File {
+        path: path.to_path_buf(),
+        line: None,
+        message,
+        remedy: remedy.to_string(),
+    };
+    if bytes.len() as u64 > most {
+        return Err(refuse(format!("is larger than {} MiB", most >> 20)));
+    }
+    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_large_or_no_text_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("f");
+        std::fs::write(&path, vec![b'x'; 2 << 20]).unwrap();
+        assert_eq!(read_text(&path, 2 << 20, "").unwrap().len(), 2 << 20);
+        let said = read_text(&path, 1 << 20, "give less").unwrap_err().to_string();
+        assert!(said.ends_with("is larger than 1 MiB; give less"), "{said}");
+        std::fs::write(&path, [0xff]).unwrap();
+        assert!(read_text(&path, 9, "").unwrap_err().to_string().contains("UTF-8"));
+        // What has no end is not waited for.
+        assert!(read_text(Path::new("/dev/zero"), 9, "").is_err());
+    }
+}
