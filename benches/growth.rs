@@ -154,7 +154,7 @@ fn main() {
     for n in [4usize, 8, 16, 32, 64] {
         let axis = |most: f64| (0..n).map(|i| most * i as f64 / (n - 1) as f64).collect();
         let grid = Grid { x: axis(2.0), y: axis(5.0), z: axis(3.0) };
-        let work = || on_grid(&solved.field(BodyKind::Block), &grid);
+        let work = || on_grid(&solved.field(BodyKind::Block), &grid, None);
         growth.row(&n.to_string(), grid.len(), cost(work));
     }
     growth.end();

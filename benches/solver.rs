@@ -130,7 +130,7 @@ fn stress(c: &mut Criterion) {
             b.iter(|| field.at(4.5, 0.5, xs));
         });
         group.bench_with_input(BenchmarkId::new("down", n), &places, |b, zs| {
-            b.iter(|| field.down(0.0, 4.5, zs));
+            b.iter(|| field.down(&[0.0], 4.5, zs));
         });
     }
     for n in [8usize, 16, 32] {
@@ -138,7 +138,7 @@ fn stress(c: &mut Criterion) {
         let axis = |most: f64| (0..n).map(|i| most * i as f64 / (n - 1) as f64).collect();
         let grid = Grid { x: axis(2.0), y: axis(5.0), z: axis(3.0) };
         group.bench_with_input(BenchmarkId::new("grid", n * n * n), &grid, |b, grid| {
-            b.iter(|| on_grid(&field, grid));
+            b.iter(|| on_grid(&field, grid, None));
         });
     }
     group.finish();

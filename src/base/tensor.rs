@@ -83,6 +83,12 @@ impl AddAssign for StressTensor {
     }
 }
 
+impl std::iter::Sum for StressTensor {
+    fn sum<I: Iterator<Item = Self>>(all: I) -> Self {
+        all.fold(Self::default(), |sum, s| sum + s)
+    }
+}
+
 impl Sub for StressTensor {
     type Output = Self;
     fn sub(self, o: Self) -> Self {

@@ -1,6 +1,5 @@
 //! Stresses on a grid of points, in SI units.
 
-use super::roller::RollerShape;
 use super::scene::{Scene, SolvedScene};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -38,13 +37,11 @@ pub fn solve_on_grid(
     let y = in_c(&grid_m.y).into_iter().map(|y| y.clamp(-half, half)).collect();
     let grid = Grid { x: in_c(&grid_m.x), y, z: in_c(&grid_m.z) };
     let solved = SolvedScene::new(&scene)?;
-    let mut stress = on_grid(&solved.field(body), &grid);
-    let shape = RollerShape::new(&hertz, case.roller.radius_m);
-    stress.map(&grid, |at, s| match body {
-        BodyKind::Block => *s * hertz.p0_pa,
-        BodyKind::Roller => shape.stress(&solved.pressure, at, s) * hertz.p0_pa,
-    });
-    Ok(stress)
+    let curvature = match body {
+        BodyKind::Block => None,
+        BodyKind::Roller => Some(hertz.c_m / case.roller.radius_m),
+    };
+    Ok(on_grid(&solved.field(body), &grid, curvature).scaled(hertz.p0_pa))
 }
 
 /// Refuses grids that are empty, too large, or not within the body.

@@ -1,13 +1,12 @@
 //! The key results of many cases that are one problem in units of C and p0, without the curves and
 //! cells of a whole solution.
 
-use super::roller::RollerShape;
 use super::scene::{Scene, SolvedScene};
 use super::{Critical, pressure_cells};
-use crate::base::{HertzScales, Result, StressTensor};
+use crate::base::{HertzScales, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::stress::{BodyKind, curves};
+use crate::stress::{BodyKind, RoundStress, curves};
 
 /// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
 pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
@@ -34,8 +33,8 @@ pub struct KeyResults {
     pub critical: Critical,
 }
 
-/// A stress at a place, in units of C and p0, before what the roller's shape adds.
-type Sample = (BodyKind, [f64; 3], StressTensor);
+/// A stress at a place, in units of C and p0.
+type Sample = (BodyKind, [f64; 3], RoundStress);
 
 /// Key results of `cases`, which are all of one [`Scene`] by `method`; `each` gets them one after the
 /// other. The contact is solved once, and only the stresses that the critical one needs are
@@ -75,29 +74,20 @@ pub fn key_results(
                 p_max_pa: top.p_pa * p0,
                 p_max_at_m: [top.x_m.abs() * c, top.y_m.abs() * c],
                 p_at_pa: at_end.map(|p| p.map(|p| p * p0)),
-                critical: {
-                    let shape = RollerShape::new(&hertz, radius);
-                    critical(&samples, &solved, &shape, c, p0)
-                },
+                critical: critical(&samples, c / radius, c, p0),
             },
         );
     }
     Ok(())
 }
 
-/// The largest von Mises stress of the samples.
-fn critical(
-    samples: &[Sample],
-    solved: &SolvedScene,
-    shape: &RollerShape,
-    c: f64,
-    p0: f64,
-) -> Critical {
+/// The largest von Mises stress of the samples, where the roller's C / R is `curvature`.
+fn critical(samples: &[Sample], curvature: f64, c: f64, p0: f64) -> Critical {
     let mut best = (BodyKind::Block, [0.0; 3], f64::NEG_INFINITY);
     for (kind, at, stress) in samples {
         let value = match kind {
-            BodyKind::Block => stress.von_mises(),
-            BodyKind::Roller => shape.stress(&solved.pressure, *at, stress).von_mises(),
+            BodyKind::Block => stress.flat.von_mises(),
+            BodyKind::Roller => stress.at(curvature).von_mises(),
         };
         if value > best.2 {
             best = (*kind, *at, value);
@@ -165,7 +155,7 @@ fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sa
         }
     }
     for ([y, z], xs) in columns {
-        let stresses = field.at(y, z, &xs);
+        let stresses = field.round_at(y, z, &xs);
         all.extend(xs.iter().zip(stresses).map(|(&x, s)| (kind, [x, y, z], s)));
     }
 }
@@ -182,9 +172,9 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
             return 0.0;
         }
         seen.push((y.to_bits(), z.to_bits()));
-        let stress = field.at(y, z, &[0.0])[0];
+        let stress = field.round_at(y, z, &[0.0])[0];
         all.push((kind, [0.0, y, z], stress));
-        stress.von_mises()
+        stress.flat.von_mises()
     };
     for y in [0.0, 0.9 * half_length, half_length] {
         for z in DEPTHS {
@@ -201,13 +191,13 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
     }
     // The surface across the contact, where it is largest for small Poisson's ratios.
     let xs = [0.25, 0.5, 0.75, 1.0, 1.25];
-    for (x, s) in xs.into_iter().zip(field.at(0.0, 0.0, &xs)) {
+    for (x, s) in xs.into_iter().zip(field.round_at(0.0, 0.0, &xs)) {
         all.push((kind, [x, 0.0, 0.0], s));
     }
     // A step to either side of the best, halved twice; at the end of a curve one side is enough.
     let best = |all: &[Sample]| {
         let own = all[start..].iter().filter(|s| s.1[0] == 0.0);
-        own.map(|s| (s.2.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))
+        own.map(|s| (s.2.flat.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let mut step = 0.125;
     for _ in 0..3 {

@@ -3,14 +3,13 @@
 pub mod edge;
 mod grid;
 mod key;
-mod roller;
 mod scene;
 
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::kernels::strip;
-use crate::stress::{BodyKind, Work, curves};
+use crate::stress::{BodyKind, CurveSpec, Field, RoundStress, Work, curves, round};
 use rayon::prelude::*;
 use serde::Serialize;
 use serde_json::json;
@@ -18,7 +17,6 @@ use std::time::Instant;
 
 pub use grid::{MOST_GRID_POINTS, solve_on_grid};
 pub use key::{END_DISTANCES, KeyResults, key_results};
-pub use roller::RollerShape;
 pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, guilbault_psi};
 
 /// What to compute.
@@ -219,10 +217,13 @@ struct SceneAnswer {
     seconds: Seconds,
     cells: Vec<PressureCell>,
     lines: Vec<PressureLine>,
-    curves: Vec<Curve>,
-    points: Vec<StressTensor>,
+    curves: Vec<CurveStress>,
+    points: Vec<RoundStress>,
     work: Work,
 }
+
+/// A standard curve and the stresses at its points.
+type CurveStress = (CurveSpec, Vec<RoundStress>);
 
 impl SceneAnswer {
     fn new(scene: &Scene, case: &Case, options: &Options) -> Result<Self> {
@@ -242,25 +243,19 @@ impl SceneAnswer {
     fn scaled(&self, case: &Case, options: &Options) -> Solution {
         let hertz = case.hertz();
         let (c, p0) = (hertz.c_m, hertz.p0_pa);
-        let shape = RollerShape::new(&hertz, case.roller.radius_m);
-        let pressure = &self.solved.pressure;
-        let stress = |body: BodyKind, at: [f64; 3], s: &StressTensor| match body {
-            BodyKind::Block => *s * p0,
-            BodyKind::Roller => shape.stress(pressure, at, s) * p0,
+        let curvature = c / case.roller.radius_m;
+        let stress = |body: BodyKind, s: &RoundStress| match body {
+            BodyKind::Block => s.flat * p0,
+            BodyKind::Roller => s.at(curvature) * p0,
         };
         let curves: Vec<Curve> = self
             .curves
             .iter()
-            .map(|curve| Curve {
+            .map(|(curve, stresses)| Curve {
                 body: curve.body,
                 name: curve.name,
-                at_m: curve.at_m.iter().map(|at| at.map(|v| v * c)).collect(),
-                stress_pa: curve
-                    .at_m
-                    .iter()
-                    .zip(&curve.stress_pa)
-                    .map(|(at, s)| stress(curve.body, *at, s))
-                    .collect(),
+                at_m: curve.points.iter().map(|at| at.map(|v| v * c)).collect(),
+                stress_pa: stresses.iter().map(|s| stress(curve.body, s)).collect(),
             })
             .collect();
         let lines = self
@@ -306,7 +301,7 @@ impl SceneAnswer {
                 .points
                 .iter()
                 .zip(&options.points)
-                .map(|(s, point)| stress(point.body, point.at_m.map(|v| v / c), s))
+                .map(|(s, point)| stress(point.body, s))
                 .collect(),
             details: json!({
                 "tolerance": case.tolerance,
@@ -332,7 +327,7 @@ impl SceneAnswer {
                     },
                 },
                 "approach_reference_m": reference,
-                "roller_diametral_tension_pa": shape.diametral_tension() * p0,
+                "roller_diametral_tension_pa": round::DIAMETRAL_TENSION * curvature * p0,
             }),
             cells,
             lines,
@@ -401,23 +396,25 @@ fn pressure_lines(solved: &SolvedScene) -> Vec<PressureLine> {
     ]
 }
 
-/// Points of one body on one line, which share much of their computation.
+/// Points of one body that share much of their computation.
 struct Line {
     body: BodyKind,
     along: Along,
-    /// The running coordinate of each point (C), and where its stress belongs.
-    points: Vec<(f64, Slot)>,
+    /// Coordinates (C), and where the stress belongs.
+    points: Vec<([f64; 3], Slot)>,
 }
 
-/// A line's direction, and its two other coordinates (C).
+/// Which points belong to one [`Line`] (coordinates in C).
 #[derive(Clone, Copy, PartialEq)]
 enum Along {
-    /// Along x, at y and z.
+    /// Those along x, at y and z.
     X(f64, f64),
-    /// Along y, at x and z.
-    Y(f64, f64),
-    /// Along z, at x and y.
-    Z(f64, f64),
+    /// Those along y in the plane x = 0, at z.
+    Y(f64),
+    /// Those along z, at y, in the plane x = 0.
+    Z(f64),
+    /// Those along z, at y, off the plane x = 0.
+    OffZ(f64),
 }
 
 /// Where a stress belongs: a standard curve's point, or an extra point.
@@ -432,9 +429,8 @@ fn stresses(
     solved: &SolvedScene,
     case: &Case,
     options: &Options,
-) -> (Vec<Curve>, Vec<StressTensor>, Work) {
+) -> (Vec<CurveStress>, Vec<RoundStress>, Work) {
     let scene = &solved.scene;
-    let c_m = case.hertz().c_m;
     let mut curves = Vec::new();
     for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies) {
         if options.bodies.contains(&kind) {
@@ -442,8 +438,43 @@ fn stresses(
             curves.extend(all.into_iter().filter(|c| options.curves.iter().any(|n| n == c.name)));
         }
     }
+    let lines = lines(solved, &curves, case.hertz().c_m, &options.points);
+    let fields: Vec<_> = BodyKind::ALL
+        .into_iter()
+        .filter(|&k| lines.iter().any(|l| l.body == k))
+        .map(|k| (k, solved.field(k)))
+        .collect();
+    let values: Vec<Vec<RoundStress>> = lines
+        .par_iter()
+        .map(|line| {
+            let (_, field) = fields.iter().find(|f| f.0 == line.body).expect("one a body");
+            line.stresses(field)
+        })
+        .collect();
+    let mut out: Vec<CurveStress> = curves
+        .into_iter()
+        .map(|curve| {
+            let stresses = vec![RoundStress::default(); curve.points.len()];
+            (curve, stresses)
+        })
+        .collect();
+    let mut points = vec![RoundStress::default(); options.points.len()];
+    for (line, values) in lines.iter().zip(values) {
+        for ((_, slot), value) in line.points.iter().zip(values) {
+            match *slot {
+                Slot::Curve(i, j) => out[i].1[j] = value,
+                Slot::Extra(i) => points[i] = value,
+            }
+        }
+    }
+    let work = fields.iter().map(|(_, field)| field.work()).sum();
+    (out, points, work)
+}
+
+/// The points of `curves` and the extra ones, line by line.
+fn lines(solved: &SolvedScene, curves: &[CurveSpec], c_m: f64, extra: &[Point]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
-    let mut add = |kind: BodyKind, along: Along, at: f64, slot: Slot| {
+    let mut add = |kind: BodyKind, along: Along, at: [f64; 3], slot: Slot| {
         // What both bodies share in the computation they share in the result.
         let body = if solved.bodies_shared() { BodyKind::Block } else { kind };
         let index = lines.iter().position(|l| l.body == body && l.along == along);
@@ -456,54 +487,44 @@ fn stresses(
     for (i, curve) in curves.iter().enumerate() {
         let same = |axis: usize| curve.points.windows(2).all(|p| p[0][axis] == p[1][axis]);
         let fixed = [0, 1, 2].map(same);
-        for (j, &[x, y, z]) in curve.points.iter().enumerate() {
-            let slot = Slot::Curve(i, j);
-            match fixed {
-                [true, true, _] => add(curve.body, Along::Z(x, y), z, slot),
-                [true, _, true] => add(curve.body, Along::Y(x, z), y, slot),
-                _ => add(curve.body, Along::X(y, z), x, slot),
+        for (j, &at) in curve.points.iter().enumerate() {
+            let [x, y, z] = at;
+            let along = match fixed {
+                [true, true, _] if x == 0.0 => Along::Z(y),
+                [true, true, _] => Along::OffZ(y),
+                [true, _, true] if x == 0.0 => Along::Y(z),
+                _ => Along::X(y, z),
+            };
+            add(curve.body, along, at, Slot::Curve(i, j));
+        }
+    }
+    for (i, point) in extra.iter().enumerate() {
+        let at = point.at_m.map(|v| v / c_m);
+        add(point.body, Along::X(at[1], at[2]), at, Slot::Extra(i));
+    }
+    lines
+}
+
+impl Line {
+    /// The stresses at the points, in their order.
+    fn stresses(&self, field: &Field) -> Vec<RoundStress> {
+        let coordinate = |axis: usize| self.points.iter().map(|p| p.0[axis]).collect::<Vec<_>>();
+        match self.along {
+            Along::X(y, z) => field.round_at(y, z, &coordinate(0)),
+            Along::Y(z) => field.round_along(z, &coordinate(1)),
+            Along::Z(y) | Along::OffZ(y) => {
+                // Points at one depth share their sums over the loads.
+                let distinct = |mut all: Vec<f64>| {
+                    all.sort_by(f64::total_cmp);
+                    all.dedup();
+                    all
+                };
+                let (xs, zs) = (distinct(coordinate(0)), distinct(coordinate(2)));
+                let all = field.round_down(&xs, y, &zs);
+                let place = |all: &[f64], v: f64| all.partition_point(|a| *a < v);
+                let at = |(at, _): &([f64; 3], Slot)| all[place(&zs, at[2])][place(&xs, at[0])];
+                self.points.iter().map(at).collect()
             }
         }
     }
-    for (i, point) in options.points.iter().enumerate() {
-        let [x, y, z] = point.at_m.map(|v| v / c_m);
-        add(point.body, Along::X(y, z), x, Slot::Extra(i));
-    }
-    let fields: Vec<_> = BodyKind::ALL
-        .into_iter()
-        .filter(|&k| lines.iter().any(|l| l.body == k))
-        .map(|k| (k, solved.field(k)))
-        .collect();
-    let values: Vec<Vec<StressTensor>> = lines
-        .par_iter()
-        .map(|line| {
-            let (_, field) = fields.iter().find(|f| f.0 == line.body).expect("one a body");
-            let at: Vec<f64> = line.points.iter().map(|p| p.0).collect();
-            match line.along {
-                Along::X(y, z) => field.at(y, z, &at),
-                Along::Y(x, z) => field.along(x, z, &at),
-                Along::Z(x, y) => field.down(x, y, &at),
-            }
-        })
-        .collect();
-    let mut out: Vec<Curve> = curves
-        .into_iter()
-        .map(|c| Curve {
-            body: c.body,
-            name: c.name,
-            stress_pa: vec![StressTensor::default(); c.points.len()],
-            at_m: c.points,
-        })
-        .collect();
-    let mut points = vec![StressTensor::default(); options.points.len()];
-    for (line, values) in lines.iter().zip(values) {
-        for ((_, slot), value) in line.points.iter().zip(values) {
-            match *slot {
-                Slot::Curve(i, j) => out[i].stress_pa[j] = value,
-                Slot::Extra(i) => points[i] = value,
-            }
-        }
-    }
-    let work = fields.iter().map(|(_, field)| field.work()).sum();
-    (out, points, work)
 }

@@ -8,6 +8,7 @@
 //! contact costs no wavenumbers.
 
 use super::pressure::Pressure;
+use super::round::RoundStress;
 use super::waves::{Sight, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::{Body, EdgeModel, Layer};
@@ -75,6 +76,9 @@ const INTERPOLATION: f64 = 0.02;
 
 /// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
 const ON_SURFACE: f64 = 1e-9;
+
+/// Step of the difference quotient along x (C).
+const STEP: f64 = 1e-4;
 
 /// The stress field of one body.
 #[derive(Debug)]
@@ -196,30 +200,45 @@ impl<'a> Field<'a> {
         xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
     }
 
-    /// Stresses at the points (`x`, `y`, z) for each z >= 0 of `zs`, in their order: what [`Field::at`]
-    /// gives, with the smooth part interpolated where points lie closer than it varies.
+    /// [`Field::at`], with what a round surface adds per C / R.
+    pub fn round_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<RoundStress> {
+        rounded(xs, &[z], |all| vec![self.at(y, z, all)]).swap_remove(0)
+    }
+
+    /// [`Field::down`], with what a round surface adds per C / R.
+    pub fn round_down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<RoundStress>> {
+        rounded(xs, zs, |all| self.down(all, y, zs))
+    }
+
+    /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in their
+    /// order. They are what [`Field::at`] gives, with the smooth part interpolated where points lie
+    /// closer than it varies.
     ///
     /// Under a load at the distance u along the surface the field's poles are at z = +-i u, of which
     /// those count where the load is not smooth: with the nearest one's u in asinh(z / u), all of them are
     /// at imaginary parts of +-pi/2. Below such a place this is ln z, and serves in some depth.
-    pub fn down(&self, x: f64, y: f64, zs: &[f64]) -> Vec<StressTensor> {
-        let near = self.smooth_within(x, y);
+    pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<StressTensor>> {
+        let near =
+            xs.iter().fold(f64::INFINITY, |near: f64, &x| near.min(self.smooth_within(x, y)));
         let least = if near >= SMOOTH_DEPTH { 0.0 } else { SMOOTH_DEPTH };
         let scale = near.max(ON_SURFACE);
         let place = |z: f64| (z / scale).asinh();
         let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), FRAC_PI_2)];
         let below = zs.iter().filter(|z| **z >= least).map(|z| place(*z));
         let Some(axis) = self.sampling(below, poles) else {
-            return zs.iter().map(|&z| self.at(y, z, &[x])[0]).collect();
+            return zs.iter().map(|&z| self.at(y, z, xs)).collect();
         };
-        let nodes: Vec<StressTensor> =
-            axis.nodes().iter().map(|t| self.remainders(y, scale * t.sinh(), &[x])[0]).collect();
-        zs.iter()
-            .map(|&z| match z >= least {
-                true => self.complete(x, y, z, interpolated(&axis, &nodes, place(z))),
-                false => self.at(y, z, &[x])[0],
-            })
-            .collect()
+        let at_node = |t: &f64| self.remainders(y, scale * t.sinh(), xs);
+        let nodes: Vec<Vec<StressTensor>> = axis.nodes().iter().map(at_node).collect();
+        let smooth = |z: f64| {
+            let weights: Vec<(usize, f64)> = axis.interpolation(place(z)).collect();
+            let at = |(i, &x): (usize, &f64)| {
+                let own = |(node, weight): &(usize, f64)| nodes[*node][i] * *weight;
+                self.complete(x, y, z, weights.iter().map(own).sum())
+            };
+            xs.iter().enumerate().map(at).collect()
+        };
+        zs.iter().map(|&z| if z >= least { smooth(z) } else { self.at(y, z, xs) }).collect()
     }
 
     /// Distance along the surface from (`x`, `y`) to where its load is not smooth: the contact's edges and
@@ -232,6 +251,12 @@ impl<'a> Field<'a> {
         let ends = [self.pressure.axis().end(), self.body.half].map(|end| (end - y.abs()).abs());
         // Half-widths are near 1.
         ends[0].min(ends[1]).min((1.0 - x.abs()).abs())
+    }
+
+    /// [`Field::along`] in the plane x = 0, with what a round surface adds per C / R.
+    pub fn round_along(&self, z: f64, ys: &[f64]) -> Vec<RoundStress> {
+        let flat = self.along(0.0, z, ys);
+        flat.into_iter().map(|s| RoundStress::new(0.0, z, s, &StressTensor::default())).collect()
     }
 
     /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
@@ -445,11 +470,40 @@ struct Felt {
 
 /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
 fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTensor {
-    let mut sum = StressTensor::default();
-    for (node, weight) in axis.interpolation(place) {
-        sum += values[node] * weight;
-    }
-    sum
+    axis.interpolation(place).map(|(node, weight)| values[node] * weight).sum()
+}
+
+/// For each of `zs` and of `xs` the stress of a body with a round surface, from `flat`, which gives the
+/// flat body's at each of `zs` for a list of x. The slopes along x are difference quotients: the points of
+/// one share all that is summed.
+fn rounded(
+    xs: &[f64],
+    zs: &[f64],
+    flat: impl Fn(&[f64]) -> Vec<Vec<StressTensor>>,
+) -> Vec<Vec<RoundStress>> {
+    // Nothing moves along x at x = 0, nor on the surface.
+    let sloped = |x: f64| x != 0.0 && zs.iter().any(|z| *z > 0.0);
+    let all: Vec<f64> = xs
+        .iter()
+        .flat_map(|&x| if sloped(x) { vec![x, x - STEP, x + STEP] } else { vec![x] })
+        .collect();
+    let rows = zs.iter().zip(flat(&all));
+    rows.map(|(&z, row)| {
+        let mut row = row.into_iter();
+        let mut next = || row.next().expect("one for each of all");
+        let at = |&x: &f64| {
+            let own = next();
+            let slope = if sloped(x) {
+                let (before, after) = (next(), next());
+                (after - before) * (0.5 / STEP)
+            } else {
+                StressTensor::default()
+            };
+            RoundStress::new(x, z, own, &slope)
+        };
+        xs.iter().map(at).collect()
+    })
+    .collect()
 }
 
 /// Share of an end face's normal stress that the reconstructed correction of

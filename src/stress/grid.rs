@@ -64,27 +64,15 @@ impl GridStress {
         &self.values
     }
 
+    /// All values times `factor`.
+    pub fn scaled(mut self, factor: f64) -> Self {
+        self.values.iter_mut().for_each(|v| *v *= factor);
+        self
+    }
+
     /// The stress at one point, by its index.
     pub fn at(&self, index: usize) -> StressTensor {
         StressTensor::from_components(std::array::from_fn(|c| self.component(c)[index]))
-    }
-
-    /// Replaces the stress at every point x, y, z of `grid` by what `change` makes of it.
-    pub fn map(
-        &mut self,
-        grid: &Grid,
-        change: impl Fn([f64; 3], &StressTensor) -> StressTensor + Sync,
-    ) {
-        let (nx, ny) = (grid.x.len(), grid.y.len());
-        let changed: Vec<StressTensor> = (0..self.points)
-            .into_par_iter()
-            .map(|i| {
-                change([grid.x[i % nx], grid.y[i / nx % ny], grid.z[i / (nx * ny)]], &self.at(i))
-            })
-            .collect();
-        for (component, part) in self.values.chunks_exact_mut(self.points.max(1)).enumerate() {
-            part.iter_mut().zip(&changed).for_each(|(v, s)| *v = s.components()[component]);
-        }
     }
 }
 
@@ -119,13 +107,14 @@ impl Mirrored {
     }
 }
 
-/// Stresses of `field` on `grid`, in units of p0, computed on all threads of the current pool.
+/// Stresses of `field` on `grid`, in units of p0, of a body whose C / R is `curvature` (none for a flat
+/// one), computed on all threads of the current pool.
 ///
 /// A line of points along x costs little more than one of its points, since [`Field::at`] shares
 /// the kernels over x; lines are computed in parallel. The contact is even in x and in y, so points
 /// that are mirror images of others of the grid, to the last bit of their coordinates, are copied. The memory
 /// is that of the result, 48 bytes a point, and one line for each thread.
-pub fn on_grid(field: &Field, grid: &Grid) -> GridStress {
+pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress {
     let (points, nx) = (grid.len(), grid.x.len());
     let mut values = vec![0.0; 6 * points];
     if points == 0 {
@@ -144,7 +133,14 @@ pub fn on_grid(field: &Field, grid: &Grid) -> GridStress {
             if y.first[magnitude] != iy {
                 return;
             }
-            let stresses = field.at(y.distinct[magnitude], grid.z[iz], &x.distinct);
+            let (y, z) = (y.distinct[magnitude], grid.z[iz]);
+            let stresses = match curvature {
+                None => field.at(y, z, &x.distinct),
+                Some(curvature) => {
+                    let round = field.round_at(y, z, &x.distinct);
+                    round.iter().map(|s| s.at(curvature)).collect()
+                }
+            };
             let sign_y = if negative { -1.0 } else { 1.0 };
             for (ix, &(i, negative)) in x.of.iter().enumerate() {
                 let (s, sign_x) = (&stresses[i], if negative { -1.0 } else { 1.0 });

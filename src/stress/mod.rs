@@ -4,9 +4,11 @@ pub mod curves;
 pub mod field;
 pub mod grid;
 mod pressure;
+pub mod round;
 mod waves;
 
 pub use curves::{BodyKind, CurveSpec};
 pub use field::{Field, Work};
 pub use grid::{Grid, GridStress};
 pub use pressure::Pressure;
+pub use round::RoundStress;

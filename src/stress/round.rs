@@ -1,4 +1,4 @@
-//! What the roller's round shape adds to the stresses of a flat body, to first order in C / R.
+//! What a body's round shape adds to the stresses of a flat body, to first order in C / R.
 //!
 //! A disc loaded normally on its circumference carries, exactly, the radial fields of half-planes
 //! that every element of the load would cause behind its own tangent, and a uniform tension that takes
@@ -17,12 +17,15 @@
 //! along the line, under the Hertz pressure: near an end the loads of about a C on either side of a
 //! point make them up, and p varies there by what the second order is worth. No stress along y goes
 //! with them; of plane strain that would leave out some 0.1 C / R.
+//!
+//! The frame of the surface above the point is turned by x / R, and a point at the vertical depth z
+//! stands x z / R farther out along the surface than x. Both are taken from the whole flat field,
+//! its free ends included.
 
-use crate::base::{HertzScales, StressTensor};
-use crate::kernels::strip;
-use crate::stress::Pressure;
+use crate::base::StressTensor;
 use multiversion::multiversion;
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// Points of Gauss's rule for the weight sqrt(1 - t^2) across the contact, in groups that are summed side by
 /// side.
@@ -30,77 +33,64 @@ const POINTS: usize = GROUPS * LANES;
 const GROUPS: usize = 5;
 const LANES: usize = 8;
 
-/// Step of the difference quotient along x (C).
-const STEP: f64 = 1e-4;
+/// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
+type Rule = [[[f64; LANES]; 2]; GROUPS];
 
-/// The roller's shape.
-#[derive(Debug, Clone)]
-pub struct RollerShape {
-    /// C / R.
-    curvature: f64,
-    /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
-    rule: [[[f64; LANES]; 2]; GROUPS],
+static RULE: LazyLock<Rule> = LazyLock::new(|| {
+    let angle = |i: usize| PI * (i + 1) as f64 / (POINTS + 1) as f64;
+    std::array::from_fn(|group| {
+        let angles: [f64; LANES] = std::array::from_fn(|lane| angle(group * LANES + lane));
+        [angles.map(f64::cos), angles.map(|angle| PI / (POINTS + 1) as f64 * angle.sin().powi(2))]
+    })
+});
+
+/// The even sigma_xx of a disc squeezed across its diameter, w' / (pi R) with the mean line load, per
+/// C / R (p0).
+pub const DIAMETRAL_TENSION: f64 = 0.5;
+
+/// A stress of a body whose surface may be round, in units of p0.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct RoundStress {
+    /// The flat body's stress.
+    pub flat: StressTensor,
+    /// What the round shape adds per C / R.
+    pub round: StressTensor,
 }
 
-impl RollerShape {
-    /// A roller of the radius `radius_m` (m).
-    pub fn new(hertz: &HertzScales, radius_m: f64) -> Self {
-        let angle = |i: usize| PI * (i + 1) as f64 / (POINTS + 1) as f64;
-        let rule = std::array::from_fn(|group| {
-            let angles: [f64; LANES] = std::array::from_fn(|lane| angle(group * LANES + lane));
-            [
-                angles.map(f64::cos),
-                angles.map(|angle| PI / (POINTS + 1) as f64 * angle.sin().powi(2)),
-            ]
-        });
-        Self { curvature: hertz.c_m / radius_m, rule }
-    }
-
-    /// The even sigma_xx of a disc squeezed across its diameter (p0): w' / (pi R) with the mean line
-    /// load.
-    pub fn diametral_tension(&self) -> f64 {
-        0.5 * self.curvature
-    }
-
-    /// The roller's stress (p0) at x, y and the depth z below its surface (C), under `pressure`,
-    /// where the `flat` body has the stress given.
-    pub fn stress(&self, pressure: &Pressure, at: [f64; 3], flat: &StressTensor) -> StressTensor {
-        let [x, y, z] = at;
-        let mut s = *flat;
-        s.xx += self.diametral_tension();
-        let sums = tilted(&self.rule, x, z);
-        let [xx, zz, xz] = sums.map(|sum| self.curvature / PI * sum);
-        s.xx += xx;
-        s.zz += zz;
-        s.xz += xz;
-        // The frame of the surface above the point is turned by x / R, and z runs beside its normal.
-        let tilt = self.curvature * x;
-        if tilt != 0.0 {
-            s.xx -= 2.0 * tilt * flat.xz;
-            s.zz += 2.0 * tilt * flat.xz;
-            s.xz += tilt * (flat.xx - flat.zz);
-            s.xy -= tilt * flat.yz;
-            s.yz += tilt * flat.xy;
-            if let Some((a, c)) = pressure.modes(y).filter(|_| z > 0.0) {
-                let [before, after] = [x - STEP, x + STEP].map(|x| strip::stress(a, &c, x, z));
-                let shift = tilt * z / (2.0 * STEP);
-                s.xx += shift * (after[0] - before[0]);
-                s.zz += shift * (after[1] - before[1]);
-                s.xz += shift * (after[2] - before[2]);
-            }
-        }
+impl RoundStress {
+    /// The stress at x and the depth `z` below the surface (C), where the flat body has the stress
+    /// `flat`, which grows by `slope` a C along x.
+    pub fn new(x: f64, z: f64, flat: StressTensor, slope: &StressTensor) -> Self {
+        let [xx, zz, xz] = tilted(&RULE, x, z).map(|sum| sum / PI);
+        let turned = StressTensor {
+            xx: -2.0 * flat.xz,
+            yy: 0.0,
+            zz: 2.0 * flat.xz,
+            xy: -flat.yz,
+            xz: flat.xx - flat.zz,
+            yz: flat.xy,
+        };
+        let mut round = turned * x + *slope * (x * z);
+        round.xx += DIAMETRAL_TENSION + xx;
+        round.zz += zz;
+        round.xz += xz;
         if z == 0.0 {
-            // The pressure is known there.
-            (s.zz, s.xz, s.yz) = (flat.zz, flat.xz, flat.yz);
+            // The tractions are known there.
+            (round.zz, round.xz, round.yz) = (0.0, 0.0, 0.0);
         }
-        s
+        Self { flat, round }
+    }
+
+    /// The stress (p0) where C / R, positive for a convex body, is `curvature`.
+    pub fn at(&self, curvature: f64) -> StressTensor {
+        self.flat + self.round * curvature
     }
 }
 
 /// Sums over the rule's loads of what their tilt and the surface's fall add to xx, zz and xz at (`x`, `z`), compiled
 /// for the processor's vector units too.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-fn tilted(rule: &[[[f64; LANES]; 2]; GROUPS], x: f64, z: f64) -> [f64; 3] {
+fn tilted(rule: &Rule, x: f64, z: f64) -> [f64; 3] {
     let mut sums = [[0.0; LANES]; 3];
     for [nodes, weights] in rule {
         for lane in 0..LANES {
@@ -120,7 +110,7 @@ fn tilted(rule: &[[[f64; LANES]; 2]; GROUPS], x: f64, z: f64) -> [f64; 3] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Panels;
+    use crate::kernels::strip;
 
     /// A disc under opposite semi-elliptic pressures of half-width 1: the sum of the
     /// radial fields behind the tangents and of the uniform tension, in the frame of the axes.
@@ -152,17 +142,16 @@ mod tests {
 
     #[test]
     fn first_order_of_a_disc_that_is_squeezed() {
-        let axis = Panels::new(vec![0.0, 1.0], 2);
-        let pressure = Pressure::new(axis, vec![1.0; 2], vec![vec![1.0]; 2]);
-        let hertz = HertzScales { c_m: 1.0, p0_pa: 1.0, e_star_pa: 1.0 };
+        let plane = |x: f64, z: f64| {
+            let [xx, zz, xz] = strip::stress(1.0, &[1.0], x, z);
+            StressTensor { xx, zz, xz, ..StressTensor::default() }
+        };
         let off = |radius: f64| {
-            let shape = RollerShape::new(&hertz, radius);
             let mut worst: f64 = 0.0;
             for x in [0.0, 0.3, 0.7, 1.5, 2.5] {
                 for z in [0.2, 0.5, 1.0, 2.0, 4.0] {
-                    let [xx, zz, xz] = strip::stress(1.0, &[1.0], x, z);
-                    let flat = StressTensor { xx, zz, xz, ..StressTensor::default() };
-                    let got = shape.stress(&pressure, [x, 0.5, z], &flat);
+                    let slope = (plane(x + 1e-4, z) - plane(x - 1e-4, z)) * 5e3;
+                    let got = RoundStress::new(x, z, plane(x, z), &slope).at(1.0 / radius);
                     for (g, e) in [got.xx, got.zz, got.xz].iter().zip(disc(radius, x, z)) {
                         worst = worst.max((g - e).abs());
                     }
