@@ -164,7 +164,7 @@ fn complete(c: &mut Criterion) {
 }
 
 /// The pressure alone of the problem that general contact codes solve; within 1 % at this tolerance
-/// (tests/verification.rs).
+/// (tests/numerics/verification.rs).
 fn half_space(c: &mut Criterion) {
     let scene = Scene::new(&Case { tolerance: 1e-2, ..case(5.0, 1.0) }, EdgeModel::HalfSpace, None);
     c.bench_function("half-space/pressure, S_l 5", |b| {

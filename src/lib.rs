@@ -15,7 +15,7 @@
 //!
 //! # Layers
 //!
-//! Each module imports only modules above it in this list; `tests/layering.rs` checks that.
+//! Each module imports only modules above it in this list; `tests/numerics/layering.rs` checks that.
 //!
 //! | module | what lives there |
 //! |---|---|

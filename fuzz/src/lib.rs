@@ -1,5 +1,5 @@
 //! What every reader of outside files has to do with any bytes: return, with a value that holds what it
-//! promises or an error that names the file. `tests/corpora.rs` runs the same on a stable compiler.
+//! promises or an error that names the file. `tests/program/corpora.rs` runs the same on a stable compiler.
 
 use edgeline::case::{Case, Study, Sweep, builtin_case};
 use edgeline::fem::{MeshResult, MeshSummary, Reference, ResultTexts};

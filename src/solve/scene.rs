@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use std::time::Instant;
 
 /// Stress transition factor of the `guilbault` model: the least squares of sigma_yy against
-/// `quarter-space` over the standard curves of four cases (tests/ends.rs, docs/theory.md).
+/// `quarter-space` over the standard curves of four cases (tests/numerics/ends.rs, docs/theory.md).
 pub const GAMMA: f64 = 2.03;
 
 /// Guilbault's factor for images in the flexibility matrix (Guilbault, ASME Journal of Tribology

@@ -1,4 +1,4 @@
-"""Write the high-precision values that tests/analytic.rs compares with.
+"""Write the high-precision values that tests/numerics/analytic.rs compares with.
 
     python3 tests/data/analytic.py        (needs mpmath; about ten seconds)
 

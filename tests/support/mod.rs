@@ -1,6 +1,7 @@
-//! What tests of child processes and of faults have in common: a folder in which `edgeline` runs with
-//! the stand-ins of `tests/fake/`, and processes that are counted.
+//! What the tests that run the program share: how it is started and what it left, a folder in which
+//! `edgeline fem` runs with the stand-ins of `tests/fake/`, and processes that are counted.
 
+use std::collections::HashMap;
 use std::fs;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
@@ -8,6 +9,39 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
+/// The program, started in `folder`, with nothing from the outside that it might pick up.
+pub fn edgeline(folder: &Path, arguments: &[&str]) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+    command.current_dir(folder).env_remove("EDGELINE_PYTHON").args(arguments).stdin(Stdio::null());
+    command
+}
+
+/// All that a run printed.
+pub fn said(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+}
+
+/// A row of a CSV file, by column.
+pub type Row = HashMap<String, String>;
+
+pub fn rows(path: &Path) -> Vec<Row> {
+    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
+}
+
+pub fn number(row: &Row, column: &str) -> f64 {
+    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+}
+
+/// The names of all that is in a folder, sorted.
+pub fn files(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
+/// A stand-in of `tests/fake/`.
 pub fn fake(name: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fake").join(name)
 }
@@ -29,7 +63,7 @@ impl Bench {
 
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+        let mut command = edgeline(self.folder.path(), &["fem", case, "--out"]);
         // A suite under nohup, or in the background of a script, would hand its ignored SIGHUP and SIGINT
         // down, and edgeline respects that.
         // SAFETY: a plain system call that is async-signal-safe.
@@ -41,12 +75,7 @@ impl Bench {
                 Ok(())
             });
         }
-        command
-            .current_dir(self.folder.path())
-            .env_remove("EDGELINE_PYTHON")
-            .args(["fem", case, "--out"])
-            .arg(self.out())
-            .stdin(Stdio::null());
+        command.arg(self.out());
         command
     }
 
@@ -97,18 +126,18 @@ impl Bench {
     }
 }
 
-/// Runs to the end, which has to be a refusal, and returns what was said.
+/// Runs to the end, which has to be a refusal with exit code 2, and returns what was said.
 pub fn refused(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{said}");
-    assert!(output.stdout.is_empty());
+    assert_eq!(output.status.code(), Some(2), "{command:?}: {said}");
+    assert!(output.stdout.is_empty(), "{command:?} printed results");
     said
 }
 
 pub fn succeeded(command: &mut Command) -> Output {
     let output = command.output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    assert!(output.status.success(), "{}", said(&output));
     output
 }
 

@@ -1,7 +1,7 @@
 //! The readers of outside files on the inputs that fuzzing has collected, and on damaged copies of
 //! them. `fuzz/README.md` says how the inputs were found.
 
-#[path = "../fuzz/src/lib.rs"]
+#[path = "../../fuzz/src/lib.rs"]
 mod targets;
 
 use proptest::test_runner::{RngAlgorithm, TestRng};

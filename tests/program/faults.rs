@@ -7,8 +7,7 @@
 //! tests are skipped with a message, unless `EDGELINE_REQUIRE_MOUNT` is set; `tests/all.sh` sets that
 //! where it is root.
 
-mod support;
-
+use crate::support::{Bench, edgeline, fake, kill, refused, start, succeeded, wait_for};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::ffi::OsStr;
@@ -18,14 +17,6 @@ use std::os::unix::ffi::OsStrExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant, SystemTime};
-use support::{Bench, fake, kill, refused, start, succeeded, wait_for};
-
-/// The program, started in `folder`.
-fn edgeline(folder: &Path, arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
-    command.current_dir(folder).env_remove("EDGELINE_PYTHON").args(arguments).stdin(Stdio::null());
-    command
-}
 
 /// `command` with limits of `prlimit`, e.g. `--as=1000000000`.
 fn limited(limit: &str, command: &Command) -> Command {
@@ -441,7 +432,7 @@ fn children_that_write_garbage_are_refused() {
 #[test]
 fn names_of_cases_cannot_leave_their_folder() {
     let folder = tempfile::tempdir().unwrap();
-    let good = include_str!("../cases/flush-short.toml");
+    let good = include_str!("../../cases/flush-short.toml");
     let long = "x".repeat(65);
     let names =
         ["", ".", "..", "../up", "/tmp/x", "a b", "a\\\"b", "a'b", "a\\nb", "ü", "$(id)", &long];

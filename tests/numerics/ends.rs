@@ -1,15 +1,13 @@
 //! The strength of the contact's end, and the one number of the `guilbault` model that is fitted.
 //! Lengths are in units of C, stresses in units of p0.
 
-mod scene;
-
+use crate::common::scene;
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::solve::edge::{self, EdgeStrength};
 use edgeline::solve::{GAMMA, Scene, SolvedScene};
 use edgeline::stress::BodyKind;
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::field::transition;
-use scene::scene;
 
 /// The strength of the end at a resolution.
 fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {

@@ -3,8 +3,8 @@
 //! Skipped with a message where the system's Python cannot import VTK, unless
 //! `EDGELINE_REQUIRE_VTK` is set; `tests/all.sh` installs it and sets that.
 
+use crate::support::{edgeline, files, succeeded};
 use std::fmt::Write;
-use std::path::Path;
 use std::process::Command;
 
 /// Prints `name x y z` and the arrays' values at points spread over each grid, by VTK's reader.
@@ -27,27 +27,14 @@ for name in sys.argv[1:]:
     print("arrays", name, *(data.GetArrayName(k) for k in range(data.GetNumberOfArrays())))
 "#;
 
-fn edgeline(folder: &Path, arguments: &[&str]) {
-    let done = Command::new(env!("CARGO_BIN_EXE_edgeline"))
-        .args(arguments)
-        .current_dir(folder)
-        .output()
-        .unwrap();
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-}
-
 #[test]
 fn a_real_reader_finds_the_right_values() {
     let folder = tempfile::tempdir().unwrap();
     let at = folder.path();
-    let counts = "9,11,8";
-    edgeline(at, &["solve", "half-short", "--field", "--field-points", counts, "--out", "f"]);
-    let mut names: Vec<String> = std::fs::read_dir(at.join("f"))
-        .unwrap()
-        .map(|e| e.unwrap().file_name().into_string().unwrap())
-        .filter(|n| n.starts_with("field") || n == "pressure.vtr")
-        .collect();
-    names.sort();
+    let field = ["--field", "--field-points", "9,11,8", "--out", "f"];
+    succeeded(&mut edgeline(at, &[&["solve", "half-short"], &field[..]].concat()));
+    let mut names = files(&at.join("f"));
+    names.retain(|n| n.starts_with("field") || n == "pressure.vtr");
     let mut expected = vec!["pressure.vtr".to_string()];
     for body in ["block", "roller"] {
         expected.push(format!("field-{body}.vtr"));
@@ -98,7 +85,7 @@ fn a_real_reader_finds_the_right_values() {
         }
     }
     std::fs::write(at.join("points.csv"), points).unwrap();
-    edgeline(at, &["solve", "half-short", "--points", "points.csv", "--out", "p"]);
+    succeeded(&mut edgeline(at, &["solve", "half-short", "--points", "points.csv", "--out", "p"]));
     let mut reader = csv::Reader::from_path(at.join("p/points.csv")).unwrap();
     let (mut compared, mut largest) = (0, 0.0f64);
     for ((name, v), row) in wanted.iter().zip(reader.records().step_by(2)) {

@@ -1,47 +1,18 @@
 //! The program as a user meets it: exit codes, messages, files.
 
-use assert_cmd::Command;
+use crate::support::{edgeline, files, number, rows};
 use serde_json::Value;
 use std::path::Path;
 
-/// The program, with nothing from the outside that it might pick up.
-fn edgeline(folder: &Path) -> Command {
-    let mut command = Command::cargo_bin("edgeline").unwrap();
-    command.current_dir(folder).env_remove("EDGELINE_PYTHON");
-    command
-}
-
-/// Runs it where it has to fail with exit code 2, and returns what it said.
+/// Runs it where it has to be refused, and returns what it said.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
-    let output = edgeline(folder).args(arguments).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {said}");
-    assert!(output.stdout.is_empty(), "{arguments:?} printed results");
-    said
-}
-
-fn files(folder: &Path) -> Vec<String> {
-    let mut names: Vec<String> = std::fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    names.sort();
-    names
-}
-
-/// Rows of a CSV file, by column.
-fn table(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
-}
-
-fn number(row: &std::collections::HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap()
+    crate::support::refused(&mut edgeline(folder, arguments))
 }
 
 #[test]
 fn help_says_what_is_written_and_how_long_it_takes() {
     let folder = tempfile::tempdir().unwrap();
-    let help = edgeline(folder.path()).arg("--help").output().unwrap();
+    let help = edgeline(folder.path(), &["--help"]).output().unwrap();
     assert!(help.status.success());
     let text = String::from_utf8(help.stdout).unwrap();
     let commands: Vec<&str> = text
@@ -53,7 +24,7 @@ fn help_says_what_is_written_and_how_long_it_takes() {
         .collect();
     assert!(commands.contains(&"solve") && commands.contains(&"doctor"), "{commands:?}");
     for command in commands {
-        let help = edgeline(folder.path()).args([command, "--help"]).output().unwrap();
+        let help = edgeline(folder.path(), &[command, "--help"]).output().unwrap();
         assert!(help.status.success(), "{command}");
         let text = String::from_utf8(help.stdout).unwrap();
         assert!(
@@ -87,7 +58,7 @@ fn bad_case_files_exit_with_two_and_leave_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let said = refused(folder.path(), &["solve", "nowhere.toml", "--out", "o"]);
     assert!(said.contains("nowhere.toml") && said.contains("flush-short"), "{said}");
-    let good = include_str!("../cases/flush-short.toml");
+    let good = include_str!("../../cases/flush-short.toml");
     for (from, to, wanted) in [
         ("poisson = 0.3", "poison = 0.3", "unknown key roller.poison; did you mean poisson?"),
         ("poisson = 0.3", "poisson = 0.5", "roller.poisson = 0.5"),
@@ -136,7 +107,7 @@ fn solve_writes_its_files() {
         let out = format!("out/{method}");
         let arguments =
             ["solve", "flush-short", "--method", method, "--points", "p.csv", "--out", &out];
-        let output = edgeline(folder.path()).args(arguments).output().unwrap();
+        let output = edgeline(folder.path(), &arguments).output().unwrap();
         assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
         let said = String::from_utf8(output.stdout).unwrap();
         assert!(said.contains(&format!("flush-short by {method}")), "{said}");
@@ -158,7 +129,7 @@ fn solve_writes_its_files() {
         let p0 = summary["hertz"]["p0_pa"].as_f64().unwrap();
 
         // The pressure of all cells is the load, and is the same on either side of both planes.
-        let cells = table(&out.join("pressure.csv"));
+        let cells = rows(&out.join("pressure.csv"));
         let of = |row, keys: [&str; 3]| keys.iter().map(|k| number(row, k)).product::<f64>();
         let load: f64 = cells.iter().map(|row| of(row, ["p_pa", "dx_m", "dy_m"])).sum();
         let wanted = summary["load_n"].as_f64().unwrap();
@@ -170,7 +141,7 @@ fn solve_writes_its_files() {
             assert!(sum.abs() <= 1e-9 * size, "{method}: {moment:?}");
         }
 
-        let curves = table(&out.join("curves.csv"));
+        let curves = rows(&out.join("curves.csv"));
         for body in ["block", "roller"] {
             for name in [
                 "surface-along-y",
@@ -199,7 +170,7 @@ fn solve_writes_its_files() {
             }
         }
 
-        let points = table(&out.join("points.csv"));
+        let points = rows(&out.join("points.csv"));
         let bodies: Vec<&str> = points.iter().map(|row| row["body"].as_str()).collect();
         assert_eq!(bodies, ["roller", "block", "block"]);
         assert_eq!(number(&points[1], "y_m"), -1e-4);
@@ -214,11 +185,11 @@ fn solve_writes_its_files() {
 fn json_is_the_only_thing_on_standard_output() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["solve", "half-short", "--method", "mirror", "--json", "--body", "block"];
-    let output = edgeline(folder.path()).args(arguments).output().unwrap();
+    let output = edgeline(folder.path(), &arguments).output().unwrap();
     assert_eq!(output.status.code(), Some(0));
     let printed: Value = serde_json::from_slice(&output.stdout).unwrap();
     let text = std::fs::read_to_string(folder.path().join("out/summary.json")).unwrap();
     assert_eq!(printed, serde_json::from_str::<Value>(&text).unwrap());
-    let curves = table(&folder.path().join("out/curves.csv"));
+    let curves = rows(&folder.path().join("out/curves.csv"));
     assert!(curves.iter().all(|row| row["body"] == "block"));
 }

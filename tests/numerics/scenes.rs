@@ -1,12 +1,10 @@
 //! Scenes from all over the legal range and beyond it: each ends in an answer that keeps every law of
 //! contact, or in an error that says why.
 //!
-//! `EDGELINE_SCENES=20000 cargo test --release --test scenes -- --nocapture` runs as many and writes
+//! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes -- --nocapture` runs as many and writes
 //! `results/scenes/`; without the variable some hundred of them run, and nothing is written.
 
-mod compare;
-
-use compare::{apart, worse};
+use crate::common::{apart, worse};
 use edgeline::base::{Error, Material, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};

@@ -1,12 +1,9 @@
 //! The solver against known solutions, an independent one, its own refinement and the laws that any
 //! solution keeps. Lengths are in units of C, stresses in units of p0.
 
-mod compare;
-mod scene;
-
 use std::f64::consts::PI;
 
-use compare::{apart, worse};
+use crate::common::{apart, scene, worse};
 use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
@@ -15,7 +12,6 @@ use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, Field, Pressure, RoundStress};
 use nalgebra::{DMatrix, DVector};
-use scene::scene;
 
 /// Distance from the roller's corner within which nothing is compared (C).
 const CORNER: f64 = 0.1;

@@ -4,13 +4,11 @@
 //! Most tests use the stand-ins in `tests/fake/`. Those that run gmsh and FEniCSx are marked
 //! `ignore`, since not every machine has them; `tests/all.sh` installs both and runs all tests.
 
-mod support;
-
+use crate::support::{Bench, edgeline, fake, files, kill, refused, start, succeeded, wait_for};
 use std::fs;
 use std::path::PathBuf;
-use std::process::{Command, Stdio};
+use std::process::Command;
 use std::time::{Duration, Instant};
-use support::{Bench, fake, kill, refused, start, succeeded, wait_for};
 
 #[test]
 fn a_run_leaves_checked_results_and_is_not_repeated() {
@@ -21,11 +19,6 @@ fn a_run_leaves_checked_results_and_is_not_repeated() {
     assert_eq!(printed["summary"]["unknowns"], 42);
     let said = String::from_utf8(output.stderr).unwrap();
     assert!(said.contains("(--python)"), "does not say which interpreter: {said}");
-    let mut left: Vec<String> = fs::read_dir(bench.out())
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
-    left.sort();
     let wanted = [
         "curves.csv",
         "fem.json",
@@ -35,7 +28,7 @@ fn a_run_leaves_checked_results_and_is_not_repeated() {
         "request.key",
         "solve.log",
     ];
-    assert_eq!(left, wanted);
+    assert_eq!(files(&bench.out()), wanted);
     succeeded(&mut bench.fake(""));
     assert_eq!(bench.notes(), ["mesh", "solve"]);
     // Another request is another run, and so are results that somebody changed.
@@ -128,15 +121,8 @@ fn missing_tools_are_named_with_what_to_install() {
 fn doctor_says_what_is_missing() {
     let bench = Bench::new();
     let doctor = |mode: &str, more: &[&str]| {
-        Command::new(env!("CARGO_BIN_EXE_edgeline"))
-            .arg("doctor")
-            .arg("--python")
-            .arg(fake("python3"))
-            .args(more)
-            .env("FAKE", mode)
-            .current_dir(bench.folder.path())
-            .output()
-            .unwrap()
+        let mut doctor = edgeline(bench.folder.path(), &["doctor", "--python"]);
+        doctor.arg(fake("python3")).args(more).env("FAKE", mode).output().unwrap()
     };
     let gmsh = fake("gmsh");
     let gmsh = gmsh.to_str().unwrap();
@@ -235,8 +221,7 @@ fn run_under_fire(
             hits += 1;
         }
     }
-    let output = command().output().unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    succeeded(&mut command());
     bench.assert_no_process_is_left();
     hits
 }
@@ -316,14 +301,11 @@ fn live_killed_study_is_completed_and_equals_an_undisturbed_one() {
              [factors]\nW = [1e-3]\nS_l = [3.0]\nL_r = [0.75, 1.0]\n"
         );
         fs::write(&file, text).unwrap();
-        let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
+        let mut command = edgeline(bench.folder.path(), &["study", "two.toml", "--fem", "live"]);
         command
-            .current_dir(bench.folder.path())
-            .env_remove("EDGELINE_PYTHON")
-            .args(["study", "two.toml", "--fem", "live", "--fem-repeats", "1", "--size", "2.5"])
-            .args(["--repeats", "0", "--methods", "mirror", "--out"])
-            .arg(bench.out())
-            .stdin(Stdio::null());
+            .args(["--fem-repeats", "1", "--size", "2.5", "--repeats", "0", "--methods", "mirror"])
+            .arg("--out")
+            .arg(bench.out());
         command
     };
     let results = |bench: &Bench| {

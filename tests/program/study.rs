@@ -1,23 +1,10 @@
 //! `edgeline study` and `edgeline report` as a user meets them.
 
-use std::collections::HashMap;
+use crate::support::{edgeline, rows, said};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
-
-fn edgeline(arguments: &[&str]) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_edgeline")).args(arguments).output().unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
-}
 
 fn text(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap()
-}
-
-fn rows(path: &Path) -> Vec<HashMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
 }
 
 /// A study of the given slendernesses, both length ratios and W = 1e-3.
@@ -38,7 +25,9 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
     let study = study_file(folder.path(), "[5.0, 20.0]");
     let out = folder.path().join("deep/run");
     let arguments = ["study", study.to_str().unwrap(), "--repeats", "2", "--json", "--out"];
-    let done = edgeline(&[&arguments[..], &[out.to_str().unwrap()]].concat());
+    let done = edgeline(folder.path(), &[&arguments[..], &[out.to_str().unwrap()]].concat())
+        .output()
+        .unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", said(&done));
 
     // Standard output holds one JSON object, which is the file, and nothing else.
@@ -103,7 +92,7 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
 
     // The page is made of the run's files alone: made again, it is the same.
     std::fs::remove_file(out.join("report.html")).unwrap();
-    let again = edgeline(&["report", out.to_str().unwrap()]);
+    let again = edgeline(folder.path(), &["report", out.to_str().unwrap()]).output().unwrap();
     assert_eq!(again.status.code(), Some(0), "{}", said(&again));
     assert_eq!(text(&out.join("report.html")), page);
     assert_eq!(text(&out.join("report.md")), markdown);
@@ -120,7 +109,10 @@ fn cases_without_a_record_are_said_so() {
     let study = study_file(folder.path(), "[5.5]");
     let out = folder.path().join("run");
     let arguments = ["study", study.to_str().unwrap(), "--methods", "mirror", "--repeats", "0"];
-    let done = edgeline(&[&arguments[..], &["--out", out.to_str().unwrap()]].concat());
+    let done =
+        edgeline(folder.path(), &[&arguments[..], &["--out", out.to_str().unwrap()]].concat())
+            .output()
+            .unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", said(&done));
     assert!(said(&done).contains("is not compared with FEM"), "{}", said(&done));
     let study_rows = rows(&out.join("study.csv"));
@@ -149,7 +141,7 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         (vec!["gate", "--gates", &path("bad.toml"), "--out", &path("o")], "bad.toml"),
         (vec!["gate", "--baseline", &path("file"), "--out", &path("o")], "edgeline gate --accept"),
     ] {
-        let done = edgeline(&arguments);
+        let done = edgeline(folder.path(), &arguments).output().unwrap();
         assert_eq!(done.status.code(), Some(2), "{arguments:?}: {}", said(&done));
         assert!(said(&done).contains(wanted), "{arguments:?}: {}", said(&done));
         assert!(done.stdout.is_empty(), "{arguments:?}");

@@ -1,5 +1,6 @@
 //! The gates notice what they are there for: another psi, a sign, a FEM curve that is off by 2 %.
 
+use crate::support::{edgeline, said};
 use edgeline::base::Result;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
@@ -73,17 +74,10 @@ fn flipped_shears_are_named() {
     assert!(outcomes.iter().any(|o| o.kind == "limit" && o.method == "quarter-space"));
 }
 
-fn edgeline(arguments: &[&str], folder: &Path) -> Output {
-    Command::new(env!("CARGO_BIN_EXE_edgeline"))
-        .args(arguments)
-        .current_dir(folder)
-        .env("GITHUB_STEP_SUMMARY", folder.join("step.md"))
-        .output()
-        .unwrap()
-}
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
+/// Runs `edgeline gate` with the table of the job's summary in the same folder.
+fn gate(folder: &Path, arguments: &[&str]) -> Output {
+    let mut command = edgeline(folder, &[&["gate"], arguments].concat());
+    command.env("GITHUB_STEP_SUMMARY", folder.join("step.md")).output().unwrap()
 }
 
 /// Copies the records of the small study's cases.
@@ -143,11 +137,8 @@ fn another_psi_fails_the_command_and_names_its_model() {
     let at = folder.path();
     std::fs::write(at.join("small.toml"), STUDY).unwrap();
     let gate = |more: &[&str]| {
-        let usual = ["gate", "small.toml", "--methods", "guilbault,quarter-space"];
-        edgeline(
-            &[&usual, &["--baseline", "accepted.json", "--out", "gate"][..], more].concat(),
-            at,
-        )
+        let usual = ["small.toml", "--methods", "guilbault,quarter-space", "--out", "gate"];
+        gate(at, &[&usual[..], &["--baseline", "accepted.json"], more].concat())
     };
     assert_eq!(gate(&["--accept"]).status.code(), Some(0));
     assert_eq!(gate(&[]).status.code(), Some(0));
@@ -237,19 +228,9 @@ fn a_fem_curve_off_by_two_percent_fails_the_command_and_accepting_shows_it() {
     std::fs::write(at.join("small.toml"), STUDY).unwrap();
     let records = copy_records(&at.join("records"));
     let gate = |more: &[&str]| {
-        let usual = [
-            "gate",
-            "small.toml",
-            "--reference",
-            "records",
-            "--methods",
-            "quarter-space",
-            "--baseline",
-            "accepted.json",
-            "--out",
-            "gate",
-        ];
-        edgeline(&[&usual, more].concat(), at)
+        let usual = ["small.toml", "--methods", "quarter-space", "--out", "gate"];
+        let files = ["--reference", "records", "--baseline", "accepted.json"];
+        gate(at, &[&usual[..], &files, more].concat())
     };
 
     // There is nothing to compare with yet; accepting is a command of its own.

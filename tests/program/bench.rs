@@ -1,28 +1,15 @@
 //! `edgeline bench` as a user meets it; finite elements are stood in for. No time is asserted on.
 
-use std::collections::HashMap;
+use crate::support::{Row, edgeline, fake, number, said};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::Output;
 
-fn edgeline(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
-    command.arg("bench").args(arguments).current_dir(folder).env_remove("EDGELINE_PYTHON");
-    command.output().unwrap()
+fn bench(folder: &Path, arguments: &[&str]) -> Output {
+    edgeline(folder, &[&["bench"], arguments].concat()).output().unwrap()
 }
-
-fn said(output: &Output) -> String {
-    String::from_utf8_lossy(&output.stdout).into_owned() + &String::from_utf8_lossy(&output.stderr)
-}
-
-type Row = HashMap<String, String>;
 
 fn rows(folder: &Path) -> Vec<Row> {
-    let path = folder.join("pareto.csv");
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
-}
-
-fn number(row: &Row, column: &str) -> f64 {
-    row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
+    crate::support::rows(&folder.join("pareto.csv"))
 }
 
 /// What makes a run short: two models, two tolerances, one repeat.
@@ -32,15 +19,15 @@ const SHORT: [&str; 6] =
 #[test]
 fn recorded_meshes_are_shown_apart_and_never_divided() {
     let folder = tempfile::tempdir().unwrap();
-    let done = edgeline(folder.path(), &[&["w1e-4_sl5_lr1", "--json"][..], &SHORT].concat());
+    let done = bench(folder.path(), &[&["w1e-4_sl5_lr1", "--json"][..], &SHORT].concat());
     assert_eq!(done.status.code(), Some(0), "{}", said(&done));
     let out = folder.path().join("out");
-    let bench: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    let json: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     let file = std::fs::read_to_string(out.join("bench.json")).unwrap();
-    assert_eq!(bench, serde_json::from_str::<serde_json::Value>(&file).unwrap());
-    assert_eq!(bench["cases"][0]["fem_reference"], "recorded, size 1");
-    assert_eq!(bench["limit"], 1e-4);
-    assert_eq!(bench["speedups"], serde_json::json!([]));
+    assert_eq!(json, serde_json::from_str::<serde_json::Value>(&file).unwrap());
+    assert_eq!(json["cases"][0]["fem_reference"], "recorded, size 1");
+    assert_eq!(json["limit"], 1e-4);
+    assert_eq!(json["speedups"], serde_json::json!([]));
 
     let rows = rows(&out);
     let of = |source: &str, setting: f64| {
@@ -91,18 +78,14 @@ fn recorded_meshes_are_shown_apart_and_never_divided() {
 #[test]
 fn live_meshes_are_divided_with_their_uncertainty() {
     let folder = tempfile::tempdir().unwrap();
-    let fake = |name: &str| {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fake").join(name);
-        path.to_str().unwrap().to_string()
-    };
-    let (python, gmsh) = (fake("python3"), fake("gmsh"));
+    let [python, gmsh] = ["python3", "gmsh"].map(|name| fake(name).to_str().unwrap().to_string());
     let live = ["--fem", "live", "--sizes", "1,2", "--python", &python, "--gmsh", &gmsh];
-    let done = edgeline(folder.path(), &[&["flush-short"][..], &live, &SHORT].concat());
+    let done = bench(folder.path(), &[&["flush-short"][..], &live, &SHORT].concat());
     assert_eq!(done.status.code(), Some(0), "{}", said(&done));
     let out = folder.path().join("out");
     let file = std::fs::read_to_string(out.join("bench.json")).unwrap();
-    let bench: serde_json::Value = serde_json::from_str(&file).unwrap();
-    assert_eq!(bench["cases"][0]["fem_reference"], "live, size 1");
+    let json: serde_json::Value = serde_json::from_str(&file).unwrap();
+    assert_eq!(json["cases"][0]["fem_reference"], "live, size 1");
     let live: Vec<Row> = rows(&out).into_iter().filter(|r| r["origin"] == "live-fem").collect();
     assert_eq!(live.len(), 2);
     assert!(live.iter().all(|r| r["repeats"] == "2" && number(r, "seconds_spread") == 0.0));
@@ -113,7 +96,7 @@ fn live_meshes_are_divided_with_their_uncertainty() {
     }
 
     // The stand-in takes one second and has no error, so each level has a ratio.
-    let speedups = bench["speedups"].as_array().unwrap();
+    let speedups = json["speedups"].as_array().unwrap();
     let own: Vec<_> = speedups.iter().filter(|s| s["against"] == "limit").collect();
     assert_eq!(own.len(), 3, "{speedups:?}");
     for s in own {
@@ -148,7 +131,7 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         (&["flush-short", "--reference", "nowhere"], "nowhere"),
         (&["flush-short", "--fem", "live", "--sizes", "-1"], "size"),
     ] {
-        let done = edgeline(at, arguments);
+        let done = bench(at, arguments);
         assert_eq!(done.status.code(), Some(2), "{arguments:?}: {}", said(&done));
         assert!(said(&done).contains(wanted), "{arguments:?}: {}", said(&done));
         assert!(done.stdout.is_empty(), "{arguments:?}");

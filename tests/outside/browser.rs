@@ -3,8 +3,9 @@
 //! Skipped with a message where Chromium is not installed, unless `EDGELINE_REQUIRE_BROWSER` is
 //! set; `tests/all.sh` installs it and sets that.
 
+use crate::support::{edgeline, number, rows, succeeded};
 use serde_json::{Value, json};
-use std::collections::{HashMap, VecDeque};
+use std::collections::VecDeque;
 use std::io::{BufRead, BufReader, Write};
 use std::path::{Path, PathBuf};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -225,14 +226,6 @@ fn base64(text: &str) -> Vec<u8> {
     bytes
 }
 
-fn rows(path: &Path) -> Vec<HashMap<String, String>> {
-    csv::Reader::from_path(path).unwrap().deserialize().map(Result::unwrap).collect()
-}
-
-fn number(row: &HashMap<String, String>, column: &str) -> f64 {
-    row[column].parse().unwrap()
-}
-
 /// A number as the page shows it.
 fn shown(text: &str) -> f64 {
     text.replace('−', "-").parse().unwrap_or_else(|_| panic!("{text:?} is a number"))
@@ -240,20 +233,14 @@ fn shown(text: &str) -> f64 {
 
 /// A run of two flush cases, one of them without a FEM record.
 fn study(folder: &Path) -> PathBuf {
-    let study = folder.join("two.toml");
     std::fs::write(
-        &study,
+        folder.join("two.toml"),
         "name = \"two\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n[block]\n\
          young_pa = 210e9\npoisson = 0.3\n[factors]\nW = [1e-3]\nS_l = [5.0, 6.0]\nL_r = [1.0]\n",
     )
     .unwrap();
     let out = folder.join("run");
-    let done = Command::new(env!("CARGO_BIN_EXE_edgeline"))
-        .args(["study", study.to_str().unwrap(), "--repeats", "1", "--out"])
-        .arg(&out)
-        .output()
-        .unwrap();
-    assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
+    succeeded(&mut edgeline(folder, &["study", "two.toml", "--repeats", "1", "--out", "run"]));
     out
 }
 

@@ -1,0 +1,8 @@
+//! The numerics: what needs the library alone.
+
+mod analytic;
+mod common;
+mod ends;
+mod layering;
+mod scenes;
+mod verification;

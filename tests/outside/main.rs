@@ -1,0 +1,8 @@
+//! The program and the tools from outside: finite elements, a browser, VTK, Cargo.
+
+mod browser;
+mod fem;
+mod field;
+mod supply;
+#[path = "../support/mod.rs"]
+mod support;
