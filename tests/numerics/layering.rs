@@ -1,7 +1,28 @@
-//! Modules import only modules above them in the list of layers at the head of `src/lib.rs`.
+//! Modules import only modules above them in the list of layers at the head of `src/lib.rs`, and no
+//! two files import each other, directly or in a circle.
 
+use crate::imports::Sources;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Circles that are still to be taken apart; each must go.
+const KNOWN_CIRCLES: [&[&str]; 3] = [
+    &[
+        "cli/bench.rs",
+        "cli/doctor.rs",
+        "cli/fem.rs",
+        "cli/gate.rs",
+        "cli/mod.rs",
+        "cli/progress.rs",
+        "cli/report.rs",
+        "cli/solve.rs",
+        "cli/study.rs",
+        "cli/sweep.rs",
+    ],
+    &["contact/check.rs", "contact/solver.rs"],
+    &["solve/edge.rs", "solve/scene.rs"],
+];
 
 /// The layers, top first, as the table in the crate's documentation lists them.
 fn layers(lib: &str) -> Vec<String> {
@@ -11,176 +32,224 @@ fn layers(lib: &str) -> Vec<String> {
         .collect()
 }
 
-/// The text without comments and string literals, which may mention any module.
-fn code_of(text: &str) -> String {
-    let mut code = String::with_capacity(text.len());
-    let mut rest = text;
-    while let Some(c) = rest.chars().next() {
-        let skip = if rest.starts_with("//") {
-            rest.find('\n').unwrap_or(rest.len())
-        } else if rest.starts_with("/*") {
-            rest.find("*/").map_or(rest.len(), |end| end + 2)
-        } else if rest.starts_with("'\"'") {
-            3
-        } else if rest.starts_with("'\\\"'") {
-            4
-        } else if let Some(hashes) = raw_string(rest) {
-            let close = format!("\"{}", "#".repeat(hashes));
-            let body = 2 + hashes;
-            rest[body..].find(&close).map_or(rest.len(), |end| body + end + close.len())
-        } else if c == '"' {
-            string_length(rest)
-        } else {
-            code.push(c);
-            rest = &rest[c.len_utf8()..];
-            continue;
-        };
-        code.push(' ');
-        rest = &rest[skip..];
-    }
-    code
-}
-
-/// The number of hashes of a raw string that starts here.
-fn raw_string(text: &str) -> Option<usize> {
-    let tail = text.strip_prefix('r')?;
-    let hashes = tail.len() - tail.trim_start_matches('#').len();
-    tail[hashes..].starts_with('"').then_some(hashes)
-}
-
-/// Bytes of the string literal that starts here, quotes included.
-fn string_length(text: &str) -> usize {
-    let mut escaped = false;
-    for (i, c) in text.char_indices().skip(1) {
-        match c {
-            '"' if !escaped => return i + 1,
-            '\\' => escaped = !escaped,
-            _ => escaped = false,
-        }
-    }
-    text.len()
-}
-
-/// Top-level modules that a source file names, by `crate::`, by as many `super::` as lead there,
-/// or in braces after either. `depth` is the number of modules that the file is nested in.
-fn imports(text: &str, depth: usize) -> Vec<String> {
-    let code: String = code_of(text).split_whitespace().collect::<Vec<_>>().join(" ");
-    let code = code.replace(" ::", "::").replace(":: ", "::");
-    let mut found = Vec::new();
-    for (at, _) in code.match_indices("crate::") {
-        let own = !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == '$');
-        if own {
-            found.extend(heads(&code[at + "crate::".len()..]));
-        }
-    }
-    // An inline module is one level deeper than its file, so `depth` supers may not reach the top;
-    // to read them as if they did can only report a name that is a layer's and no sibling's.
-    let climb = "super::".repeat(depth);
-    for (at, _) in code.match_indices(&climb) {
-        let tail = &code[at + climb.len()..];
-        found.extend(heads(tail.trim_start_matches("super::")));
-    }
-    found
-}
-
-/// First segments of a path, or of each path in braces.
-fn heads(path: &str) -> Vec<String> {
-    let identifier = |text: &str| -> String {
-        text.trim_start().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect()
+/// Imports against the direction: a file, and the file of a lower layer that it must not know.
+fn violations(layers: &[String], sources: &Sources) -> Vec<(PathBuf, PathBuf)> {
+    let rank = |file: &Path| {
+        let top = file.iter().next().expect("a path is not empty");
+        let top = top.to_str().expect("names are ASCII").trim_end_matches(".rs");
+        layers.iter().position(|layer| layer == top)
     };
-    let Some(inner) = path.strip_prefix('{') else {
-        return vec![identifier(path)];
+    let against =
+        |(from, to): &(&Path, &Path)| matches!((rank(from), rank(to)), (Some(a), Some(b)) if a < b);
+    let found = sources.imports().into_iter().filter(against);
+    found.map(|(from, to)| (from.into(), to.into())).collect()
+}
+
+/// Sets of files each of which imports every other one, directly or by way of others.
+fn circles(sources: &Sources) -> BTreeSet<BTreeSet<PathBuf>> {
+    let imports = sources.imports();
+    let reached = |from| {
+        let (mut reached, mut open) = (BTreeSet::new(), vec![from]);
+        while let Some(file) = open.pop() {
+            let next = imports.iter().filter(|(from, _)| *from == file).map(|(_, to)| *to);
+            open.extend(next.filter(|to| reached.insert(*to)));
+        }
+        reached
     };
-    let (mut names, mut depth) = (vec![identifier(inner)], 0);
-    for (i, c) in inner.char_indices() {
-        match c {
-            '{' => depth += 1,
-            '}' if depth == 0 => break,
-            '}' => depth -= 1,
-            ',' if depth == 0 => names.push(identifier(&inner[i + 1..])),
-            _ => {}
-        }
-    }
-    names
+    let reach: BTreeMap<&Path, BTreeSet<&Path>> =
+        sources.files().into_iter().map(|file| (file, reached(file))).collect();
+    let mutual = |file: &Path| -> BTreeSet<PathBuf> {
+        let back = reach[file].iter().filter(|other| reach[**other].contains(file));
+        back.map(|other| other.to_path_buf()).collect()
+    };
+    reach.keys().map(|file| mutual(file)).filter(|circle| !circle.is_empty()).collect()
 }
 
-/// Imports against the direction: the file's layer and the layer that it must not know.
-fn violations(layers: &[String], files: &[(PathBuf, String)]) -> Vec<(PathBuf, String)> {
-    let rank = |name: &str| layers.iter().position(|l| l == name);
-    let mut found = Vec::new();
-    for (path, text) in files {
-        let mut modules: Vec<&str> =
-            path.iter().map(|part| part.to_str().expect("names are ASCII")).collect();
-        let file = modules.pop().expect("a path is not empty");
-        let stem = file.trim_end_matches(".rs");
-        if stem != "mod" {
-            modules.push(stem);
-        }
-        let Some(own) = rank(modules[0]) else {
-            continue;
-        };
-        for import in imports(text, modules.len()) {
-            if rank(&import).is_some_and(|other| other > own) {
-                found.push((path.clone(), import));
-            }
-        }
-    }
-    found
-}
-
-/// All Rust sources below `folder`, with paths relative to `root`.
-fn sources(folder: &Path, root: &Path, into: &mut Vec<(PathBuf, String)>) {
+/// All Rust sources below `folder`, by their paths relative to `root`.
+fn texts(folder: &Path, root: &Path, into: &mut BTreeMap<PathBuf, String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         if path.is_dir() {
-            sources(&path, root, into);
+            texts(&path, root, into);
         } else if path.extension().is_some_and(|e| e == "rs") {
             let relative = path.strip_prefix(root).unwrap().to_path_buf();
-            into.push((relative, fs::read_to_string(&path).unwrap()));
+            into.insert(relative, fs::read_to_string(&path).unwrap());
         }
     }
+}
+
+/// The sources of this crate, and their texts.
+fn own() -> (Sources, BTreeMap<PathBuf, String>) {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut all = BTreeMap::new();
+    texts(&root, &root, &mut all);
+    (Sources::new(&all), all)
 }
 
 #[test]
 fn no_module_imports_one_below_it() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
-    let lib = fs::read_to_string(root.join("lib.rs")).unwrap();
-    let layers = layers(&lib);
+    let (sources, texts) = own();
+    let lib = &texts[Path::new("lib.rs")];
+    let layers = layers(lib);
     let declared: Vec<&str> = lib
         .lines()
         .filter_map(|line| line.trim_start_matches("pub ").strip_prefix("mod ")?.strip_suffix(';'))
         .collect();
     assert_eq!(layers, declared, "the table of layers lists the modules in their order");
-    let mut files = Vec::new();
-    sources(&root, &root, &mut files);
-    assert!(files.len() >= layers.len(), "found {} files only", files.len());
-    let found = violations(&layers, &files);
+    let found = violations(&layers, &sources);
     assert!(found.is_empty(), "imports against the direction: {found:#?}");
+}
+
+#[test]
+fn no_files_import_each_other() {
+    let (sources, texts) = own();
+    // All but the program's own file and what only tests declare.
+    let (read, imports) = (sources.files().len(), sources.imports().len());
+    assert!(10 * read > 9 * texts.len() && imports > 2 * read, "{read} files, {imports} imports");
+    let mut found = circles(&sources);
+    found.retain(|circle| {
+        let names: BTreeSet<&str> = circle.iter().map(|f| f.to_str().expect("ASCII")).collect();
+        !KNOWN_CIRCLES.iter().any(|known| names.iter().all(|name| known.contains(name)))
+    });
+    for circle in &found {
+        for (from, to) in sources.imports() {
+            if circle.contains(from) && circle.contains(to) {
+                println!("{} imports {}", from.display(), to.display());
+            }
+        }
+    }
+    assert!(found.is_empty(), "files that import each other: {found:#?}");
+}
+
+/// Sources from pairs of path and text; a file that no text of them declares is not read.
+fn planted(files: &[(&str, &str)]) -> Sources {
+    Sources::new(&files.iter().map(|(path, text)| (path.into(), text.to_string())).collect())
 }
 
 #[test]
 fn planted_violations_are_found() {
     let layers: Vec<String> = ["base", "kernels", "body", "cli"].map(String::from).to_vec();
+    let all = [
+        ("lib.rs", "pub mod base; pub mod kernels; pub mod body; pub mod cli;"),
+        ("kernels.rs", "pub fn love() {}"),
+        ("body/mod.rs", "mod model; pub use model::{A, EdgeModel}; pub struct B;"),
+        ("body/model.rs", "pub struct A; pub enum EdgeModel { C }"),
+        ("cli/mod.rs", "pub fn run() {}"),
+    ];
     for (path, text, wanted) in [
-        ("base/error.rs", "use crate::body::EdgeModel;", vec!["body"]),
-        ("base/mod.rs", "fn f() { crate::cli::run() }", vec!["cli"]),
-        ("base/mod.rs", "use crate::{base::Error, body::{A, B}, cli};", vec!["body", "cli"]),
-        ("base/mod.rs", "use crate::{\n    kernels as k,\n};", vec!["kernels"]),
-        ("base/mod.rs", "use super::body;", vec!["body"]),
-        ("base/error.rs", "use super::super::{body};", vec!["body"]),
+        ("base/error.rs", "use crate::body::EdgeModel;", vec!["body/model.rs"]),
+        ("base/error.rs", "fn f() { crate::cli::run() }", vec!["cli/mod.rs"]),
+        (
+            "base/error.rs",
+            "use crate::{base::Error, body::{A, B}, cli};",
+            vec!["body/mod.rs", "body/model.rs", "cli/mod.rs"],
+        ),
+        (
+            "base/mod.rs",
+            "use crate::{\n    kernels as k,\n}; fn f() { k::love() }",
+            vec!["kernels.rs"],
+        ),
+        ("base/mod.rs", "use super::body;", vec!["body/mod.rs"]),
+        ("base/error.rs", "use super::super::{body};", vec!["body/mod.rs"]),
         ("base/error.rs", "use super::body;", vec![]),
-        ("body/model.rs", "use crate::base::Result; use crate::kernels::love;", vec![]),
+        ("base/mod.rs", "pub use crate::body::B as D;", vec!["body/mod.rs"]),
+        ("base/mod.rs", "mod inner { use super::super::cli::run; }", vec!["cli/mod.rs"]),
+        ("base/mod.rs", "#[cfg(test)] mod tests { use crate::cli; }", vec![]),
         (
             "base/mod.rs",
             "//! see [`crate::cli`]\n/* crate::cli */ const S: &str = \"crate::cli\";",
             vec![],
         ),
-        ("base/mod.rs", "const S: &str = \"\\\"\"; use crate::cli;", vec!["cli"]),
+        ("base/mod.rs", "const S: &str = \"\\\"\"; use crate::cli;", vec!["cli/mod.rs"]),
         ("base/mod.rs", "const S: &str = r#\"\"crate::cli\"#; const C: char = '\"';", vec![]),
-        ("main.rs", "use edgeline::cli;", vec![]),
+        ("base/mod.rs", "fn f<'a>(c: &'a str) { crate::cli::run() }", vec!["cli/mod.rs"]),
     ] {
-        let files = [(PathBuf::from(path), text.to_string())];
-        let found: Vec<String> = violations(&layers, &files).into_iter().map(|(_, m)| m).collect();
+        let base = match path {
+            "base/mod.rs" => text.to_string(),
+            _ => "mod error;".to_string(),
+        };
+        let mut files = all.to_vec();
+        files.extend([("base/mod.rs", base.as_str()), (path, text)]);
+        let found = violations(&layers, &planted(&files));
+        let found: Vec<&str> = found.iter().map(|(_, to)| to.to_str().unwrap()).collect();
         assert_eq!(found, wanted, "{path}: {text}");
     }
+}
+
+#[test]
+fn planted_circles_are_found() {
+    const BOTH: &[&str] = &["m/a.rs", "m/b.rs"];
+    for (module, one, other, wanted) in [
+        ("mod a; mod b;", "use super::b::B; pub struct A;", "use super::a::A; pub struct B;", BOTH),
+        (
+            "pub mod a; mod b; pub use a::A;",
+            "use super::b::B; pub struct A;",
+            "use super::A; pub struct B;",
+            BOTH,
+        ),
+        (
+            "mod a; mod b; pub use a::A;",
+            "fn f(b: super::b::B) {} pub struct A;",
+            "use crate::m::A; pub struct B;",
+            BOTH,
+        ),
+        (
+            "mod a; mod b; pub use a::*;",
+            "use super::b::B; pub struct A;",
+            "use super::A; pub struct B;",
+            BOTH,
+        ),
+        (
+            "mod a; mod b; pub use a::A as C;",
+            "use super::b; pub struct A; fn f() { b::g::<A>() }",
+            "use super::C; pub fn g() {}",
+            BOTH,
+        ),
+        (
+            "mod a; mod b; pub use a::A;",
+            "use super::b; pub struct A; fn f() { b::g() }",
+            "use super::*; pub fn g() {}",
+            BOTH,
+        ),
+        (
+            "mod a; mod b; pub use a::A; pub use b::B;",
+            "use super::B; pub struct A;",
+            "pub struct B;",
+            &[],
+        ),
+        (
+            "mod a; mod b;",
+            "pub struct A; #[cfg(test)] mod tests { use super::super::b::B; }",
+            "use super::a::A; pub struct B;",
+            &[],
+        ),
+        (
+            "mod a; mod b; pub struct C; use a::f;",
+            "use super::C; pub fn f() {}",
+            "use super::C;",
+            &["m/a.rs", "m/mod.rs"],
+        ),
+    ] {
+        let files =
+            [("lib.rs", "mod m;"), ("m/mod.rs", module), ("m/a.rs", one), ("m/b.rs", other)];
+        let wanted: BTreeSet<PathBuf> = wanted.iter().map(PathBuf::from).collect();
+        let wanted = [wanted].into_iter().filter(|circle| !circle.is_empty()).collect();
+        assert_eq!(circles(&planted(&files)), wanted, "{module} | {one} | {other}");
+    }
+    // By way of a third file, and with the file that declares them.
+    let three = [
+        ("lib.rs", "mod a; mod b; mod c;"),
+        ("a.rs", "use crate::b::B; pub struct A;"),
+        ("b.rs", "use crate::c::C; pub struct B;"),
+        ("c.rs", "use crate::a::A; pub struct C;"),
+    ];
+    let names = ["a.rs", "b.rs", "c.rs"].map(PathBuf::from);
+    assert_eq!(circles(&planted(&three)), BTreeSet::from([BTreeSet::from(names)]));
+    let parent = [
+        ("lib.rs", "mod page;"),
+        ("page.rs", "mod part; pub struct Page; fn f() { part::g() }"),
+        ("page/part.rs", "use super::Page; pub fn g() {}"),
+    ];
+    let names = ["page.rs", "page/part.rs"].map(PathBuf::from);
+    assert_eq!(circles(&planted(&parent)), BTreeSet::from([BTreeSet::from(names)]));
 }

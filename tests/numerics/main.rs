@@ -3,6 +3,7 @@
 mod analytic;
 mod common;
 mod ends;
+mod imports;
 mod layering;
 mod scenes;
 mod verification;
