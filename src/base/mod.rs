@@ -1,8 +1,12 @@
-//! Materials, Hertz scales, the stress tensor, graded axes, wavenumbers, quadrature and the error type.
+//! Materials, Hertz scales, the stress tensor, graded axes, wavenumbers, quadrature, the error type, and
+//! numbers as text.
 
 mod error;
 pub mod linear;
 mod material;
+// The numerics alone print nothing.
+#[cfg(feature = "cli")]
+pub(crate) mod number;
 mod panels;
 mod quadrature;
 mod scales;

@@ -1,6 +1,7 @@
 //! `edgeline doctor`: what is installed, and what would have to be.
 
 use super::{Outcome, print, print_json};
+use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::builtin_case;
@@ -90,8 +91,8 @@ fn text(findings: &Value, fast_blas: bool) -> String {
     let mut lines = vec![
         format!("edgeline {}", or(&findings["version"], "")),
         format!(
-            "semi-analytical solver: works ({:.1} ms for a built-in case)",
-            findings["solver"]["milliseconds"].as_f64().unwrap_or(f64::NAN)
+            "semi-analytical solver: works ({} for a built-in case)",
+            duration(findings["solver"]["milliseconds"].as_f64().unwrap_or(f64::NAN) * 1e-3)
         ),
         format!("recorded finite-element cases: {}", findings["records"]),
         format!("gmsh: {}", or(&fem["gmsh"], "not found")),

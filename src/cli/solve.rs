@@ -1,6 +1,7 @@
 //! `edgeline solve`: one case by one edge model.
 
 use super::{Outcome, print, print_json};
+use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -186,10 +187,10 @@ fn text(case: &Case, found: &Solution, arguments: &Arguments) -> String {
         ));
     }
     lines.push(format!(
-        "  {} iterations, load met to {:.0e}, {:.1} ms",
+        "  {} iterations, load met to {:.0e}, {}",
         found.iterations,
         found.load_error_rel,
-        found.seconds.total * 1e3
+        duration(found.seconds.total)
     ));
     let points = if arguments.points.is_some() { ", points.csv" } else { "" };
     let field = if arguments.field { ", the fields (*.vtr) and their contours" } else { "" };

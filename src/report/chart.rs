@@ -5,6 +5,7 @@
 //! mean "ink" and "paper" are written as [`INK`] and [`PAPER`], which the page replaces by its own
 //! scheme's.
 
+use crate::base::number::{fixed, significant, with_minus_signs};
 use plotters::coord::Shift;
 use plotters::element::DashedPathElement;
 use plotters::prelude::*;
@@ -286,10 +287,10 @@ fn tick(value: f64, step: f64) -> String {
         return "0".to_string();
     }
     if step.abs() < 0.99e-5 || value.abs() >= 1e5 {
-        return format!("{value:.1e}").replace(".0e", "e").replace('-', "\u{2212}");
+        return with_minus_signs(&significant(value, 2));
     }
     let digits = (-step.abs().log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:.digits$}").replace('-', "\u{2212}")
+    with_minus_signs(&fixed(value, digits))
 }
 
 /// A round step that divides a range into about `parts` parts.

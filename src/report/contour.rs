@@ -6,7 +6,7 @@
 //! order; lines between the bands carry it too.
 
 use super::chart::{INK, PAPER};
-use super::page::short;
+use crate::base::number::{significant, with_minus_signs};
 use plotters::coord::Shift;
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -159,7 +159,7 @@ impl Plane {
             if i % 2 == 0 || i + 1 == BANDS {
                 let i = if i + 1 == BANDS { BANDS } else { i };
                 let style = text(12, HPos::Left, VPos::Center);
-                root.draw(&Text::new(short3(level(i)), (bar + 24, y(i)), style))?;
+                root.draw(&Text::new(significant(level(i), 3), (bar + 24, y(i)), style))?;
             }
         }
         root.draw(&Rectangle::new([(bar, TOP), (bar + 18, bottom)], INK.stroke_width(1)))?;
@@ -195,7 +195,7 @@ impl Plane {
                 root.draw(&PathElement::new(vec![(x - size, y), (x + size, y)], style))?;
                 root.draw(&PathElement::new(vec![(x, y - size), (x, y + size)], style))?;
             }
-            let name = format!("max {}", short3(m.value));
+            let name = format!("max {}", significant(m.value, 3));
             let width = 8 * name.len() as i32;
             let left = if x + 14 + width < right { x + 12 } else { x - 16 - width };
             let top = (y + 8).min(bottom - 22).max(TOP + 4);
@@ -284,13 +284,6 @@ impl Plane {
     }
 }
 
-/// Three significant digits.
-fn short3(value: f64) -> String {
-    let digits = if value == 0.0 { 0 } else { 2 - value.abs().log10().floor() as i32 };
-    let scale = 10f64.powi(digits);
-    short((value * scale).round() / scale)
-}
-
 /// Round numbers over a range, five or so.
 fn ticks((low, high): (f64, f64)) -> Vec<(f64, String)> {
     let rough = (high - low) / 5.0;
@@ -301,7 +294,10 @@ fn ticks((low, high): (f64, f64)) -> Vec<(f64, String)> {
     let step = decade * factor;
     let first = (low / step - 1e-9).ceil() as i64;
     let last = (high / step + 1e-9).floor() as i64;
-    (first..=last).map(|i| i as f64 * step).map(|v| (v, short3(v).replace('-', "−"))).collect()
+    (first..=last)
+        .map(|i| i as f64 * step)
+        .map(|v| (v, with_minus_signs(&significant(v, 3))))
+        .collect()
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! The outcomes of gates as a table, as Markdown, as JUnit XML and as JSON.
 
-use super::page::short;
+use crate::base::number::significant;
 use crate::study::gate::Outcome;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// A number of an outcome, or a dash.
 fn number(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_string(), short)
+    value.map_or_else(|| "-".to_string(), |v| significant(v, 5))
 }
 
 /// How many gates hold, in words.
@@ -31,7 +31,7 @@ pub fn table(outcomes: &[Outcome]) -> String {
             o.name.clone(),
             o.method.clone(),
             number(o.value),
-            short(o.limit),
+            significant(o.limit, 5),
             number(o.margin),
             o.compared.to_string(),
             if o.passed { "yes" } else { "NO" }.to_string(),
@@ -68,7 +68,7 @@ pub fn markdown(outcomes: &[Outcome]) -> String {
     sorted.sort_by_key(|o| o.passed);
     for o in sorted {
         let holds = if o.passed { "yes" } else { "**NO**" };
-        let (value, limit, margin) = (number(o.value), short(o.limit), number(o.margin));
+        let (value, limit, margin) = (number(o.value), significant(o.limit, 5), number(o.margin));
         let note = o.note.replace('|', "/").replace('\n', " ");
         writeln!(
             text,
@@ -94,7 +94,7 @@ pub fn junit(outcomes: &[Outcome]) -> String {
         let state = format!(
             "value {}, limit {}, {} compared; {}",
             number(o.value),
-            short(o.limit),
+            significant(o.limit, 5),
             o.compared,
             o.note
         );

@@ -3,7 +3,9 @@
 use super::plots;
 use super::study_files::StudyFiles;
 use super::table::Table;
-use super::verdict::{duration, duration_with_spread, rounded};
+use crate::base::number::{
+    duration, duration_with_spread, fixed, rounded, significant, with_minus_signs,
+};
 use crate::base::{Error, Result};
 use crate::host::{prepare_folder, write_set};
 use minijinja::{Environment, context};
@@ -89,8 +91,9 @@ fn render(
 ) -> Result<String> {
     let mut environment = Environment::new();
     let dash = || "–".to_string();
-    environment
-        .add_filter("p0", move |v: minijinja::Value| as_number(&v).map_or_else(dash, four_digits));
+    environment.add_filter("p0", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| with_minus_signs(&fixed(v, 4)))
+    });
     environment
         .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));
     environment.add_filter("typeset", |text: String| typeset(&text));
@@ -105,7 +108,7 @@ fn render(
         }
     });
     environment.add_filter("short", move |v: minijinja::Value| {
-        as_number(&v).map_or_else(dash, |v| short(v).replace('-', "−"))
+        as_number(&v).map_or_else(dash, |v| with_minus_signs(&significant(v, 5)))
     });
     let fault = |e: minijinja::Error| Error::File {
         path: name.into(),
@@ -133,12 +136,6 @@ fn render(
         .map_err(fault)
 }
 
-/// Four digits after the point; what rounds to zero has no sign.
-fn four_digits(value: f64) -> String {
-    let text = format!("{value:.4}");
-    if text == "-0.0000" { "0.0000".to_string() } else { text.replace('-', "−") }
-}
-
 /// Minus signs instead of hyphens before digits, which also keeps lines from breaking there.
 fn typeset(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -154,25 +151,6 @@ fn typeset(text: &str) -> String {
 
 fn as_number(value: &minijinja::Value) -> Option<f64> {
     f64::try_from(value.clone()).ok().filter(|v| v.is_finite())
-}
-
-/// Up to five significant digits, without an exponent where that stays short.
-pub fn short(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_string();
-    }
-    let magnitude = value.abs().log10().floor() as i32;
-    if !(-4..6).contains(&magnitude) {
-        let text = format!("{value:.3e}");
-        let (digits, exponent) = text.split_once('e').unwrap_or((&text, "0"));
-        return format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.'));
-    }
-    let text = format!("{value:.*}", (4 - magnitude).max(0) as usize);
-    if text.contains('.') {
-        text.trim_end_matches('0').trim_end_matches('.').to_string()
-    } else {
-        text
-    }
 }
 
 /// A plot in the colours of the page, which follow the reader's scheme.
@@ -327,7 +305,7 @@ fn details(files: &StudyFiles) -> Option<Value> {
             }
             Value::Number(n) => {
                 let text = n.as_u64().map_or_else(
-                    || n.as_f64().map_or_else(String::new, short),
+                    || n.as_f64().map_or_else(String::new, |v| significant(v, 5)),
                     |whole| whole.to_string(),
                 );
                 all.push((prefix.to_string(), text));
@@ -527,7 +505,8 @@ fn explorer_data(files: &StudyFiles) -> Value {
     })
 }
 
-fn fixed(value: f64) -> Value {
+/// A number of the explorer's data, five digits after the point.
+fn rounded_off(value: f64) -> Value {
     json!((value * 1e5).round() / 1e5)
 }
 
@@ -549,7 +528,7 @@ fn case_data(files: &StudyFiles, case: &Value, quantities: &[&str]) -> Value {
             || json!({ "points": [], "owner": source, "values": {}, "fem_error": {} }),
         );
         if curve["owner"] == source && part == "values" {
-            let point: Vec<Value> = at.iter().map(|v| fixed(v / c_m)).collect();
+            let point: Vec<Value> = at.iter().map(|v| rounded_off(v / c_m)).collect();
             curve["points"].as_array_mut().expect("made above").push(json!(point));
         }
         let holder = if part == "values" {
@@ -560,7 +539,7 @@ fn case_data(files: &StudyFiles, case: &Value, quantities: &[&str]) -> Value {
         };
         for (quantity, value) in values {
             let list = holder.entry(quantity).or_insert_with(|| json!([]));
-            list.as_array_mut().expect("a list").push(fixed(value / p0_pa));
+            list.as_array_mut().expect("a list").push(rounded_off(value / p0_pa));
         }
     };
     let pressure = &files.pressure;
@@ -608,7 +587,7 @@ fn case_data(files: &StudyFiles, case: &Value, quantities: &[&str]) -> Value {
         let slot = &mut of_curve[text("quantity")];
         // Pressure has a row for each range; the first is the one of the summaries.
         if slot.get(text("method")).is_none() {
-            let get = |column| errors_table.number(row, column).map_or(Value::Null, fixed);
+            let get = |column| errors_table.number(row, column).map_or(Value::Null, rounded_off);
             slot[text("method")] = json!({ "max": get("max"), "rms": get("rms"), "l1": get("l1") });
             let own = get("fem_error_max");
             if !own.is_null() {
@@ -618,9 +597,9 @@ fn case_data(files: &StudyFiles, case: &Value, quantities: &[&str]) -> Value {
     }
     let label = format!(
         "{name} (W {}, S_l {}, L_r {})",
-        short(number(&case["W"])),
-        short(number(&case["S_l"])),
-        short(number(&case["L_r"]))
+        significant(number(&case["W"]), 5),
+        significant(number(&case["S_l"]), 5),
+        significant(number(&case["L_r"]), 5)
     );
     json!({
         "name": name,

@@ -3,6 +3,7 @@
 
 use super::table::{self, Table, number, optional};
 use super::verdict;
+use crate::base::number::significant;
 use crate::base::{Error, Result};
 use crate::study::bench::Speedup;
 use crate::study::effects::{self, Effects};
@@ -67,10 +68,8 @@ const STRESS_COLUMNS: [&str; 13] = [
     "tau_max_pa",
 ];
 
-/// Number that was computed from factors, without the last digits' rounding.
-fn tidy(value: f64) -> String {
-    format!("{value:.9e}").parse::<f64>().map_or_else(|_| value.to_string(), |v| v.to_string())
-}
+/// Significant digits of what was computed from factors: fewer than rounding leaves.
+const FACTOR_DIGITS: usize = 10;
 
 impl StudyFiles {
     /// The tables of a run.
@@ -236,9 +235,9 @@ impl<'a> Row<'a> {
         row.set("case", &case.case.name);
         row.set("source", source);
         row.set("role", role_name(&case.role));
-        row.set("W", &tidy(factors.load));
-        row.set("S_l", &tidy(factors.slenderness));
-        row.set("L_r", &tidy(factors.length_ratio));
+        row.set("W", &significant(factors.load, FACTOR_DIGITS));
+        row.set("S_l", &significant(factors.slenderness, FACTOR_DIGITS));
+        row.set("L_r", &significant(factors.length_ratio, FACTOR_DIGITS));
         row.set("c_m", &number(hertz.c_m));
         row.set("p0_pa", &number(hertz.p0_pa));
         row.set("load_n", &number(case.case.force_n));
@@ -460,7 +459,7 @@ fn errors_table(run: &StudyRun) -> Table {
     for e in answers.flat_map(|a| &a.errors) {
         let mut row: Vec<String> =
             [&e.case, &e.method, &e.body, &e.curve, &e.quantity].map(String::clone).to_vec();
-        row.extend([tidy(e.excluded_c), e.points.to_string(), number(e.max)]);
+        row.extend([significant(e.excluded_c, FACTOR_DIGITS), e.points.to_string(), number(e.max)]);
         row.extend(e.max_at.map(number));
         row.extend([number(e.rms), number(e.l1), number(e.peak)]);
         row.extend(e.peak_at.map(number));

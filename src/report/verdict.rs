@@ -1,5 +1,6 @@
 //! The verdict of a study in words, from its summary.
 
+use crate::base::number::{duration, fixed, rounded, significant};
 use serde_json::Value;
 
 /// Sentences for the head of a report, the most important first.
@@ -46,7 +47,7 @@ pub fn sentences(summary: &Value) -> Vec<String> {
 
 /// Four digits after the point; smaller numbers as such.
 fn fraction(v: f64) -> String {
-    if v != 0.0 && v.abs() < 5e-5 { format!("{v:.0e}") } else { format!("{v:.4}") }
+    if v != 0.0 && v.abs() < 5e-5 { significant(v, 1) } else { fixed(v, 4) }
 }
 
 fn gates(summary: &Value) -> String {
@@ -133,43 +134,6 @@ fn equal_error(summary: &Value) -> Option<String> {
     ))
 }
 
-/// Two significant digits with thousands apart.
-pub fn rounded(value: f64) -> String {
-    if value < 9.95 {
-        return format!("{value:.1}").trim_end_matches(".0").to_string();
-    }
-    let scale = 10f64.powi(value.abs().max(1.0).log10().floor() as i32 - 1);
-    let whole = ((value / scale).round() * scale) as u64;
-    let digits = whole.to_string();
-    let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
-    groups.join(",")
-}
-
-/// Seconds with a fitting unit.
-pub fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
-        s if s < 0.1 => format!("{:.1} ms", s * 1e3),
-        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
-        s if s < 10.0 => format!("{s:.1} s"),
-        s => format!("{s:.0} s"),
-    }
-}
-
-/// Seconds with their +-, both in the unit that fits the first, to two digits of the second.
-pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
-    let (unit, name) = match seconds {
-        s if s < 1e-3 => (1e6, "µs"),
-        s if s < 1.0 => (1e3, "ms"),
-        _ => (1.0, "s"),
-    };
-    let (value, spread) = (seconds * unit, spread * unit);
-    let digits =
-        if spread > 0.0 { (1.0 - spread.log10().floor()).clamp(0.0, 3.0) as usize } else { 1 };
-    format!("{value:.digits$} ± {spread:.digits$} {name}")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,19 +172,5 @@ mod tests {
         assert!(text.contains("2,100 ± 42 to 8,000 ± 160 times as long"), "{text}");
         assert!(text.ends_with("(2 cases)."), "{text}");
         assert!(equal_error(&json!({ "speedups": [] })).is_none());
-    }
-
-    #[test]
-    fn times_and_ratios_read_well() {
-        assert_eq!(
-            [4.2e-5, 0.0123, 0.27, 3.21, 45.4].map(duration),
-            ["42 µs", "12.3 ms", "270 ms", "3.2 s", "45 s"]
-        );
-        let pairs = [(7.7, 0.234), (0.163, 0.0588), (4.2e-5, 9e-7), (12.0, 0.0)];
-        assert_eq!(
-            pairs.map(|(seconds, spread)| duration_with_spread(seconds, spread)),
-            ["7.70 ± 0.23 s", "163 ± 59 ms", "42.00 ± 0.90 µs", "12.0 ± 0.0 s"]
-        );
-        assert_eq!([14_234.0, 950.4, 3.0, 0.24].map(rounded), ["14,000", "950", "3", "0.2"]);
     }
 }

@@ -4,6 +4,7 @@ use super::factorial::{self, Analysis, Verdict};
 use super::run::{CaseRun, MethodRun, Role, StudyRun};
 use super::sampled::Quantity;
 use super::timing::Ratio;
+use crate::base::number::significant;
 use crate::body::EdgeModel;
 
 /// A number per case and method whose dependence on the factors is analysed.
@@ -147,20 +148,6 @@ pub fn term(run_factors: &[super::run::Factor], factors: &[usize]) -> String {
     factors.iter().map(|&i| run_factors[i].name).collect::<Vec<_>>().join(" x ")
 }
 
-/// A number with three significant digits, without an exponent where that stays short.
-fn short(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_string();
-    }
-    let digits = (2 - value.abs().log10().floor() as i32).clamp(0, 6);
-    let text = format!("{value:.*}", digits as usize);
-    if text.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') {
-        format!("{value:.1e}")
-    } else {
-        text
-    }
-}
-
 /// What matters for one response, in words.
 pub fn words(run: &StudyRun, effects: &Effects) -> String {
     let unit = effects.response.unit;
@@ -169,7 +156,7 @@ pub fn words(run: &StudyRun, effects: &Effects) -> String {
         "{}: the {} is {} {unit} on average over the {} corners",
         effects.method,
         effects.response.label,
-        short(analysis.mean),
+        significant(analysis.mean, 3),
         effects.corners.len(),
     );
     let mut ranked: Vec<_> = analysis.effects.iter().collect();

@@ -1,0 +1,113 @@
+//! Numbers as people read them: one way for each purpose.
+//!
+//! Files that programs read are written elsewhere: a CSV cell by `report::table::number`.
+
+/// At most `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and from
+/// 1e6 on, where plain digits would be hard to count.
+pub fn significant(value: f64, digits: usize) -> String {
+    if value == 0.0 || !value.is_finite() {
+        return format!("{}", value.abs());
+    }
+    let scientific = format!("{value:.*e}", digits - 1);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    // The exponent after rounding: 9.99996 has four digits before the point less than 10.
+    let magnitude: i32 = exponent.parse().unwrap_or(0);
+    if !(-4..6).contains(&magnitude) {
+        return format!("{}e{exponent}", without_trailing_zeros(mantissa));
+    }
+    let decimals = (digits as i32 - 1 - magnitude).max(0) as usize;
+    without_trailing_zeros(&format!("{value:.decimals$}")).to_string()
+}
+
+/// A fixed number of digits after the point; what rounds to zero has no sign.
+pub fn fixed(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    match text.strip_prefix('-') {
+        Some(rest) if rest.bytes().all(|b| b == b'0' || b == b'.') => rest.to_string(),
+        _ => text,
+    }
+}
+
+/// A ratio or a count: two significant digits, thousands apart, nothing below a tenth.
+pub fn rounded(value: f64) -> String {
+    if value < 9.95 {
+        return without_trailing_zeros(&fixed(value, 1)).to_string();
+    }
+    let scale = 10f64.powi(value.log10().floor() as i32 - 1);
+    let digits = (((value / scale).round() * scale) as u64).to_string();
+    let groups: Vec<&str> =
+        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(",")
+}
+
+/// Seconds with a fitting unit.
+pub fn duration(seconds: f64) -> String {
+    match seconds {
+        s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
+        s if s < 0.1 => format!("{:.1} ms", s * 1e3),
+        s if s < 1.0 => format!("{:.0} ms", s * 1e3),
+        s if s < 10.0 => format!("{s:.1} s"),
+        s => format!("{s:.0} s"),
+    }
+}
+
+/// Seconds with their +-, both in the unit that fits the first, to two digits of the second.
+pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
+    let (unit, name) = match seconds {
+        s if s < 1e-3 => (1e6, "µs"),
+        s if s < 1.0 => (1e3, "ms"),
+        _ => (1.0, "s"),
+    };
+    let (value, spread) = (seconds * unit, spread * unit);
+    let digits =
+        if spread > 0.0 { (1.0 - spread.log10().floor()).clamp(0.0, 3.0) as usize } else { 1 };
+    format!("{value:.digits$} ± {spread:.digits$} {name}")
+}
+
+/// A number's text with minus signs instead of hyphens.
+pub fn with_minus_signs(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+/// `1.50` as `1.5`, `2.0` as `2`; whole numbers as they are.
+fn without_trailing_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn digits_that_say_nothing_are_left_out() {
+        let texts = [0.0, -0.0, 12.5, 123_456.7, -0.000_123_456, 99_999.96, 0.1 + 0.2]
+            .map(|v| significant(v, 5));
+        assert_eq!(texts, ["0", "0", "12.5", "123457", "-0.00012346", "100000", "0.3"]);
+        let texts = [1e-5, 1.234e-5, -2.5e6, 999_999.9, 0.000_099_999_9].map(|v| significant(v, 3));
+        assert_eq!(texts, ["1e-5", "1.23e-5", "-2.5e6", "1e6", "0.0001"]);
+        assert_eq!([f64::NAN, f64::INFINITY].map(|v| significant(v, 3)), ["NaN", "inf"]);
+    }
+
+    #[test]
+    fn what_rounds_to_zero_has_no_sign() {
+        assert_eq!([-4e-5, -6e-5, 0.25].map(|v| fixed(v, 4)), ["0.0000", "-0.0001", "0.2500"]);
+        assert_eq!(with_minus_signs(&fixed(-1.0, 1)), "−1.0");
+    }
+
+    #[test]
+    fn times_and_ratios_read_well() {
+        assert_eq!(
+            [4.2e-5, 0.0123, 0.27, 3.21, 45.4].map(duration),
+            ["42 µs", "12.3 ms", "270 ms", "3.2 s", "45 s"]
+        );
+        let pairs = [(7.7, 0.234), (0.163, 0.0588), (4.2e-5, 9e-7), (12.0, 0.0)];
+        assert_eq!(
+            pairs.map(|(seconds, spread)| duration_with_spread(seconds, spread)),
+            ["7.70 ± 0.23 s", "163 ± 59 ms", "42.00 ± 0.90 µs", "12.0 ± 0.0 s"]
+        );
+        assert_eq!(
+            [1_423_456.0, 14_234.0, 950.4, 99.6, 3.0, 0.24].map(rounded),
+            ["1,400,000", "14,000", "950", "100", "3", "0.2"]
+        );
+    }
+}
