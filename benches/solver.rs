@@ -104,7 +104,10 @@ fn compliance_and_contact(c: &mut Criterion) {
             soundness: 1e-2,
         };
         c.bench_function(&format!("contact/flush, S_l/{slenderness}"), |b| {
-            b.iter(|| contact::solve(&compliance, &axis, &settings).expect("it converges"));
+            b.iter(|| {
+                contact::solve(&compliance, &axis, &contact::Straight, &settings)
+                    .expect("it converges")
+            });
         });
     }
     for model in EdgeModel::ALL {

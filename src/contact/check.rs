@@ -1,10 +1,10 @@
 //! What a solved contact has to satisfy, evaluated away from the points where it was solved.
 
-use super::solver::{Compliance, ContactSolution, Remainders, screened};
+use super::gap::Gap;
+use super::operator::{Compliance, LineOperator, Operator};
+use super::solution::ContactSolution;
 use crate::base::{Error, Panels, Result};
 use crate::kernels::strip;
-
-use std::f64::consts::PI;
 
 /// Places of the check across the contact, in half-widths of each node: none of them is a
 /// collocation point.
@@ -21,19 +21,19 @@ const END: f64 = 0.2;
 /// # Errors
 /// [`Error::Unsound`] with the law that is broken worst.
 pub(super) fn check(
-    compliance: &Compliance,
-    remainders: &Remainders,
-    axis: &Panels,
+    operator: &LineOperator,
+    gap: &dyn Gap,
     solution: &ContactSolution,
     tolerance: f64,
 ) -> Result<()> {
     let mut broken: [(f64, &'static str); 3] = [
         (0.0, "the deepest penetration (C^2 / 2 R)"),
         (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
-        (0.0, "the largest pull (p0)"),
+        (0.0, "the largest tensile traction between the bodies (p0)"),
     ];
+    let axis = operator.axis;
     let counted = axis.nodes().partition_point(|y| *y <= axis.end() - END).max(1);
-    for (t, gaps) in PLACES.iter().zip(gaps_of(compliance, remainders, axis, solution, &PLACES)) {
+    for (t, gaps) in PLACES.iter().zip(gaps_of(operator, gap, solution, &PLACES)) {
         for (gap, coefficients) in gaps[..counted].iter().zip(&solution.coefficients) {
             // A number that is none must not pass as small.
             let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
@@ -56,54 +56,31 @@ pub(super) fn check(
     })
 }
 
-/// Gaps between the bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places` from
+/// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places` from
 /// x = 0 in half-widths of each node: a row of all nodes for each place. Where a node carries no
 /// pressure its half-width is the one that its neighbours led to.
 pub fn gaps(
     compliance: &Compliance,
     axis: &Panels,
+    gap: &dyn Gap,
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
-    gaps_of(compliance, &Remainders::new(compliance, axis.len(), 0.0), axis, solution, places)
+    gaps_of(&LineOperator::new(compliance, axis, 0.0), gap, solution, places)
 }
 
-/// [`gaps`] with the compliance's remainders at hand.
+/// [`gaps`] with the operator at hand.
 fn gaps_of(
-    compliance: &Compliance,
-    remainders: &Remainders,
-    axis: &Panels,
+    operator: &LineOperator,
+    gap: &dyn Gap,
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
-    let mut gaps = vec![vec![0.0; axis.len()]; places.len()];
-    let fine = compliance.wavenumbers.fine();
-    let transforms: Vec<_> = fine.nodes().iter().map(|k| solution.transform(*k)).collect();
-    let mut amplitudes = vec![0.0; fine.len()];
-    for (i, a) in solution.half_widths.iter().enumerate() {
-        amplitudes.fill(0.0);
-        // All of them: what the solver leaves out is to be checked, too.
-        for j in 0..axis.len() {
-            let caused = remainders.entries(i, j).iter().zip(&transforms).map(|(e, t)| e * t[j]);
-            amplitudes.iter_mut().zip(caused).for_each(|(sum, caused)| *sum += caused);
-        }
-        for (row, t) in gaps.iter_mut().zip(places) {
-            let waves = fine.nodes().iter().zip(fine.weights()).zip(&amplitudes);
-            let waves = waves.map(|((k, w), s)| w / (PI * PI) * s * (k * t * a).cos());
-            row[i] = waves.sum();
-        }
-    }
-    let mut modes = Vec::new();
-    for (row, &t) in gaps.iter_mut().zip(places) {
-        for (i, gap) in row.iter_mut().enumerate() {
-            let (a, c) = (solution.half_widths[i], &solution.coefficients[i]);
-            modes.resize(c.len(), 0.0);
-            strip::logarithmic(a, t, &mut modes);
-            *gap += 2.0 / PI * modes.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
-            for ([cos, sin, _], weight) in screened(a, t) {
-                *gap += weight * sin * strip::pressure(1.0, c, cos);
-            }
-            *gap += (a * t).powi(2) - solution.approach;
+    let mut gaps = operator.displacements(solution, places);
+    for (row, t) in gaps.iter_mut().zip(places) {
+        let nodes = operator.axis.nodes().iter().zip(&solution.half_widths);
+        for (value, (y, a)) in row.iter_mut().zip(nodes) {
+            *value += gap.at(a * t, *y) - solution.approach;
         }
     }
     gaps
@@ -113,8 +90,9 @@ fn gaps_of(
 mod tests {
     use super::*;
     use crate::base::Wavenumbers;
-    use crate::contact::{ContactSettings, solve};
+    use crate::contact::{ContactSettings, Straight, solve};
     use nalgebra::DMatrix;
+    use std::f64::consts::PI;
 
     /// Endless bodies: C(k) = 2 pi / k.
     fn compliance(numbers: &Wavenumbers, n: usize) -> Vec<DMatrix<f64>> {
@@ -136,20 +114,20 @@ mod tests {
             max_iterations: 20,
             soundness: 1e-3,
         };
-        let solution = solve(&compliance, &axis, &settings).unwrap();
+        let solution = solve(&compliance, &axis, &Straight, &settings).unwrap();
         // Hertz: no gap within, and x sqrt(x^2 - 1) - ln(x + sqrt(x^2 - 1)) beyond.
         let places = [0.2, 0.8, 1.1, 3.0];
-        for (x, row) in places.iter().zip(gaps(&compliance, &axis, &solution, &places)) {
+        for (x, row) in places.iter().zip(gaps(&compliance, &axis, &Straight, &solution, &places)) {
             let root = (x * x - 1.0).max(0.0).sqrt();
             let want = if *x < 1.0 { 0.0 } else { x * root - (x + root).ln() };
             assert!(row.iter().all(|gap| (gap - want).abs() < 1e-4), "at {x}: {row:?}, {want}");
         }
 
-        let all = Remainders::new(&compliance, axis.len(), 0.0);
+        let all = LineOperator::new(&compliance, &axis, 0.0);
         let law = |change: &dyn Fn(&mut ContactSolution)| {
             let mut changed = solution.clone();
             change(&mut changed);
-            match check(&compliance, &all, &axis, &changed, 1e-3) {
+            match check(&all, &Straight, &changed, 1e-3) {
                 Err(Error::Unsound { law, value, .. }) => (law, value),
                 other => panic!("{other:?}"),
             }

@@ -3,15 +3,27 @@
 //! Conventions: lengths in units of C, pressures in units of p0. Along y the unknowns live at the
 //! nodes of an axis on [0, S_l]; across the contact the pressure at node j is
 //! p_j(x) = sum_m c_jm sqrt(1 - t^2) U_2m(t), t = x / a_j, with the half-width a_j an unknown too.
-//! The condition inside the contact is u(x, y) + x^2 = D, with
+//! The condition inside the contact is u(x, y) + gap(x, y) = D, with
 //!
 //! u_i(x) = (1 / pi^2) int_0^inf cos(k x) sum_j C_ij(k) p_j^(k) dk,
 //!
 //! C the compliance of both bodies together (sum of e_b times each body's f; a half-space's f is
 //! 2 K0(k|y|), whose row sums are 2 pi / k) and p^ the Fourier transform int p cos(k x) dx.
 
+mod approach;
 mod check;
+mod collocation;
+mod gap;
+mod layout;
+mod operator;
+mod settings;
+mod solution;
 mod solver;
 
+pub use approach::reference;
 pub use check::gaps;
-pub use solver::{Compliance, ContactSettings, ContactSolution, reference, solve};
+pub use gap::{Gap, Straight};
+pub use operator::{Compliance, LineOperator, Operator};
+pub use settings::ContactSettings;
+pub use solution::ContactSolution;
+pub use solver::solve;

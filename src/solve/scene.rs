@@ -192,7 +192,7 @@ impl SolvedScene {
             soundness: SOUNDNESS * scene.tolerance.max(Resolution::FINEST),
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
-        let contact = contact::solve(&compliance, &axis, &settings)?;
+        let contact = contact::solve(&compliance, &axis, &contact::Straight, &settings)?;
         let pressure =
             Pressure::new(axis, contact.half_widths.clone(), contact.coefficients.clone());
         let moments = pressure.moments(&wavenumbers);
@@ -246,7 +246,13 @@ impl SolvedScene {
     /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of `places`,
     /// distances from x = 0 in half-widths of each node.
     pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
-        contact::gaps(&self.compliance(), self.pressure.axis(), &self.contact, places)
+        contact::gaps(
+            &self.compliance(),
+            self.pressure.axis(),
+            &contact::Straight,
+            &self.contact,
+            places,
+        )
     }
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.

@@ -1,0 +1,67 @@
+//! The two bodies.
+
+use serde::{Deserialize, Serialize};
+use std::ops::{Index, IndexMut};
+
+/// One of the two bodies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum BodyKind {
+    /// The rectangular block.
+    Block,
+    /// The roller.
+    Roller,
+}
+
+impl BodyKind {
+    /// Both bodies, the block first.
+    pub const ALL: [BodyKind; 2] = [BodyKind::Block, BodyKind::Roller];
+
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            BodyKind::Block => "block",
+            BodyKind::Roller => "roller",
+        }
+    }
+}
+
+/// Something that each of the two bodies has.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct PerBody<T> {
+    /// The block's.
+    pub block: T,
+    /// The roller's.
+    pub roller: T,
+}
+
+impl<T> PerBody<T> {
+    /// The one of the block, then that of the roller.
+    pub fn iter(&self) -> impl Iterator<Item = &T> {
+        [&self.block, &self.roller].into_iter()
+    }
+
+    /// What `of` makes of either.
+    pub fn map<U>(&self, of: impl Fn(&T) -> U) -> PerBody<U> {
+        PerBody { block: of(&self.block), roller: of(&self.roller) }
+    }
+}
+
+impl<T> Index<BodyKind> for PerBody<T> {
+    type Output = T;
+    fn index(&self, body: BodyKind) -> &T {
+        match body {
+            BodyKind::Block => &self.block,
+            BodyKind::Roller => &self.roller,
+        }
+    }
+}
+
+impl<T> IndexMut<BodyKind> for PerBody<T> {
+    fn index_mut(&mut self, body: BodyKind) -> &mut T {
+        match body {
+            BodyKind::Block => &mut self.block,
+            BodyKind::Roller => &mut self.roller,
+        }
+    }
+}

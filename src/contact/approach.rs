@@ -1,0 +1,79 @@
+//! The approach of the bodies, relative to points at a depth.
+
+use super::operator::{Compliance, plane};
+use super::solution::ContactSolution;
+use crate::base::Panels;
+use nalgebra::{DVector, Matrix3, Vector3};
+use std::f64::consts::PI;
+
+/// Wavenumber (1/C) below which a displacement at a depth counts as its difference to the surface's.
+const LONG: f64 = 0.6;
+
+/// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
+/// the kernel e^(-k depth) the displacement's logarithmic growth with the extent of the bodies
+/// drops out of the difference to the approach.
+///
+/// So does what the contact's few nodes make of displacements like 1/k and ln k: below a wavenumber
+/// the sum over the same nodes is taken, less the integral of what fades on the way down.
+pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
+    let wavenumbers = compliance.wavenumbers;
+    let fine = wavenumbers.fine();
+    let numbers = fine.nodes();
+    // Interpolated is what the plane, screened part leaves, as in the contact itself.
+    let rests: Vec<DVector<f64>> = wavenumbers
+        .coarse()
+        .nodes()
+        .iter()
+        .zip(compliance.matrices)
+        .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
+        .collect();
+    let mean_at = |(i, &k): (usize, &f64)| -> f64 {
+        let transform = solution.transform(k);
+        let (first, shares) = wavenumbers.interpolation(i);
+        let rests = shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
+        plane(k) * transform.mean() + rests.sum::<f64>()
+    };
+    let means: Vec<f64> = numbers.iter().enumerate().map(mean_at).collect();
+    let first = fine.breaks()[1];
+    let top = fine.breaks().partition_point(|k| *k < LONG).min(fine.panel_count());
+    let top = fine.breaks()[top];
+    let below = numbers.partition_point(|k| *k < top);
+
+    // alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
+    let ends = [0, fine.order() / 2, fine.order() - 1];
+    let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
+    let system = Matrix3::from_fn(|i, j| rows[i][j]);
+    let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
+    let mean = |k: f64| {
+        if k < first {
+            return fit[0] / k + fit[1] + fit[2] * k.ln();
+        }
+        // k times the mean is smooth in ln k: 2 pi / k for waves shorter than the line.
+        let from = numbers.partition_point(|n| *n < k).saturating_sub(2).min(numbers.len() - 4);
+        let at: [f64; 4] = std::array::from_fn(|i| numbers[from + i].ln());
+        let term = |i: usize| -> f64 {
+            let basis = (0..4).filter(|j| *j != i).map(|j| (k.ln() - at[j]) / (at[i] - at[j]));
+            numbers[from + i] * means[from + i] * basis.product::<f64>()
+        };
+        (0..4).map(term).sum::<f64>() / k
+    };
+    // Panels that resolve e^(-k depth) and the fall of the mean.
+    let smallest = (1e-3 / depth).min(first);
+    let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;
+    let graded = |i| smallest * (top / smallest).powf(f64::from(i) / f64::from(steps));
+    let mut breaks: Vec<f64> = std::iter::once(0.0).chain((0..=steps).map(graded)).collect();
+    breaks.push(first);
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *a);
+    let own = Panels::new(breaks, 6);
+    let faded: f64 = own
+        .nodes()
+        .iter()
+        .zip(own.weights())
+        .map(|(&k, w)| -(-k * depth).exp_m1() * w * mean(k))
+        .sum();
+    let terms = || numbers.iter().zip(fine.weights()).zip(&means);
+    let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
+    let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
+    (long - faded + short) / (PI * PI)
+}

@@ -1,0 +1,182 @@
+//! The linear problem of a contact whose half-widths are held.
+
+use super::gap::Gap;
+use super::layout::Layout;
+use super::operator::{LineOperator, screened};
+use crate::base::{Error, Result, linear};
+use crate::kernels::strip;
+use multiversion::{multiversion, target::target_cfg_f};
+use nalgebra::{DMatrix, DVector};
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Points of a node, or modes of one, that are summed side by side.
+const TILE: usize = 4;
+type Tile = [f64; TILE];
+
+/// The linear problem for held half-widths: the unknowns of each node, then the approach.
+pub(super) struct Linear<'a> {
+    pub operator: &'a LineOperator<'a>,
+    pub gap: &'a dyn Gap,
+    pub layout: &'a Layout,
+    pub half_widths: &'a [f64],
+    pub slopes: &'a [f64],
+}
+
+impl Linear<'_> {
+    /// The unknowns that carry `load` (C p0).
+    pub fn solve(&self, load: f64) -> Result<DVector<f64>> {
+        let size = self.layout.size();
+        let mut matrix = DMatrix::zeros(size, size);
+        let mut right = DMatrix::zeros(size, 1);
+        self.add_waves(&mut matrix);
+        self.add_local(&mut matrix, &mut right);
+        right[size - 1] = load;
+        let solution = linear::solve(matrix, right).ok_or_else(|| Error::NotConverged {
+            iterations: 0,
+            residual: f64::INFINITY,
+            remedy: "the collocation matrix is singular: check the case's lengths".into(),
+        })?;
+        Ok(solution.column(0).into_owned())
+    }
+
+    /// Number of fine wavenumbers.
+    fn wavenumbers(&self) -> usize {
+        self.operator.compliance.wavenumbers.fine().len()
+    }
+
+    /// Adds what the remainders of the compliance displace.
+    fn add_waves(&self, matrix: &mut DMatrix<f64>) {
+        let (layout, all) = (self.layout, self.wavenumbers());
+        let nodes = 0..self.operator.axis.len();
+        let cosines: Vec<Vec<Tile>> = nodes.clone().map(|i| self.cosines(i)).collect();
+        for j in nodes {
+            let transforms = self.transforms(j);
+            // Columns and factors of the node's modes, the singular one last.
+            let columns: Vec<Vec<(usize, f64)>> = layout
+                .modes(j)
+                .map(|mode| vec![(mode, 1.0)])
+                .chain([layout.singular_parts(j, self.slopes).collect()])
+                .collect();
+            for (i, cosines) in cosines.iter().enumerate() {
+                let entries = &self.operator.entries(i, j)[..self.operator.count(i, j)];
+                let rows = layout.unknowns(i);
+                for (columns, transforms) in columns.chunks(TILE).zip(transforms.chunks_exact(all))
+                {
+                    for (row, cosines) in rows.clone().step_by(TILE).zip(cosines.chunks_exact(all))
+                    {
+                        let sums = sum_waves(entries, transforms, cosines);
+                        add_tile(matrix, row..rows.end.min(row + TILE), columns, &sums);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Cosines at the points of node `i`: tile by tile at all wavenumbers, zeros where none is felt.
+    fn cosines(&self, i: usize) -> Vec<Tile> {
+        let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
+        let count =
+            (0..self.operator.axis.len()).map(|j| self.operator.count(i, j)).max().unwrap_or(0);
+        let mut tiles = vec![[0.0; TILE]; self.layout.unknowns(i).len().div_ceil(TILE) * all];
+        for (point, t) in self.layout.points(i).enumerate() {
+            let felt = tiles[point / TILE * all..].iter_mut().zip(&fine.nodes()[..count]);
+            for (tile, k) in felt {
+                tile[point % TILE] = (k * self.half_widths[i] * t).cos();
+            }
+        }
+        tiles
+    }
+
+    /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights: as
+    /// [`Linear::cosines`] has them.
+    fn transforms(&self, j: usize) -> Vec<Tile> {
+        let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
+        let count =
+            (0..self.operator.axis.len()).map(|i| self.operator.count(i, j)).max().unwrap_or(0);
+        let mut modes = vec![0.0; self.layout.counts[j]];
+        let mut tiles = vec![[0.0; TILE]; (modes.len() + 1).div_ceil(TILE) * all];
+        for (at, (k, w)) in fine.nodes().iter().zip(fine.weights()).take(count).enumerate() {
+            let singular = strip::transforms(self.half_widths[j], *k, &mut modes);
+            for (mode, transform) in modes.iter().chain([&singular]).enumerate() {
+                tiles[mode / TILE * all + at][mode % TILE] = w / (PI * PI) * transform;
+            }
+        }
+        tiles
+    }
+
+    /// Adds the plane, screened part, the approach, the gap and the load's equation.
+    fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
+        let (layout, last) = (self.layout, self.layout.size() - 1);
+        let most = layout.counts.iter().copied().max().unwrap_or(0);
+        let mut local = vec![0.0; most];
+        for (i, &a) in self.half_widths.iter().enumerate() {
+            let modes = layout.modes(i);
+            let singular: Vec<(usize, f64)> = layout.singular_parts(i, self.slopes).collect();
+            for (row, t) in layout.unknowns(i).zip(layout.points(i)) {
+                let amplitude = strip::logarithmic(a, t, &mut local[..modes.len()]);
+                for (m, value) in modes.clone().zip(&local) {
+                    matrix[(row, m)] += 2.0 / PI * value;
+                }
+                for (column, factor) in &singular {
+                    matrix[(row, *column)] += 2.0 / PI * factor * amplitude;
+                }
+                for ([_, sin, turn], weight) in screened(a, t) {
+                    // sqrt(1-t^2) U_2m = sin((2m+1) f), by the recurrence in steps of 2 f.
+                    let (mut before, mut here) = (-sin, sin);
+                    for column in modes.clone() {
+                        matrix[(row, column)] += weight * here * sin;
+                        (before, here) = (here, turn * here - before);
+                    }
+                    for (column, factor) in &singular {
+                        matrix[(row, *column)] += weight * factor;
+                    }
+                }
+                matrix[(row, last)] = -1.0;
+                right[row] = -self.gap.at(a * t, self.operator.axis.nodes()[i]);
+            }
+            if let Some(first) = modes.clone().next() {
+                matrix[(last, first)] = self.operator.axis.weights()[i] * a * 0.5 * PI;
+            }
+            for (column, factor) in &singular {
+                matrix[(last, *column)] += self.operator.axis.weights()[i] * a * PI * factor;
+            }
+        }
+    }
+}
+
+/// Adds the sums of a tile's modes, whose `columns` have these factors, at its points, whose equations are
+/// `rows`.
+fn add_tile(
+    matrix: &mut DMatrix<f64>,
+    rows: Range<usize>,
+    columns: &[Vec<(usize, f64)>],
+    sums: &[Tile; TILE],
+) {
+    for (columns, sums) in columns.iter().zip(sums) {
+        for (column, factor) in columns {
+            for (row, sum) in rows.clone().zip(sums) {
+                matrix[(row, *column)] += factor * sum;
+            }
+        }
+    }
+}
+
+/// For each transform of a tile and each of its cosines the sum over wavenumbers of their products with the
+/// `entries`, compiled for the processor's vector units too.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn sum_waves(entries: &[f64], transforms: &[Tile], cosines: &[Tile]) -> [Tile; TILE] {
+    let times = |a: f64, b: f64, c: f64| -> f64 {
+        if target_cfg_f!(target_feature = "fma") { a.mul_add(b, c) } else { a * b + c }
+    };
+    let mut sums = [[0.0; TILE]; TILE];
+    for ((entry, transforms), cosines) in entries.iter().zip(transforms).zip(cosines) {
+        let displaced = cosines.map(|c| entry * c);
+        for mode in 0..TILE {
+            for point in 0..TILE {
+                sums[mode][point] = times(transforms[mode], displaced[point], sums[mode][point]);
+            }
+        }
+    }
+    sums
+}

@@ -1,0 +1,165 @@
+//! Which unknowns the nodes along the line have.
+
+use super::settings::ContactSettings;
+use crate::base::Panels;
+use crate::kernels::strip;
+use nalgebra::DVector;
+use std::f64::consts::PI;
+use std::ops::Range;
+
+/// Distance from the line's end (C) beyond which a few modes describe the pressure.
+const DISTURBED: f64 = 1.0;
+const INNER_MODES: usize = 3;
+
+/// Points across the contact at which a pressure's sign is looked at.
+const SHAPE_POINTS: i32 = 8;
+
+/// Largest ratio of a node's edge slope to a free node's that its singular amplitude follows.
+const STEEPEST: f64 = 10.0;
+
+/// Which unknowns each node has. Free nodes have all modes and the singular one, whose amplitude
+/// says how their half-width has to move. Next to the end of the line nodes stand closer than the
+/// shortest wave: half-widths of their own would be noise there, so they follow linearly from those
+/// of the free nodes, at least `spacing` apart. A node behind the last free one whose pressure would
+/// pull loses modes, the higher ones first; with none left it carries no pressure.
+#[derive(Debug, Clone)]
+pub(super) struct Layout {
+    /// The free nodes, ascending.
+    pub free: Vec<usize>,
+    /// The half-width of each node in those of the free ones: positions in `free`, and shares.
+    pub shares: Vec<[(usize, f64); 2]>,
+    /// Modes of each node.
+    pub counts: Vec<usize>,
+    /// The first unknown of each node, and one more for the end.
+    starts: Vec<usize>,
+}
+
+impl Layout {
+    /// All modes everywhere.
+    pub fn new(axis: &Panels, settings: &ContactSettings) -> Self {
+        let mut limit = axis.end() - settings.spacing;
+        let mut free = Vec::new();
+        for (j, &y) in axis.nodes().iter().enumerate().rev() {
+            if y <= limit || j == 0 && free.is_empty() {
+                free.push(j);
+                limit = y - settings.spacing;
+            }
+        }
+        free.reverse();
+        let shares = axis
+            .nodes()
+            .iter()
+            .enumerate()
+            .map(|(j, y)| {
+                let after = free.partition_point(|f| *f < j);
+                if after == 0 || free.len() == 1 {
+                    return [(0, 1.0), (0, 0.0)];
+                }
+                let before = after.min(free.len() - 1) - 1;
+                let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
+                let share = (y - a) / (b - a);
+                [(before, 1.0 - share), (before + 1, share)]
+            })
+            .collect();
+        let inner = axis.end() - DISTURBED;
+        let modes_at =
+            |y: &f64| if *y < inner { settings.modes.min(INNER_MODES) } else { settings.modes };
+        let counts = axis.nodes().iter().map(modes_at).collect();
+        let mut layout = Self { free, shares, counts, starts: Vec::new() };
+        layout.number();
+        layout
+    }
+
+    /// Numbers the unknowns.
+    fn number(&mut self) {
+        let mut next = 0;
+        self.starts.clear();
+        for (j, modes) in self.counts.iter().enumerate() {
+            self.starts.push(next);
+            next += modes + usize::from(self.is_free(j));
+        }
+        self.starts.push(next);
+    }
+
+    fn is_free(&self, j: usize) -> bool {
+        self.free.binary_search(&j).is_ok()
+    }
+
+    /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is free.
+    pub fn unknowns(&self, j: usize) -> Range<usize> {
+        self.starts[j]..self.starts[j + 1]
+    }
+
+    /// The modes of node `j`.
+    pub fn modes(&self, j: usize) -> Range<usize> {
+        self.starts[j]..self.starts[j] + self.counts[j]
+    }
+
+    /// The singular mode of the free node `j`.
+    pub fn singular(&self, j: usize) -> usize {
+        self.starts[j + 1] - 1
+    }
+
+    /// Unknowns in all, the approach included.
+    pub fn size(&self) -> usize {
+        self.starts[self.counts.len()] + 1
+    }
+
+    /// The amplitude of node `j`'s singular mode in those of the free nodes: columns and factors.
+    /// Moving the boundary by a part moves amplitudes in proportion to the edge slopes.
+    pub fn singular_parts(&self, j: usize, slopes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
+        let own = slopes[j];
+        self.shares[j]
+            .map(|(position, share)| {
+                let free = self.free[position];
+                let ratio = if free == j { 1.0 } else { (own / slopes[free]).clamp(0.0, STEEPEST) };
+                (self.singular(free), share * ratio)
+            })
+            .into_iter()
+            .filter(|(_, factor)| *factor != 0.0)
+    }
+
+    /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode, else
+    /// those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
+    pub fn points(&self, j: usize) -> impl Iterator<Item = f64> {
+        let count = self.unknowns(j).len();
+        let free = self.is_free(j);
+        (0..count).map(move |l| {
+            let angle = if free {
+                PI * (2 * l + 1) as f64 / (4 * count) as f64
+            } else {
+                PI * (l + 1) as f64 / (2 * count + 1) as f64
+            };
+            angle.cos()
+        })
+    }
+
+    /// Takes modes from the nodes that are not free and whose pressure is negative somewhere across the
+    /// contact: the higher ones where the shape is to blame, all where the mean is; whether there was
+    /// one.
+    pub fn release(&mut self, unknowns: &DVector<f64>) -> bool {
+        let mut released = false;
+        let last = *self.free.last().expect("at least one");
+        for j in last + 1..self.counts.len() {
+            let c = &unknowns.as_slice()[self.modes(j)];
+            let pulls = |modes: &[f64]| {
+                (0..=SHAPE_POINTS).any(|i| {
+                    // Just inside the edge the sign is that of the slope.
+                    let t = 0.999 * f64::from(i) / f64::from(SHAPE_POINTS);
+                    strip::pressure(1.0, modes, t) < 0.0
+                })
+            };
+            let left = match c.len() {
+                0 => continue,
+                _ if c[0] < 0.0 => 0,
+                _ if !pulls(c) => continue,
+                1 | 2 => 1,
+                _ => 2,
+            };
+            self.counts[j] = left;
+            released = true;
+        }
+        self.number();
+        released
+    }
+}

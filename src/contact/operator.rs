@@ -1,0 +1,169 @@
+//! The compliance as an operator: what a pressure displaces.
+
+use super::solution::ContactSolution;
+use crate::base::{Panels, Wavenumbers};
+use crate::kernels::strip;
+use nalgebra::DMatrix;
+use std::f64::consts::PI;
+use std::sync::LazyLock;
+
+/// The elastic response of both bodies together.
+pub trait Operator {
+    /// A contact pressure, in the form that the operator takes.
+    type Pressure;
+
+    /// Surface displacements of both bodies together (C^2 / (2 R)) that `pressure` causes at the nodes
+    /// along the line, a row for each of `places`: distances from x = 0 in half-widths of each node.
+    fn displacements(&self, pressure: &Self::Pressure, places: &[f64]) -> Vec<Vec<f64>>;
+}
+
+/// The compliance of both bodies together, one matrix per wavenumber.
+#[derive(Debug, Clone)]
+pub struct Compliance<'a> {
+    /// Wavenumbers > 0 and their quadrature over (0, infinity).
+    pub wavenumbers: &'a Wavenumbers,
+    /// C(k) at the coarse wavenumbers: displacement at the axis's nodes per pressure at the nodes; it
+    /// tends to 2 pi / k times the identity for large k.
+    pub matrices: &'a [DMatrix<f64>],
+}
+
+/// [`Compliance`] at the nodes of an axis, split for the contact: the plane, screened part in closed form, and
+/// the rest at all fine wavenumbers.
+pub struct LineOperator<'a> {
+    /// The compliance.
+    pub compliance: &'a Compliance<'a>,
+    /// Axis along the contact.
+    pub axis: &'a Panels,
+    remainders: Remainders,
+}
+
+/// Distance at which the closed logarithmic kernel of the local, plane part is screened, so that
+/// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
+const SCREEN: f64 = 2.0;
+
+/// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
+const SCREEN_POINTS: usize = 12;
+
+/// The plane, screened part of C(k), on its diagonal.
+pub(super) fn plane(k: f64) -> f64 {
+    -2.0 * PI / k * (-k * SCREEN).exp_m1()
+}
+
+impl<'a> LineOperator<'a> {
+    /// The operator on the nodes of `axis`; `negligible` is the displacement that one entry may leave out
+    /// of a sum over [`LineOperator::count`] wavenumbers.
+    pub fn new(compliance: &'a Compliance<'a>, axis: &'a Panels, negligible: f64) -> Self {
+        Self { compliance, axis, remainders: Remainders::new(compliance, axis.len(), negligible) }
+    }
+
+    /// C(k) less its [`plane`] part, from node `j` to node `i`, at all fine wavenumbers.
+    pub(super) fn entries(&self, i: usize, j: usize) -> &[f64] {
+        let (all, at) = (self.remainders.wavenumbers, j * self.axis.len() + i);
+        &self.remainders.entries[at * all..(at + 1) * all]
+    }
+
+    /// How many wavenumbers of [`LineOperator::entries`] are not negligible, the first ones: short waves are
+    /// felt at their own node only, and near the line's end.
+    pub(super) fn count(&self, i: usize, j: usize) -> usize {
+        self.remainders.counts[j * self.axis.len() + i]
+    }
+}
+
+impl Operator for LineOperator<'_> {
+    type Pressure = ContactSolution;
+
+    /// All wavenumbers are summed: what the solver neglects is to be checked, too.
+    fn displacements(&self, pressure: &ContactSolution, places: &[f64]) -> Vec<Vec<f64>> {
+        let nodes = self.axis.len();
+        let mut rows = vec![vec![0.0; nodes]; places.len()];
+        let fine = self.compliance.wavenumbers.fine();
+        let transforms: Vec<_> = fine.nodes().iter().map(|k| pressure.transform(*k)).collect();
+        let mut amplitudes = vec![0.0; fine.len()];
+        let mut modes = Vec::new();
+        for (i, &a) in pressure.half_widths.iter().enumerate() {
+            amplitudes.fill(0.0);
+            for j in 0..nodes {
+                let caused = self.entries(i, j).iter().zip(&transforms).map(|(e, t)| e * t[j]);
+                amplitudes.iter_mut().zip(caused).for_each(|(sum, caused)| *sum += caused);
+            }
+            let c = &pressure.coefficients[i];
+            for (row, &t) in rows.iter_mut().zip(places) {
+                let waves = fine.nodes().iter().zip(fine.weights()).zip(&amplitudes);
+                let waves = waves.map(|((k, w), s)| w / (PI * PI) * s * (k * t * a).cos());
+                row[i] = waves.sum();
+                modes.resize(c.len(), 0.0);
+                strip::logarithmic(a, t, &mut modes);
+                row[i] += 2.0 / PI * modes.iter().zip(c).map(|(l, c)| l * c).sum::<f64>();
+                for ([cos, sin, _], weight) in screened(a, t) {
+                    row[i] += weight * sin * strip::pressure(1.0, c, cos);
+                }
+            }
+        }
+        rows
+    }
+}
+
+/// C(k) at the fine wavenumbers, less its [`plane`] part.
+struct Remainders {
+    /// For each column, each row of it, all wavenumbers.
+    entries: Vec<f64>,
+    wavenumbers: usize,
+    /// For each column and row how many wavenumbers are not negligible.
+    counts: Vec<usize>,
+}
+
+impl Remainders {
+    /// Those that are interpolated from the coarse wavenumbers; `negligible` is the displacement that one
+    /// entry may leave out.
+    fn new(compliance: &Compliance, nodes: usize, negligible: f64) -> Self {
+        let numbers = compliance.wavenumbers;
+        let coarse: Vec<_> = numbers
+            .coarse()
+            .nodes()
+            .iter()
+            .zip(compliance.matrices)
+            .map(|(&k, c)| c - DMatrix::identity(nodes, nodes) * plane(k))
+            .collect();
+        let fine = numbers.fine();
+        let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
+        // The singular mode's transform, pi J0(k), falls least.
+        let limits = fine.nodes().iter().zip(fine.weights());
+        let limits: Vec<f64> =
+            limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
+        let mut entries = vec![0.0; nodes * nodes * fine.len()];
+        let mut own = vec![0.0; coarse.len()];
+        let mut counts = Vec::with_capacity(nodes * nodes);
+        for (at, entries) in entries.chunks_exact_mut(fine.len()).enumerate() {
+            own.iter_mut().zip(&coarse).for_each(|(own, matrix)| *own = matrix.as_slice()[at]);
+            let mut count = 0;
+            for (i, ((first, weights), limit)) in shares.iter().zip(&limits).enumerate() {
+                entries[i] = weights.iter().zip(&own[*first..]).map(|(w, c)| w * c).sum();
+                if entries[i].abs() > *limit {
+                    count = i + 1;
+                }
+            }
+            counts.push(count);
+        }
+        Self { entries, wavenumbers: fine.len(), counts }
+    }
+}
+
+/// Points x' = cos(f) of Gauss-Chebyshev's rule of the first kind: cos f, sin f and 2 cos 2 f.
+pub(super) type ScreenPoint = [f64; 3];
+
+static SCREEN_RULE: LazyLock<[ScreenPoint; SCREEN_POINTS]> = LazyLock::new(|| {
+    std::array::from_fn(|q| {
+        let angle = PI * (2 * q + 1) as f64 / (2 * SCREEN_POINTS) as f64;
+        [angle.cos(), angle.sin(), 2.0 * (2.0 * angle).cos()]
+    })
+});
+
+/// What screens the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x') dx', by
+/// Gauss-Chebyshev: points of x' / `half_width`, and weights of p sin(f) there.
+pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (ScreenPoint, f64)> {
+    SCREEN_RULE.iter().map(move |point| {
+        let offset = half_width * (t - point[0]);
+        let kernel = 0.5 * (offset * offset + SCREEN * SCREEN).ln();
+        (*point, 2.0 / PI * kernel * half_width * PI / SCREEN_POINTS as f64)
+    })
+}

@@ -1,0 +1,37 @@
+//! What the contact solve finds.
+
+use crate::kernels::strip;
+use nalgebra::DVector;
+
+/// Contact pressure of the whole line.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ContactSolution {
+    /// Half-width of the contact at each node.
+    pub half_widths: Vec<f64>,
+    /// Coefficients of the modes at each node.
+    pub coefficients: Vec<Vec<f64>>,
+    /// Approach in units of C^2 / (2 R), relative to points at a distance that the smallest
+    /// wavenumber sets: subtract [`super::reference`] for a depth of one's own.
+    pub approach: f64,
+    /// Iterations done.
+    pub iterations: usize,
+    /// [`ContactSettings::spacing`] with which it converged.
+    pub spacing: f64,
+    /// Amplitude of the edge singularity that was left (p0).
+    pub residual: f64,
+    /// |load - prescribed| / prescribed.
+    pub load_error: f64,
+}
+
+impl ContactSolution {
+    /// Fourier transform int p cos(k x) dx of the pressure at every node.
+    pub(super) fn transform(&self, k: f64) -> DVector<f64> {
+        let mut modes = Vec::new();
+        DVector::from_fn(self.half_widths.len(), |j, _| {
+            let coefficients = &self.coefficients[j];
+            modes.resize(coefficients.len(), 0.0);
+            strip::transforms(self.half_widths[j], k, &mut modes);
+            modes.iter().zip(coefficients).map(|(t, c)| t * c).sum()
+        })
+    }
+}
