@@ -140,7 +140,7 @@ fn main() {
     let mut resolution = Resolution::for_tolerance(scene.tolerance);
     for halved in 0..3 {
         let cells = resolution.contact_axis(scene.half_length).len()
-            * resolution.wavenumbers(scene.bodies[0].half).coarse().len();
+            * resolution.wavenumbers(scene.bodies.block.half).coarse().len();
         let work = || SolvedScene::with_resolution(&scene, &resolution).expect("it converges");
         growth.row(&halved.to_string(), cells, cost(work));
         resolution = resolution.refined();

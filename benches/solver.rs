@@ -5,12 +5,12 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use edgeline::base::Material;
-use edgeline::body::{Body, EdgeModel, Layer, Resolution};
+use edgeline::body::{Body, EdgeModel, Layer, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::contact::{self, Compliance, ContactSettings};
 use edgeline::kernels::wave::{Places, WAVES, WaveTable};
 use edgeline::kernels::{deflection, line_load, love};
-use edgeline::solve::{Options, Scene, SolvedScene, guilbault_psi, solve};
+use edgeline::solve::{Options, Scene, SolvedScene, solve};
 use edgeline::stress::grid::on_grid;
 use edgeline::stress::{BodyKind, Grid};
 use std::hint::black_box;
@@ -73,9 +73,9 @@ fn kernels(c: &mut Criterion) {
 
 /// The block of a scene and its layers, one a wavenumber.
 fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
-    let [block, _] = scene.bodies;
-    let (half_length, psi) = (scene.half_length, guilbault_psi(block.nu));
-    let body = Body::new(half_length, block.half, block.nu, scene.model, psi, resolution);
+    let block = scene.bodies.block;
+    let shape = Shape { contact: scene.half_length, half: block.half, nu: block.nu };
+    let body = Body::new(shape, scene.end(BodyKind::Block), resolution);
     let wavenumbers = resolution.wavenumbers(block.half);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)

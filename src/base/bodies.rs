@@ -41,6 +41,11 @@ impl<T> PerBody<T> {
         [&self.block, &self.roller].into_iter()
     }
 
+    /// As [`PerBody::iter`], to be changed.
+    pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
+        [&mut self.block, &mut self.roller].into_iter()
+    }
+
     /// What `of` makes of either.
     pub fn map<U>(&self, of: impl Fn(&T) -> U) -> PerBody<U> {
         PerBody { block: of(&self.block), roller: of(&self.roller) }

@@ -1,6 +1,7 @@
 //! Materials, Hertz scales, the stress tensor, graded axes, wavenumbers, quadrature, the error type, and
 //! numbers as text.
 
+mod bodies;
 mod error;
 pub mod linear;
 mod material;
@@ -13,6 +14,7 @@ mod scales;
 mod tensor;
 mod wavenumbers;
 
+pub use bodies::{BodyKind, PerBody};
 pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::Panels;

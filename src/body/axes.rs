@@ -1,5 +1,6 @@
 //! Axes chosen from a requested accuracy.
 
+use super::end::End;
 use crate::base::{Panels, Wavenumbers};
 use serde::Serialize;
 
@@ -9,8 +10,12 @@ const SLOW: f64 = 0.5;
 /// Widest panel of wavenumbers along an end face: it resolves depths of some ten C.
 const WIDEST: f64 = 1.0;
 
-/// Tolerance from which on a resolution counts as coarse.
-const COARSE: f64 = 5e-3;
+/// Wavenumber times half-thickness beyond which the plate is two half-spaces: its remainder has faded.
+pub(super) const PLATE_FADES: f64 = 8.0;
+
+/// Exponent of the pressure at its end (0.23 for equal materials) from which smaller panels there take the
+/// contact's iteration to the edge of what it manages, on blocks much softer than the roller.
+const STEEP: f64 = 0.3;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
@@ -54,6 +59,21 @@ pub struct Resolution {
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
     pub const FINEST: f64 = 1e-4;
+
+    /// Tolerance from which on a resolution counts as coarse.
+    pub const COARSE: f64 = 5e-3;
+
+    /// The resolution of a body whose faces do what `end` says, under a pressure that is singular at the
+    /// contact's end with the exponent `corner`, if it is: see [`Resolution::for_tolerance`].
+    pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
+        if end.image_weight.is_none() {
+            Self::for_half_space(tolerance)
+        } else if end.freed && corner.is_some_and(|m| m < STEEP) {
+            Self::for_singular_end(tolerance)
+        } else {
+            Self::for_tolerance(tolerance)
+        }
+    }
 
     /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
     /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. How far each of them keeps to its
@@ -99,7 +119,7 @@ impl Resolution {
                 k_ratio: 5.0,
                 ..coarse
             }
-        } else if tolerance >= COARSE {
+        } else if tolerance >= Self::COARSE {
             coarse
         } else if tolerance >= 1e-3 {
             usual
@@ -126,7 +146,7 @@ impl Resolution {
     /// want smaller panels there, to keep to their tolerance from 0.1 C on.
     pub fn for_singular_end(tolerance: f64) -> Self {
         let usual = Self::for_tolerance(tolerance);
-        let factor = if tolerance >= COARSE { 0.5 } else { 1.0 };
+        let factor = if tolerance >= Self::COARSE { 0.5 } else { 1.0 };
         Self { corner: factor * usual.corner, ..usual }
     }
 
@@ -135,7 +155,7 @@ impl Resolution {
     pub fn for_half_space(tolerance: f64) -> Self {
         let mut usual = Self::for_tolerance(tolerance);
         usual.k_ratio = usual.k_ratio.min(2.6);
-        if tolerance < COARSE {
+        if tolerance < Self::COARSE {
             return usual;
         }
         Self { order: 5, corner: 0.04, ratio: 3.0, modes: 3, k_max: 20.0, ..usual }
@@ -239,10 +259,10 @@ impl Resolution {
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
-    /// fades beyond 8 / `half`, and varies over the wavenumber across the contact, hence panels
+    /// fades beyond [`PLATE_FADES`] / `half`, and varies over the wavenumber across the contact, hence panels
     /// that grow from `k_min`.
     pub fn face_wavenumbers(&self, half: f64) -> Panels {
-        let top = 8.0 / half;
+        let top = PLATE_FADES / half;
         let mut breaks = vec![0.0];
         let mut next = self.smallest_wavenumber(half);
         while next < 0.6 * top {

@@ -6,9 +6,9 @@ use std::f64::consts::PI;
 /// model by these capabilities alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct End {
-    /// Weight in the displacement of the pressure's image in the face; 0 without images. In the
+    /// Weight in the displacement of the pressure's image in the face; none without images. In the
     /// stresses an image always has its full weight.
-    pub image_weight: f64,
+    pub image_weight: Option<f64>,
     /// Whether a pressure on the face takes off the normal stress that the images leave there. The
     /// images then go on as [`super::Resolution::images`] says, with strips behind them; else there is one.
     pub freed: bool,
@@ -18,7 +18,7 @@ pub struct End {
 
 impl End {
     /// A body that goes on behind the contact's end.
-    pub const ENDLESS: End = End { image_weight: 0.0, freed: false, gamma: None };
+    pub const ENDLESS: End = End { image_weight: None, freed: false, gamma: None };
 
     /// The slope u' E' / 2 at s = 1 of a surface that ends at s = 0, under the pressure s^-m,
     /// 0 < m <= 1/2.
@@ -28,7 +28,7 @@ impl End {
     /// stress that P and its image cause on the end face at the depth 1 (the Mellin transform of the
     /// line load's 4 t^2 / (pi (1 + t^2)^2)).
     pub(super) fn slope(&self, m: f64) -> f64 {
-        let image = ((PI * m).cos() - self.image_weight) / (PI * m).sin();
+        let image = ((PI * m).cos() - self.image_weight.unwrap_or(0.0)) / (PI * m).sin();
         if !self.freed {
             return image;
         }

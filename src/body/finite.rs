@@ -5,8 +5,8 @@
 //! faces are equal, and even in z. Lengths are in units of C. A layer's displacement is f p with
 //! u = (1 - nu^2)/(pi E) f p, so a half-space's f is 2 K0(k |y|).
 
-use super::axes::Resolution;
-use super::model::EdgeModel;
+use super::axes::{PLATE_FADES, Resolution};
+use super::end::End;
 use super::stencil::{Image, Peak, Sources, Stencil};
 use crate::base::{Panels, linear};
 use crate::kernels::bessel::k0;
@@ -24,8 +24,8 @@ pub struct Body {
     pub half: f64,
     /// Poisson's ratio.
     pub nu: f64,
-    /// The edge model.
-    pub model: EdgeModel,
+    /// What its end faces do.
+    pub end: End,
     /// Axis of the surface pressure P that acts on the half-space: the contact, and for the
     /// complete model the surface on to the end face.
     pub surface: Sources,
@@ -69,21 +69,25 @@ pub struct Layer {
     pub condition: f64,
 }
 
+/// The lengths and the material of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shape {
+    /// Half-length of the contact (C).
+    pub contact: f64,
+    /// Half-length of the body (C), not less.
+    pub half: f64,
+    /// Poisson's ratio.
+    pub nu: f64,
+}
+
 impl Body {
-    /// A body of half-length `half` under a contact of half-length `half_length` <= `half`.
-    /// `psi` weighs the images of [`EdgeModel::Guilbault`].
-    pub fn new(
-        half_length: f64,
-        half: f64,
-        nu: f64,
-        model: EdgeModel,
-        psi: f64,
-        resolution: &Resolution,
-    ) -> Self {
-        let complete = model == EdgeModel::QuarterSpace;
+    /// A body of this `shape` whose faces do what `end` says.
+    pub fn new(shape: Shape, end: End, resolution: &Resolution) -> Self {
+        let Shape { contact: half_length, half, nu } = shape;
         let contact_axis = resolution.contact_axis(half_length);
         let contact = contact_axis.len();
-        let surface = if complete { resolution.body_axis(half_length, half) } else { contact_axis };
+        let surface =
+            if end.freed { resolution.body_axis(half_length, half) } else { contact_axis };
         let ledge = half - half_length;
         let face = Sources::new(resolution.face_axis(ledge, half));
         let surface = Sources::new(surface);
@@ -93,11 +97,10 @@ impl Body {
             weight,
         };
         let mut images = vec![image(1.0, 0, 1.0), image(-1.0, 0, 1.0)];
-        let (count, weight) = match model {
-            EdgeModel::HalfSpace => (0, 0.0),
-            EdgeModel::Mirror => (1, 1.0),
-            EdgeModel::Guilbault => (1, psi),
-            EdgeModel::QuarterSpace => (resolution.images as i32, 1.0),
+        let weight = end.image_weight.unwrap_or(0.0);
+        let count = match end.freed {
+            true => resolution.images as i32,
+            false => i32::from(end.image_weight.is_some()),
         };
         for n in 1..=count {
             for lengths in [-n, n] {
@@ -109,7 +112,7 @@ impl Body {
             half,
             stress_images,
             nu,
-            model,
+            end,
             face_wavenumbers: resolution.face_wavenumbers(half),
             resolution: resolution.clone(),
             contact,
@@ -133,7 +136,7 @@ impl Body {
                 Stencil::new(&body.surface, &body.images, y, 0.0, shortest, Peak::Logarithm)
             })
             .collect();
-        if complete {
+        if end.freed {
             body.prepare_faces();
         }
         body
@@ -226,7 +229,7 @@ impl Body {
 
     /// Whether the plate's part beyond its two half-spaces matters at wavenumber `k`.
     fn plate_matters(&self, k: f64) -> bool {
-        k * self.half < 8.0
+        k * self.half < PLATE_FADES
     }
 
     /// Offset beyond which loads of wavenumber `k` are not felt.
@@ -275,7 +278,7 @@ impl Body {
         // f = 2 K0.
         let displacement = 2.0 * displacement.finish();
         // An end face that is too far from the contact for this wavenumber carries nothing.
-        if self.model != EdgeModel::QuarterSpace || self.ledge > self.reach(k) {
+        if !self.end.freed || self.ledge > self.reach(k) {
             let compliance = displacement.columns(0, self.contact).into_owned();
             return Layer { compliance, surface: None, face: None, condition: 1.0 };
         }

@@ -15,7 +15,7 @@ pub fn guilbault_psi(nu: f64) -> f64 {
 
 /// The end face of a body of Poisson's ratio `nu`, with `psi` in place of [`guilbault_psi`] if it is given.
 pub(super) fn end(nu: f64, psi: Option<f64>) -> End {
-    let image_weight = psi.unwrap_or_else(|| guilbault_psi(nu));
+    let image_weight = Some(psi.unwrap_or_else(|| guilbault_psi(nu)));
     End { image_weight, freed: false, gamma: Some(GAMMA) }
 }
 

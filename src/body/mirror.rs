@@ -4,5 +4,5 @@
 use super::end::End;
 
 pub(super) fn end() -> End {
-    End { image_weight: 1.0, freed: false, gamma: None }
+    End { image_weight: Some(1.0), freed: false, gamma: None }
 }

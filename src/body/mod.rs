@@ -1,10 +1,20 @@
-//! A finite body's compliance per wavenumber; the four edge models differ only in how they fill it.
+//! A finite body's compliance per wavenumber; the four edge models, one file each, differ only in how
+//! they fill it.
 
 pub mod axes;
+mod corner;
+mod end;
 mod finite;
+mod guilbault;
+mod half_space;
+mod mirror;
 mod model;
+mod quarter_space;
 pub mod stencil;
 
 pub use axes::Resolution;
-pub use finite::{Body, Layer};
+pub use corner::corner_exponent;
+pub use end::End;
+pub use finite::{Body, Layer, Shape};
+pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;

@@ -1,3 +1,5 @@
+use super::end::End;
+use super::{guilbault, half_space, mirror, quarter_space};
 use serde::{Deserialize, Serialize};
 
 /// How a free end face is modelled.
@@ -26,6 +28,17 @@ impl EdgeModel {
             EdgeModel::Mirror => "mirror",
             EdgeModel::Guilbault => "guilbault",
             EdgeModel::QuarterSpace => "quarter-space",
+        }
+    }
+
+    /// What it does at the end face of a body of Poisson's ratio `nu`; `psi` replaces the weight of an
+    /// image in a model that has a factor for it.
+    pub fn end(self, nu: f64, psi: Option<f64>) -> End {
+        match self {
+            EdgeModel::HalfSpace => half_space::end(),
+            EdgeModel::Mirror => mirror::end(),
+            EdgeModel::Guilbault => guilbault::end(nu, psi),
+            EdgeModel::QuarterSpace => quarter_space::end(),
         }
     }
 }

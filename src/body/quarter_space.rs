@@ -3,5 +3,5 @@
 use super::end::End;
 
 pub(super) fn end() -> End {
-    End { image_weight: 1.0, freed: true, gamma: None }
+    End { image_weight: Some(1.0), freed: true, gamma: None }
 }

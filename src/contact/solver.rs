@@ -75,13 +75,8 @@ fn solve_once(
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
-        let held = Linear {
-            operator,
-            gap,
-            layout: &layout,
-            half_widths: &half_widths,
-            slopes: &slopes,
-        };
+        let held =
+            Linear { operator, gap, layout: &layout, half_widths: &half_widths, slopes: &slopes };
         let unknowns = held.solve(load)?;
         for (j, slope) in slopes.iter_mut().enumerate() {
             let own = &unknowns.as_slice()[layout.modes(j)];

@@ -1,17 +1,11 @@
 //! Strength of the contact pressure at the contact's end.
 //!
-//! Next to the end the contact is plane, in y and z. A pressure s^-m on s > 0, s the distance from
-//! the end, gives a half-plane's surface the slope u' = (2 / E') cot(pi m) s^-m, and a body that
-//! ends at s = 0 one of the other sign. The exponent of the pressure is the m at which the slopes of
-//! both bodies cancel (Dundurs and Lee, Journal of Elasticity 2, 1972): 1/2 between two
-//! half-planes, 0.226 between a quarter-plane and a half-plane of the same material. Flush ends
-//! have no such m > 0: the pressure stays finite, and nears its limit like s ln(1/s).
+//! [`crate::body::corner_exponent`] has the law of the corner.
 
-use super::scene::{Scene, SolvedScene, guilbault_psi};
-use crate::body::EdgeModel;
+use super::scene::SolvedScene;
+use crate::base::BodyKind;
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
-use std::f64::consts::PI;
 
 /// Distances from the end (C) between which a pressure that grows without bound is fitted: farther
 /// in it is not a power of the distance any more, and nearer to the end it is not resolved.
@@ -60,54 +54,11 @@ pub enum EdgeStrength {
 /// images that psi > 1 weighs, in both bodies, let the pressure at flush ends oscillate in ln s.
 pub fn edge_strength(solved: &SolvedScene) -> Option<EdgeStrength> {
     let scene = &solved.scene;
-    match corner_exponent(scene) {
+    let oscillates = |kind| scene.end(kind).image_weight.is_some_and(|psi| psi > 1.0);
+    match scene.corner_exponent() {
         Some(m) => Some(singular(solved, m, SINGULAR_RANGE)),
-        None if scene.model == EdgeModel::Guilbault => None,
+        None if BodyKind::ALL.into_iter().any(oscillates) => None,
         None => Some(finite(solved, FINITE_RANGE)),
-    }
-}
-
-/// The exponent m > 0 of the pressure s^-m at the contact's end; none where it is not singular.
-pub fn corner_exponent(scene: &Scene) -> Option<f64> {
-    let sum = |m: f64| -> f64 {
-        let flush = |half: f64| half <= scene.half_length * (1.0 + 1e-9);
-        let slope = |b: &super::SceneBody| {
-            let model = if flush(b.half) { scene.model } else { EdgeModel::HalfSpace };
-            b.share * slope(model, scene.psi.unwrap_or_else(|| guilbault_psi(b.nu)), m)
-        };
-        scene.bodies.iter().map(slope).sum()
-    };
-    // The sum falls from + infinity at 0 if a body goes on behind the end; else it is negative.
-    let (mut low, mut high) = (1e-6, 0.5);
-    if sum(low) <= 0.0 {
-        return None;
-    }
-    if sum(high) > -1e-12 {
-        return Some(high);
-    }
-    for _ in 0..60 {
-        let mid = 0.5 * (low + high);
-        if sum(mid) > 0.0 { low = mid } else { high = mid }
-    }
-    Some(0.5 * (low + high))
-}
-
-/// u' E' / 2 at s = 1 of a body that ends at s = 0, under the pressure s^-m, 0 < m <= 1/2.
-///
-/// With an image of weight psi: int_0^inf t^-m [1/(1-t) + psi/(1+t)] dt = pi (psi - cos pi m) / sin pi m.
-/// Free of traction: P = s^-m / (1 - tau^2), where tau = (1 - m) / cos(pi m / 2) is the normal
-/// stress that P and its image cause on the end face at the depth 1 (the Mellin transform of the
-/// line load's 4 t^2 / (pi (1 + t^2)^2)).
-fn slope(model: EdgeModel, psi: f64, m: f64) -> f64 {
-    let image = |psi: f64| ((PI * m).cos() - psi) / (PI * m).sin();
-    match model {
-        EdgeModel::HalfSpace => image(0.0),
-        EdgeModel::Mirror => image(1.0),
-        EdgeModel::Guilbault => image(psi),
-        EdgeModel::QuarterSpace => {
-            let tau = (1.0 - m) / (0.5 * PI * m).cos();
-            image(1.0) / (1.0 - tau * tau)
-        }
     }
 }
 

@@ -30,10 +30,7 @@ pub fn solve_on_grid(
     let in_c = |values: &[f64]| values.iter().map(|v| v / hertz.c_m).collect::<Vec<_>>();
     // The body's end may be a rounding beyond itself once it is divided by C.
     let scene = Scene::new(case, method, None);
-    let half = match body {
-        BodyKind::Block => scene.bodies[0].half,
-        BodyKind::Roller => scene.bodies[1].half,
-    };
+    let half = scene.bodies[body].half;
     let y = in_c(&grid_m.y).into_iter().map(|y| y.clamp(-half, half)).collect();
     let grid = Grid { x: in_c(&grid_m.x), y, z: in_c(&grid_m.z) };
     let solved = SolvedScene::new(&scene)?;

@@ -4,7 +4,7 @@
 use super::scene::{Scene, SolvedScene};
 use super::{Critical, pressure_cells};
 use crate::base::{HertzScales, Result};
-use crate::body::EdgeModel;
+use crate::body::{EdgeModel, Resolution};
 use crate::case::Case;
 use crate::stress::{BodyKind, RoundStress, curves};
 
@@ -114,7 +114,7 @@ const FROM_EDGE: f64 = 0.1;
 fn samples(solved: &SolvedScene) -> Vec<Sample> {
     let shared = solved.bodies_shared();
     let mut all = Vec::new();
-    for (kind, body) in BodyKind::ALL.into_iter().zip(solved.scene.bodies) {
+    for (kind, body) in BodyKind::ALL.into_iter().zip(solved.scene.bodies.iter()) {
         if shared && kind == BodyKind::Roller {
             // What both bodies share in the computation they share in the result.
             let again: Vec<Sample> =
@@ -122,7 +122,7 @@ fn samples(solved: &SolvedScene) -> Vec<Sample> {
             all.extend(again);
             break;
         }
-        if solved.scene.tolerance < 5e-3 {
+        if solved.scene.tolerance < Resolution::COARSE {
             every_point(solved, kind, body.half, &mut all);
         } else {
             search(solved, kind, body.half, &mut all);

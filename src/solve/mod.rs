@@ -17,7 +17,7 @@ use std::time::Instant;
 
 pub use grid::{MOST_GRID_POINTS, solve_on_grid};
 pub use key::{END_DISTANCES, KeyResults, key_results};
-pub use scene::{GAMMA, Scene, SceneBody, Seconds, SolvedScene, guilbault_psi};
+pub use scene::{Scene, SceneBody, Seconds, SolvedScene};
 
 /// What to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,7 +30,7 @@ pub struct Options {
     pub curves: Vec<String>,
     /// Extra points, in their order.
     pub points: Vec<Point>,
-    /// Factor of the images of `guilbault` in place of [`guilbault_psi`].
+    /// Factor of the images of `guilbault` in place of [`crate::body::guilbault_psi`].
     pub psi: Option<f64>,
 }
 
@@ -432,7 +432,7 @@ fn stresses(
 ) -> (Vec<CurveStress>, Vec<RoundStress>, Work) {
     let scene = &solved.scene;
     let mut curves = Vec::new();
-    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies) {
+    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies.iter()) {
         if options.bodies.contains(&kind) {
             let all = curves::standard_curves(kind, scene.half_length, body.half);
             curves.extend(all.into_iter().filter(|c| options.curves.iter().any(|n| n == c.name)));

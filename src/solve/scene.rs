@@ -1,24 +1,13 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
-use super::edge::corner_exponent;
-use crate::base::{Error, Result, Wavenumbers};
-use crate::body::{Body, EdgeModel, Layer, Resolution};
+use crate::base::{Error, PerBody, Result, Wavenumbers};
+use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
 use crate::case::Case;
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
 use crate::stress::{BodyKind, Field, Pressure};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
-
-/// Stress transition factor of the `guilbault` model: the least squares of sigma_yy against
-/// `quarter-space` over the standard curves of four cases (tests/numerics/ends.rs, docs/theory.md).
-pub const GAMMA: f64 = 2.03;
-
-/// Guilbault's factor for images in the flexibility matrix (Guilbault, ASME Journal of Tribology
-/// 133, 2011), as a function of Poisson's ratio.
-pub fn guilbault_psi(nu: f64) -> f64 {
-    1.29 - (0.08 - 0.5 * nu) / (1.0 - nu)
-}
 
 /// How many tolerances a solution may break the laws of contact by. Answers over the whole range of
 /// scenes stay within 2 (docs/robustness.md), errors of the solver exceed it by far.
@@ -28,10 +17,6 @@ const SOUNDNESS: f64 = 5.0;
 /// units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
 /// (docs/robustness.md).
 const WORST_CONDITION: f64 = 1e7;
-
-/// Exponent of the pressure at its end (0.23 for equal materials) from which smaller panels there take the
-/// contact's iteration to the edge of what it manages, on blocks much softer than the roller.
-const STEEP: f64 = 0.3;
 
 /// One of the two bodies of a [`Scene`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -50,11 +35,11 @@ pub struct SceneBody {
 pub struct Scene {
     /// S_l, the contact's half-length (C).
     pub half_length: f64,
-    /// Block and roller.
-    pub bodies: [SceneBody; 2],
+    /// The two bodies.
+    pub bodies: PerBody<SceneBody>,
     /// The edge model.
     pub model: EdgeModel,
-    /// Factor of the images of `guilbault`; by default [`guilbault_psi`] of each body.
+    /// Weight of the images of `guilbault`; by default [`crate::body::guilbault_psi`] of each body.
     pub psi: Option<f64>,
     /// Requested accuracy (p0).
     pub tolerance: f64,
@@ -78,11 +63,29 @@ impl Scene {
         let block = if block < half_length * (1.0 + 1e-9) { half_length } else { block };
         Self {
             half_length,
-            bodies: [body(block, case.block.material), body(half_length, case.roller.material)],
+            bodies: PerBody {
+                block: body(block, case.block.material),
+                roller: body(half_length, case.roller.material),
+            },
             model,
             psi,
             tolerance: case.tolerance,
         }
+    }
+
+    /// What the end faces of a body do.
+    pub fn end(&self, kind: BodyKind) -> End {
+        self.model.end(self.bodies[kind].nu, self.psi)
+    }
+
+    /// The exponent m > 0 of the pressure s^-m at the contact's end; none where it is not singular.
+    pub fn corner_exponent(&self) -> Option<f64> {
+        let bodies = BodyKind::ALL.map(|kind| {
+            let SceneBody { half, share, .. } = self.bodies[kind];
+            let flush = half <= self.half_length * (1.0 + 1e-9);
+            (share, if flush { self.end(kind) } else { End::ENDLESS })
+        });
+        corner_exponent(&bodies)
     }
 }
 
@@ -129,14 +132,8 @@ impl SolvedScene {
     /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
     /// breaks a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        let choice = match scene.model {
-            EdgeModel::HalfSpace => Resolution::for_half_space,
-            EdgeModel::QuarterSpace if corner_exponent(scene).is_some_and(|m| m < STEEP) => {
-                Resolution::for_singular_end
-            }
-            _ => Resolution::for_tolerance,
-        };
-        let resolution = choice(scene.tolerance);
+        let end = scene.end(BodyKind::Block);
+        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
         Self::with_resolution(scene, &resolution)
     }
 
@@ -151,15 +148,16 @@ impl SolvedScene {
         let wavenumbers = resolution.wavenumbers(longest);
         let coarse = wavenumbers.coarse();
         let axis = resolution.contact_axis(scene.half_length);
-        let [block, roller] = scene.bodies;
+        let PerBody { block, roller } = scene.bodies;
         // Bodies that end alike, of the same Poisson's ratio, are one.
         let alike = block.half == roller.half && block.nu == roller.nu;
-        let distinct = if alike { &scene.bodies[..1] } else { &scene.bodies[..] };
+        let distinct = if alike { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
         let bodies: Vec<(Body, Vec<Layer>)> = distinct
             .iter()
-            .map(|b| {
-                let psi = scene.psi.unwrap_or_else(|| guilbault_psi(b.nu));
-                let body = Body::new(scene.half_length, b.half, b.nu, scene.model, psi, resolution);
+            .map(|&kind| {
+                let SceneBody { half, nu, .. } = scene.bodies[kind];
+                let shape = Shape { contact: scene.half_length, half, nu };
+                let body = Body::new(shape, scene.end(kind), resolution);
                 let layers = coarse.nodes().par_iter().map(|&k| body.layer(k)).collect();
                 (body, layers)
             })
@@ -227,12 +225,12 @@ impl SolvedScene {
 
     /// The stress field of a body, without what only the roller's own shape adds.
     pub fn field(&self, kind: BodyKind) -> Field<'_> {
-        self.field_with(kind, GAMMA, self.scene.tolerance)
+        self.field_with(kind, self.body(kind).0.end.gamma, self.scene.tolerance)
     }
 
-    /// [`SolvedScene::field`] with another stress transition factor than [`GAMMA`], and what adds less
+    /// [`SolvedScene::field`] with another transition factor than the edge model's, and what adds less
     /// than `tolerance` (p0) left out.
-    pub fn field_with(&self, kind: BodyKind, gamma: f64, tolerance: f64) -> Field<'_> {
+    pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
         let (body, layers) = self.body(kind);
         let (numbers, moments) = (&self.wavenumbers, &self.moments);
         Field::new(body, numbers, layers, &self.pressure, moments, gamma, tolerance)

@@ -2,30 +2,7 @@
 //!
 //! All coordinates here are in units of C; `half_length` is S_l = L1 / (2 C).
 
-use serde::{Deserialize, Serialize};
-
-/// One of the two bodies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum BodyKind {
-    /// The rectangular block.
-    Block,
-    /// The roller.
-    Roller,
-}
-
-impl BodyKind {
-    /// Both bodies, the block first.
-    pub const ALL: [BodyKind; 2] = [BodyKind::Block, BodyKind::Roller];
-
-    /// The name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            BodyKind::Block => "block",
-            BodyKind::Roller => "roller",
-        }
-    }
-}
+use crate::base::BodyKind;
 
 /// A named list of points of one body.
 #[derive(Debug, Clone, PartialEq)]

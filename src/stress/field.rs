@@ -11,7 +11,7 @@ use super::pressure::Pressure;
 use super::round::RoundStress;
 use super::waves::{Sight, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
-use crate::body::{Body, EdgeModel, Layer};
+use crate::body::{Body, Layer, transition};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::strip;
 use crate::kernels::wave::WAVES;
@@ -74,6 +74,9 @@ const SMOOTH_DISTANCE: f64 = 1.0;
 /// What interpolation along a line may leave out, in tolerances.
 const INTERPOLATION: f64 = 0.02;
 
+/// A wavenumber's share of a stress that is negligible, in tolerances: some twenty of them may be left out.
+const NEGLIGIBLE: f64 = 0.005;
+
 /// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
 const ON_SURFACE: f64 = 1e-9;
 
@@ -93,11 +96,11 @@ pub struct Field<'a> {
     /// What acts elsewhere, the fine wavenumbers, made when it is asked for: with the exponent of two
     /// of the distance from that plane up to which it serves.
     all: Mutex<Vec<(i32, Arc<Waves>)>>,
-    /// Stress transition factor of [`EdgeModel::Guilbault`].
-    gamma: f64,
+    /// Transition factor of the stress correction, if there is one.
+    gamma: Option<f64>,
     /// Requested accuracy (p0).
     tolerance: f64,
-    /// A wavenumber's share of a stress that is as good as none (p0).
+    /// A wavenumber's share of a stress that is negligible (p0).
     negligible: f64,
     counters: Counters,
     /// [`Body::plate_kernel`] of the waves of `central`, for the latest y.
@@ -123,12 +126,12 @@ impl<'a> Field<'a> {
         layers: &'a [Layer],
         pressure: &'a Pressure,
         moments: &DMatrix<f64>,
-        gamma: f64,
+        gamma: Option<f64>,
         tolerance: f64,
     ) -> Self {
         let (k, shares) = (wavenumbers.coarse().nodes().to_vec(), |i: usize| (i, [1.0]));
         let central = Arc::new(Waves::new(body, k, None, moments.clone(), layers, shares));
-        let negligible = 0.005 * tolerance;
+        let negligible = NEGLIGIBLE * tolerance;
         let all = Mutex::default();
         let counters = Counters::default();
         let plates = Mutex::default();
@@ -245,7 +248,7 @@ impl<'a> Field<'a> {
     /// ends, and the body's. Zero where stresses are corrected by a [`transition`], which is singular on
     /// the surface itself.
     fn smooth_within(&self, x: f64, y: f64) -> f64 {
-        if self.body.model == EdgeModel::Guilbault {
+        if self.gamma.is_some() {
             return 0.0;
         }
         let ends = [self.pressure.axis().end(), self.body.half].map(|end| (end - y.abs()).abs());
@@ -350,7 +353,7 @@ impl<'a> Field<'a> {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
         }
-        if self.on_face(y) && self.body.model == EdgeModel::QuarterSpace {
+        if self.on_face(y) && self.body.end.freed {
             (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
         }
         if y < 0.0 {
@@ -372,13 +375,13 @@ impl<'a> Field<'a> {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
         let surface = Sight::of_surface(body, &waves, y, z);
-        let complete = body.model == EdgeModel::QuarterSpace;
+        let complete = body.end.freed;
         let faces = complete.then(|| {
             let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
             Sight::of_faces(body, &waves, y, z, depths)
         });
-        let correction = (body.model == EdgeModel::Guilbault).then(|| {
-            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, self.gamma));
+        let correction = self.gamma.map(|gamma| {
+            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, gamma));
             (Sight::of_surface(body, &waves, body.half, z), shares[0] + shares[1])
         });
         let local: Vec<(usize, f64)> = self.pressure.neighbours(y).into_iter().flatten().collect();
@@ -504,18 +507,4 @@ fn rounded(
         xs.iter().map(at).collect()
     })
     .collect()
-}
-
-/// Share of an end face's normal stress that the reconstructed correction of
-/// [`EdgeModel::Guilbault`] takes away at the distance `s` from the face and the depth `z`.
-///
-/// A pressure on the face with the wavelength of the depth fades into the body like
-/// (1 + kappa s) e^(-kappa s); with kappa = 1 / (gamma z) the share is one on the face and none far
-/// from it, and the far field is reached over a distance that grows with the depth.
-pub fn transition(s: f64, z: f64, gamma: f64) -> f64 {
-    if s <= 0.0 {
-        return 1.0;
-    }
-    let t = s / (gamma * z);
-    if t > 700.0 || z == 0.0 { 0.0 } else { (1.0 + t) * (-t).exp() }
 }

@@ -7,7 +7,8 @@ mod pressure;
 pub mod round;
 mod waves;
 
-pub use curves::{BodyKind, CurveSpec};
+pub use crate::base::BodyKind;
+pub use curves::CurveSpec;
 pub use field::{Field, Work};
 pub use grid::{Grid, GridStress};
 pub use pressure::Pressure;

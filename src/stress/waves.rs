@@ -286,7 +286,7 @@ fn upon(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::{EdgeModel, Resolution};
+    use crate::body::{EdgeModel, Resolution, Shape};
 
     #[test]
     fn a_block_feels_what_each_wavenumber_does_by_itself() {
@@ -298,7 +298,11 @@ mod tests {
 
     fn compare(ledge: f64, everywhere: bool) {
         let resolution = Resolution::for_tolerance(1e-2);
-        let body = Body::new(5.0, 5.0 + ledge, 0.3, EdgeModel::QuarterSpace, 1.0, &resolution);
+        let body = Body::new(
+            Shape { contact: 5.0, half: 5.0 + ledge, nu: 0.3 },
+            EdgeModel::QuarterSpace.end(0.3, None),
+            &resolution,
+        );
         let numbers = resolution.wavenumbers(body.half).resolving(1.0);
         let layers: Vec<Layer> = numbers.coarse().nodes().iter().map(|k| body.layer(*k)).collect();
         let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.fine().weights());

@@ -1,7 +1,7 @@
 //! A run over thousands of cases: similar cases are solved once, a case that fails is a result like
 //! any other, and the work can be cut into shards and gone on with.
 
-use crate::base::{Error, Result};
+use crate::base::{Error, PerBody, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
 use crate::solve::{KeyResults, Scene, key_results};
@@ -59,7 +59,7 @@ type Key = [u64; 8];
 
 fn key(case: &Case, method: EdgeModel) -> Key {
     let scene = Scene::new(case, method, None);
-    let [block, roller] = scene.bodies;
+    let PerBody { block, roller } = scene.bodies;
     [
         scene.half_length,
         block.half,

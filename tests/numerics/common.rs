@@ -1,7 +1,7 @@
 //! What the tests of the numerics share: a plain scene, and comparisons in which a NaN never passes for
 //! small.
 
-use edgeline::base::StressTensor;
+use edgeline::base::{PerBody, StressTensor};
 use edgeline::body::EdgeModel;
 use edgeline::solve::{Scene, SceneBody};
 
@@ -10,7 +10,7 @@ pub fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> 
     let body = |half| SceneBody { half, nu, share: 0.5 };
     Scene {
         half_length: slenderness,
-        bodies: [body(slenderness / length_ratio), body(slenderness)],
+        bodies: PerBody { block: body(slenderness / length_ratio), roller: body(slenderness) },
         model,
         psi: None,
         tolerance: 1e-3,

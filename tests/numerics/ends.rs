@@ -2,12 +2,11 @@
 //! Lengths are in units of C, stresses in units of p0.
 
 use crate::common::scene;
-use edgeline::body::{EdgeModel, Resolution};
+use edgeline::body::{EdgeModel, GAMMA, Resolution, transition};
 use edgeline::solve::edge::{self, EdgeStrength};
-use edgeline::solve::{GAMMA, Scene, SolvedScene};
+use edgeline::solve::{Scene, SolvedScene};
 use edgeline::stress::BodyKind;
 use edgeline::stress::curves::standard_curves;
-use edgeline::stress::field::transition;
 
 /// The strength of the end at a resolution.
 fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
@@ -16,8 +15,7 @@ fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
 
 #[test]
 fn exponents_of_corners_are_the_known_ones() {
-    let exponent =
-        |length_ratio, nu, model| edge::corner_exponent(&scene(5.0, length_ratio, nu, model));
+    let exponent = |length_ratio, nu, model| scene(5.0, length_ratio, nu, model).corner_exponent();
     // Two half-planes: a rigid punch's. A quarter-plane on a half-plane of the same material, without
     // friction: 0.226, whatever Poisson's ratio (Dundurs and Lee, Journal of Elasticity 2, 1972).
     assert_eq!(exponent(0.5, 0.3, EdgeModel::HalfSpace), Some(0.5));
@@ -94,9 +92,9 @@ fn samples((slenderness, length_ratio, nu): (f64, f64, f64)) -> Vec<Sample> {
     let [model, truth] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace]
         .map(|model| SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap());
     let mut all = Vec::new();
-    for (kind, body) in BodyKind::ALL.into_iter().zip(model.scene.bodies) {
+    for (kind, body) in BodyKind::ALL.into_iter().zip(model.scene.bodies.iter()) {
         // A factor next to nothing corrects on the faces themselves and nowhere else.
-        let (mirrored, truth) = (model.field_with(kind, 1e-12, 1e-3), truth.field(kind));
+        let (mirrored, truth) = (model.field_with(kind, Some(1e-12), 1e-3), truth.field(kind));
         for [x, y, z] in
             standard_curves(kind, slenderness, body.half).into_iter().flat_map(|c| c.points)
         {

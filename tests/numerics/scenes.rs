@@ -236,7 +236,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         }
     }
 
-    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies) {
+    for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies.iter()) {
         let field = solved.field(kind);
         let (y, z) = (0.7 * half_length, 0.6);
         let [s, t] = [field.at(y, z, &[0.4])[0], field.at(-y, z, &[-0.4])[0]];
@@ -256,7 +256,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
 
     if draw.factors.length_ratio == 1.0 {
         let mut exchanged = scene.clone();
-        exchanged.bodies.swap(0, 1);
+        std::mem::swap(&mut exchanged.bodies.block, &mut exchanged.bodies.roller);
         note(Law::Exchange, pressures_apart(&solved, &SolvedScene::new(&exchanged)?));
     }
 
@@ -274,7 +274,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     if rescaled != scene {
         note(Law::Perturbed, pressures_apart(&solved, &SolvedScene::new(&rescaled)?));
     }
-    for (a, b) in scene.bodies.iter().zip(rescaled.bodies) {
+    for (a, b) in scene.bodies.iter().zip(rescaled.bodies.iter()) {
         let pairs =
             [(a.half, b.half), (a.share, b.share), (scene.half_length, rescaled.half_length)];
         let off = pairs.into_iter().map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, worse);
@@ -285,7 +285,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     if draw.index % 8 < EdgeModel::ALL.len() {
         let mut other = scene.clone();
         other.half_length *= 1.0 + 1e-12;
-        for body in &mut other.bodies {
+        for body in other.bodies.iter_mut() {
             body.half *= 1.0 + 1e-12;
             body.nu *= 1.0 + 1e-12;
         }

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 use crate::common::{apart, scene, worse};
 use edgeline::base::{Material, Panels, StressTensor};
-use edgeline::body::{Body, EdgeModel, Resolution};
+use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::kernels::{hertz, love, strip};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
@@ -22,10 +22,7 @@ fn solved(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Sol
 
 /// Half-length of a body of a scene.
 fn half_of(scene: &Scene, kind: BodyKind) -> f64 {
-    match kind {
-        BodyKind::Block => scene.bodies[0].half,
-        BodyKind::Roller => scene.bodies[1].half,
-    }
+    scene.bodies[kind].half
 }
 
 /// Points of the standard curves of a body, each outside [`CORNER`], named.
@@ -164,7 +161,7 @@ fn flush_ends_without_lateral_strain_are_not_felt() {
 fn a_far_end_is_no_end() {
     let rigid = |model, half| {
         let mut scene = scene(5.0, 5.0 / half, 0.3, model);
-        (scene.bodies[0].share, scene.bodies[1].share) = (1.0, 0.0);
+        (scene.bodies.block.share, scene.bodies.roller.share) = (1.0, 0.0);
         SolvedScene::new(&scene).unwrap()
     };
     let endless = rigid(EdgeModel::HalfSpace, 55.0);
@@ -295,7 +292,8 @@ fn compliance_is_reciprocal() {
         (5.5, EdgeModel::QuarterSpace),
         (10.0, EdgeModel::QuarterSpace),
     ] {
-        let body = Body::new(5.0, half, 0.3, model, 1.39, &resolution);
+        let body =
+            Body::new(Shape { contact: 5.0, half, nu: 0.3 }, model.end(0.3, None), &resolution);
         let axis = resolution.contact_axis(5.0);
         let (nodes, weights) = (axis.nodes(), axis.weights());
         let shapes: [&dyn Fn(f64) -> f64; 4] =
@@ -329,9 +327,8 @@ fn compliance_is_reciprocal() {
 fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
     let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
-        Body::new(slenderness, half, nu, EdgeModel::QuarterSpace, 1.0, resolution)
-            .layer(k)
-            .condition
+        let shape = Shape { contact: slenderness, half, nu };
+        Body::new(shape, EdgeModel::QuarterSpace.end(nu, None), resolution).layer(k).condition
     };
     let say = |what: &str, values: Vec<f64>| {
         println!(
@@ -386,7 +383,8 @@ fn compliance_is_positive_definite() {
 fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f64) -> f64 {
     let resolution = Resolution::for_tolerance(1e-2);
     let half = slenderness / length_ratio;
-    let body = Body::new(slenderness, half, 0.3, model, psi, &resolution);
+    let shape = Shape { contact: slenderness, half, nu: 0.3 };
+    let body = Body::new(shape, model.end(0.3, Some(psi)), &resolution);
     let axis = resolution.contact_axis(slenderness);
     let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
     let wavenumbers = resolution.wavenumbers(half);
@@ -405,7 +403,8 @@ fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f
 /// along y.
 fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
     let resolution = Resolution::for_tolerance(1e-3);
-    let body = Body::new(3.0, 4.0, 0.3, EdgeModel::QuarterSpace, 1.0, &resolution);
+    let shape = Shape { contact: 3.0, half: 4.0, nu: 0.3 };
+    let body = Body::new(shape, EdgeModel::QuarterSpace.end(0.3, None), &resolution);
     let wavenumbers = resolution.wavenumbers(4.0);
     let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     let axis = resolution.contact_axis(3.0);
@@ -413,7 +412,7 @@ fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor
     let pressure = Pressure::new(axis.clone(), vec![1.0; axis.len()], amplitudes);
     let moments = pressure.moments(&wavenumbers);
     move |place| {
-        at(&Field::new(&body, &wavenumbers, &layers, &pressure, &moments, 1.0, 1e-3), place)
+        at(&Field::new(&body, &wavenumbers, &layers, &pressure, &moments, None, 1e-3), place)
     }
 }
 
@@ -567,7 +566,7 @@ fn faded_wavenumbers_do_not_matter() {
     let solved = solved(5.0, 0.5, 0.3, EdgeModel::QuarterSpace);
     for kind in BodyKind::ALL {
         let usual = solved.field(kind);
-        let all = solved.field_with(kind, 1.0, 0.0);
+        let all = solved.field_with(kind, None, 0.0);
         let mut worst: f64 = 0.0;
         for (_, place) in curve_points(&solved.scene, kind) {
             worst = worse(worst, apart(&at(&usual, place), &at(&all, place)));
@@ -648,7 +647,7 @@ fn points_between_do_not_matter() {
 fn bodies_that_are_alike_are_computed_once() {
     let alike = solved(5.0, 1.0, 0.3, EdgeModel::QuarterSpace);
     let mut scene = alike.scene.clone();
-    scene.bodies[0].nu += 1e-12;
+    scene.bodies.block.nu += 1e-12;
     let different = SolvedScene::new(&scene).unwrap();
     assert!(alike.bodies_shared() && !different.bodies_shared());
     let (pressure, stress) = changes(&different, &alike);
