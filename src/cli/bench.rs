@@ -1,10 +1,12 @@
 //! `edgeline bench`: run time against error.
 
 use super::cold::ColdRuns;
-use super::fem::FemOptions;
-use super::solve::{checked_tolerance, edge_model};
-use super::study::{FemSource, Records, command_line, now, processor, progress_bar, solve_all};
-use super::{Outcome, print, say};
+use super::fem_options::{FemOptions, FemSource};
+use super::output::{Outcome, print, say};
+use super::progress::{progress_bar, show};
+use super::provenance::{command_line, now, processor};
+use super::records::Records;
+use super::values::{checked_tolerance, chosen_models, edge_model};
 use crate::base::number::{duration, rounded};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -12,7 +14,11 @@ use crate::case::{Case, Study};
 use crate::fem::Driver;
 use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
-use crate::study::bench::{self, Against, BEST, Bench, FemMeshes, Machine, Origin, Setup, Speedup};
+use crate::solve::{Options, solve_group};
+use crate::study::Models;
+use crate::study::bench::{
+    self, Against, BEST, Bench, CaseBench, FemMeshes, Machine, Origin, Setup, Speedup,
+};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 
@@ -125,65 +131,18 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         .collect::<Result<_>>()?;
     let records = Records::read(arguments.reference.as_deref())?;
     let _lock = Lock::claim(&arguments.out)?;
-    let drivers: Vec<(f64, Driver)> = match arguments.fem {
-        FemSource::Recorded => Vec::new(),
-        FemSource::Live => descending(&arguments.sizes)
-            .into_iter()
-            .map(|size| Ok((size, Driver::new(arguments.options.settings(size))?)))
-            .collect::<Result<_>>()?,
-    };
+    let drivers = drivers(&arguments)?;
     // A damaged record is told before the long run.
     cases.iter().try_for_each(|case| records.find(case).map(|_| ()))?;
-
-    let bar = progress_bar();
-    let cold = ColdRuns::new(&arguments.out);
-    let levels = descending(&arguments.levels);
-    let wanted = |m: &EdgeModel| arguments.methods.is_empty() || arguments.methods.contains(m);
-    let benches = bench::run(
-        &cases,
-        &Setup {
-            methods: EdgeModel::ALL.into_iter().filter(wanted).collect(),
-            tolerances: tolerances.clone(),
-            repeats: usize::from(arguments.repeats),
-            solver: &solve_all,
-            cold: &|case, method, threads| cold.seconds(case, method, threads),
-            fem: &|case| {
-                let recorded = records.find(case).unwrap_or_default();
-                let folder = arguments.out.join("fem").join(&case.name);
-                let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
-                FemMeshes::run(recorded, &drivers, arguments.fem_repeats, case, &folder, &say)
-            },
-            progress: &|done, all, what| {
-                bar.set_length(all as u64);
-                bar.set_position(done as u64);
-                bar.set_message(what.to_string());
-            },
-        },
-    );
-    bar.finish_and_clear();
+    let benches = measure(&arguments, &cases, &tolerances, &records, &drivers);
     host::check_interrupt()?;
-    let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
-    for (case, point) in points() {
-        if let Some(message) = &point.err {
-            let name = &case.case.name;
-            say(&format!("warning: {name} by {} at {}: {message}", point.source, point.setting));
-        }
-    }
-    let failed = points().filter(|(_, p)| p.origin == Origin::Model).all(|(_, p)| p.err.is_some());
-    if let Some((_, first)) = points().next().filter(|_| failed) {
-        return Err(Error::Value {
-            key: "bench".into(),
-            value: format!("{} cases", benches.len()),
-            reason: first.err.clone().unwrap_or_default(),
-            remedy: "no case could be solved; try one of them with `edgeline solve`".into(),
-        });
-    }
+    report_failures(&benches)?;
     let bench = Bench::new(
         date,
         command_line(),
         Machine { processor: processor(), threads: rayon::current_num_threads() },
         tolerances.last().copied().unwrap_or(f64::NAN),
-        levels,
+        descending(&arguments.levels),
         benches,
     );
     files::write(&bench, &arguments.out)?;
@@ -193,6 +152,74 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         print(&text(&bench, &arguments.out))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Live FEM on each mesh, by its relative element size.
+fn drivers(arguments: &Arguments) -> Result<Vec<(f64, Driver)>> {
+    match arguments.fem {
+        FemSource::Recorded => Ok(Vec::new()),
+        FemSource::Live => descending(&arguments.sizes)
+            .into_iter()
+            .map(|size| Ok((size, Driver::new(arguments.options.settings(size))?)))
+            .collect(),
+    }
+}
+
+/// Runs the cases by models and FEM.
+fn measure(
+    arguments: &Arguments,
+    cases: &[Case],
+    tolerances: &[f64],
+    records: &Records,
+    drivers: &[(f64, Driver)],
+) -> Vec<CaseBench> {
+    let bar = progress_bar();
+    let cold = ColdRuns::new(&arguments.out);
+    let benches = bench::run(
+        cases,
+        &Setup {
+            models: Models {
+                methods: chosen_models(&arguments.methods),
+                repeats: usize::from(arguments.repeats),
+                solver: &|cases, method| solve_group(cases, &Options::new(method)),
+                cold: &|case, method, threads| cold.seconds(case, method, threads),
+            },
+            tolerances: tolerances.to_vec(),
+            fem: &|case| {
+                let recorded = records.find(case).unwrap_or_default();
+                let folder = arguments.out.join("fem").join(&case.name);
+                let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
+                FemMeshes::run(recorded, drivers, arguments.fem_repeats, case, &folder, &say)
+            },
+            progress: &|done, all, what| show(&bar, done, all, what),
+        },
+    );
+    bar.finish_and_clear();
+    benches
+}
+
+/// Warns of answers that there are none of.
+///
+/// # Errors
+/// [`Error::Value`] when no model answered at all.
+fn report_failures(benches: &[CaseBench]) -> Result<()> {
+    let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
+    for (case, point) in points() {
+        if let Some(message) = &point.err {
+            let name = &case.case.name;
+            say(&format!("warning: {name} by {} at {}: {message}", point.source, point.setting));
+        }
+    }
+    let failed = points().filter(|(_, p)| p.origin == Origin::Model).all(|(_, p)| p.err.is_some());
+    match points().next().filter(|_| failed) {
+        Some((_, first)) => Err(Error::Value {
+            key: "bench".into(),
+            value: format!("{} cases", benches.len()),
+            reason: first.err.clone().unwrap_or_default(),
+            remedy: "no case could be solved; try one of them with `edgeline solve`".into(),
+        }),
+        None => Ok(()),
+    }
 }
 
 /// The short summary for a reader.

@@ -1,6 +1,6 @@
 //! `edgeline doctor`: what is installed, and what would have to be.
 
-use super::{Outcome, print, print_json};
+use super::output::{Outcome, print, print_json};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;

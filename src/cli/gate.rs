@@ -1,13 +1,13 @@
 //! `edgeline gate`: does it still hold?
 
-use super::study::{What, built_in_baseline, built_in_gates};
-use super::{Outcome, print, print_json};
+use super::output::{Outcome, print, print_json};
+use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
 use crate::host::{Lock, write_set, write_whole};
 use crate::report::gates;
 use crate::report::study_files::pretty;
 use crate::report::table::read;
-use crate::study::gate::{self, Baseline};
+use crate::study::gate::{self, Baseline, Gates};
 use clap::{Args, ValueHint};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
-    what: What,
+    study: StudyOptions,
     /// Thresholds (TOML) in place of those built into the program
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     gates: Option<PathBuf>,
@@ -40,21 +40,21 @@ pub(super) struct Arguments {
 const LISTED: usize = 40;
 
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
-    let study = arguments.what.find_study()?;
+    let study = arguments.study.find_study()?;
     let thresholds = match &arguments.gates {
         Some(path) => gate::parse(&read(path)?, path)?,
-        None => built_in_gates()?,
+        None => Gates::built_in()?,
     };
     let accepted = match &arguments.baseline {
         // What is to be written need not be there yet.
         Some(path) if arguments.accept && !path.exists() => Baseline::default(),
         Some(path) => Baseline::parse(&read(path)?, path)?,
-        None => built_in_baseline()?,
+        None => Baseline::built_in()?,
     };
-    let out = &arguments.what.out;
+    let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
     let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
-    let run = arguments.what.run(&study, if timed { 5 } else { 0 })?;
+    let run = arguments.study.run(&study, if timed { 5 } else { 0 })?;
 
     if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {
         return accept(path, &accepted, &Baseline::of(&run), arguments.json);

@@ -1,106 +1,22 @@
-//! The command line: one file per subcommand.
+//! The command line: one file a subcommand, and one for each thing that several of them need.
 
 mod bench;
 mod cold;
 mod doctor;
 mod fem;
+mod fem_options;
 mod gate;
+mod output;
 pub mod points;
+mod program;
 mod progress;
+mod provenance;
+mod records;
 mod report;
 mod solve;
 mod study;
+mod study_options;
 mod sweep;
+mod values;
 
-use crate::base::{Error, Result};
-use clap::{Parser, Subcommand};
-use progress::Progress;
-use std::ffi::OsString;
-use std::io::Write;
-use std::process::ExitCode;
-
-/// Contact pressure and stresses at the ends of finite line contacts, by a semi-analytical
-/// solver, and the finite-element harness that proves it.
-///
-/// Results go to files and a short summary to standard output; progress and warnings go to
-/// standard error. A folder serves one run at a time. The exit code is 0 when all was done, 1 when
-/// an accuracy gate failed, and 2 when it could not run: bad input, a missing tool, a failed child
-/// process.
-#[derive(Parser)]
-#[command(name = "edgeline", version, arg_required_else_help = true)]
-struct Arguments {
-    #[command(subcommand)]
-    command: Command,
-}
-
-#[derive(Subcommand)]
-enum Command {
-    Solve(solve::Arguments),
-    Fem(fem::Arguments),
-    Study(study::Arguments),
-    Sweep(sweep::Arguments),
-    Gate(gate::Arguments),
-    Bench(bench::Arguments),
-    Report(report::Arguments),
-    Doctor(doctor::Arguments),
-}
-
-/// What a subcommand that ran to its end has to say.
-enum Outcome {
-    /// All was done.
-    Done,
-    /// All was done, and an accuracy gate does not hold.
-    GateFailed,
-}
-
-/// Runs the program with `arguments`, the program's name first, and returns its exit code.
-pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
-        Ok(arguments) => arguments,
-        Err(e) => {
-            // Help and version are no errors and go to standard output.
-            let _ = e.print();
-            return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
-        }
-    };
-    let outcome = match arguments.command {
-        Command::Solve(arguments) => solve::run(arguments),
-        Command::Fem(arguments) => fem::run(arguments),
-        Command::Study(arguments) => study::run(arguments),
-        Command::Sweep(arguments) => sweep::run(arguments),
-        Command::Gate(arguments) => gate::run(arguments),
-        Command::Bench(arguments) => bench::run(arguments),
-        Command::Report(arguments) => report::run(arguments),
-        Command::Doctor(arguments) => doctor::run(arguments),
-    };
-    match outcome {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::GateFailed) => ExitCode::from(1),
-        Err(e) => {
-            say(&format!("error: {e}"));
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Says something on standard error. That it cannot be said is no reason to fail.
-fn say(text: &str) {
-    let _ = writeln!(std::io::stderr(), "{text}");
-}
-
-/// Prints to standard output. That nobody reads on (`edgeline ... | head -1`) is no error: the
-/// files are what counts.
-fn print(text: &str) -> Result<()> {
-    let mut out = std::io::stdout().lock();
-    match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
-            Err(Error::Io { action: "write to", path: "standard output".into(), source: e })
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Prints a JSON value as the only thing on standard output.
-fn print_json(value: &serde_json::Value) -> Result<()> {
-    print(&format!("{value:#}\n"))
-}
+pub use program::run;

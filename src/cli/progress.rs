@@ -1,6 +1,7 @@
 //! Progress on standard error.
 
-use indicatif::{ProgressBar, ProgressStyle};
+use super::output::say;
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
 
@@ -29,7 +30,7 @@ impl Progress {
                 bar.set_prefix(what.to_string());
                 bar.set_message(doing.to_string());
             }
-            None => super::say(&format!("{what}: {doing}")),
+            None => say(&format!("{what}: {doing}")),
         }
     }
 
@@ -39,4 +40,19 @@ impl Progress {
             bar.finish_and_clear();
         }
     }
+}
+
+/// A bar on a terminal and nothing elsewhere.
+pub(super) fn progress_bar() -> ProgressBar {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::stderr());
+    let style = ProgressStyle::with_template("{bar:30} {pos}/{len} {msg}");
+    bar.set_style(style.expect("a constant template"));
+    bar
+}
+
+/// Shows that `done` of `all` steps are done, and what was just done.
+pub(super) fn show(bar: &ProgressBar, done: usize, all: usize, what: &str) {
+    bar.set_length(all as u64);
+    bar.set_position(done as u64);
+    bar.set_message(what.to_string());
 }

@@ -1,6 +1,6 @@
 //! `edgeline report`: the page of a finished run again.
 
-use super::{Outcome, print};
+use super::output::{Outcome, print};
 use crate::base::Result;
 use crate::host::Lock;
 use crate::report::page;

@@ -1,6 +1,7 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::{Outcome, print, print_json};
+use super::output::{Outcome, print, print_json};
+use super::values::{checked_tolerance, edge_model};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -51,14 +52,6 @@ pub(super) struct Arguments {
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
     json: bool,
-}
-
-/// Parses the name of an edge model.
-pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
-    PossibleValuesParser::new(EdgeModel::ALL.map(EdgeModel::name)).map(|name| {
-        let named = |model: &EdgeModel| model.name() == name;
-        EdgeModel::ALL.into_iter().find(named).expect("only these names pass")
-    })
 }
 
 fn body() -> impl TypedValueParser<Value = BodyKind> {
@@ -139,20 +132,6 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
         });
     }
     Ok(counts)
-}
-
-/// The tolerance if it is within its legal range.
-pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64> {
-    let (low, high) = Case::TOLERANCE_RANGE;
-    if (low..=high).contains(&tolerance) {
-        return Ok(tolerance);
-    }
-    Err(Error::Value {
-        key: "--tolerance".into(),
-        value: tolerance.to_string(),
-        reason: format!("it is a fraction of p0 between {low:e} and {high:e}"),
-        remedy: "give for example 1e-3".into(),
-    })
 }
 
 /// The short summary for a reader.

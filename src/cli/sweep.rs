@@ -1,8 +1,8 @@
 //! `edgeline sweep`: thousands of cases.
 
-use super::solve::{checked_tolerance, edge_model};
-use super::study::progress_bar;
-use super::{Outcome, print, print_json};
+use super::output::{Outcome, print, print_json};
+use super::progress::progress_bar;
+use super::values::{checked_tolerance, edge_model};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
@@ -58,9 +58,6 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         method: arguments.method,
         tolerance: arguments.tolerance.map(checked_tolerance).transpose()?,
     };
-    let jobs = arguments
-        .jobs
-        .map_or_else(|| std::thread::available_parallelism().map_or(1, usize::from), usize::from);
     let groups = sweep::groups(&sweep, &settings, arguments.shard);
     let mut order: Vec<usize> = groups.iter().flat_map(|g| g.rows.iter().copied()).collect();
     order.sort_unstable();
@@ -87,7 +84,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     bar.set_position(kept as u64);
     let file = Mutex::new(file);
     let solving = Instant::now();
-    let done = sweep::run(&sweep, &settings, &todo, jobs, &|row, outcome| {
+    let done = sweep::run(&sweep, &settings, &todo, jobs(&arguments), &|row, outcome| {
         file.lock().unwrap_or_else(|e| e.into_inner()).add(row, &label(row), &outcome)?;
         bar.inc(1);
         Ok(())
@@ -96,34 +93,78 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     done?;
     let file = file.into_inner().unwrap_or_else(|e| e.into_inner());
     file.finish()?;
-    let failed = file.failed();
-
-    let solving = solving.elapsed().as_secs_f64();
-    let rate = if rows > kept { (rows - kept) as f64 / solving } else { 0.0 };
+    let summary = Summary {
+        rows_of_sweep: sweep.len(),
+        rows,
+        kept,
+        failed: file.failed(),
+        problems: todo.len(),
+        seconds: began.elapsed().as_secs_f64(),
+        solving: solving.elapsed().as_secs_f64(),
+    };
     if arguments.json {
-        print_json(&json!({
-            "file": arguments.file.display().to_string(),
-            "out": arguments.out.display().to_string(),
-            "method": settings.method.name(),
-            "rows_of_sweep": sweep.len(),
-            "rows": rows,
-            "rows_kept": kept,
-            "rows_failed": failed,
-            "problems_solved": todo.len(),
-            "jobs": jobs,
-            "seconds": began.elapsed().as_secs_f64(),
-            "rows_per_second": rate,
-        }))?;
+        print_json(&summary.json(&arguments))?;
     } else {
-        let before = if kept > 0 { format!(", {kept} of them before") } else { String::new() };
-        let failures = if failed > 0 { format!(", {failed} with an err") } else { String::new() };
-        print(&format!(
-            "{rows} rows{before}{failures}; {} problems solved by {} in {solving:.1} s, {rate:.0} \
-             rows a second\nwrote {}\n",
-            todo.len(),
-            settings.method,
-            arguments.out.display()
-        ))?;
+        print(&summary.text(&arguments))?;
     }
     Ok(Outcome::Done)
+}
+
+/// Cases solved at a time.
+fn jobs(arguments: &Arguments) -> usize {
+    let all = || std::thread::available_parallelism().map_or(1, usize::from);
+    arguments.jobs.map_or_else(all, usize::from)
+}
+
+/// What was done.
+struct Summary {
+    rows_of_sweep: usize,
+    /// Rows of this part of it.
+    rows: usize,
+    /// Rows that the file held already.
+    kept: usize,
+    /// Rows with an `err`.
+    failed: usize,
+    /// Contact problems solved.
+    problems: usize,
+    /// Time of everything, and of solving alone (s).
+    seconds: f64,
+    solving: f64,
+}
+
+impl Summary {
+    /// Rows solved a second.
+    fn rate(&self) -> f64 {
+        if self.rows > self.kept { (self.rows - self.kept) as f64 / self.solving } else { 0.0 }
+    }
+
+    fn json(&self, arguments: &Arguments) -> serde_json::Value {
+        json!({
+            "file": arguments.file.display().to_string(),
+            "out": arguments.out.display().to_string(),
+            "method": arguments.method.name(),
+            "rows_of_sweep": self.rows_of_sweep,
+            "rows": self.rows,
+            "rows_kept": self.kept,
+            "rows_failed": self.failed,
+            "problems_solved": self.problems,
+            "jobs": jobs(arguments),
+            "seconds": self.seconds,
+            "rows_per_second": self.rate(),
+        })
+    }
+
+    /// The short summary for a reader.
+    fn text(&self, arguments: &Arguments) -> String {
+        let Summary { rows, kept, failed, problems, solving, .. } = self;
+        let before = if *kept > 0 { format!(", {kept} of them before") } else { String::new() };
+        let failures = if *failed > 0 { format!(", {failed} with an err") } else { String::new() };
+        format!(
+            "{rows} rows{before}{failures}; {problems} problems solved by {} in {solving:.1} s, {:.0} \
+             rows a second\nwrote {}\n",
+            arguments.method,
+            self.rate(),
+            arguments.out.display()
+        )
+    }
 }

@@ -9,6 +9,8 @@ mod memory;
 #[cfg(feature = "cli")]
 mod process;
 #[cfg(feature = "cli")]
+mod signals;
+#[cfg(feature = "cli")]
 mod system;
 mod text;
 
@@ -17,7 +19,8 @@ pub(crate) use {
     files::{prepare_folder, remove_if_there, write_set, write_whole},
     lock::Lock,
     memory::check_memory,
-    process::{Stage, capture, check_interrupt, kill_marked},
+    process::{Stage, capture, kill_marked},
+    signals::check_interrupt,
 };
 
 pub(crate) use text::read_text;

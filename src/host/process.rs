@@ -5,15 +5,16 @@
 //! own children inherit. Whatever is found with that mark after the child's end is killed; that
 //! reaches MPI ranks, which leave the process group.
 
+use super::signals::{Active, check_interrupt};
 use super::system;
 use crate::base::{Error, Result};
+use rustix::process::{Pid, Signal, getpid, kill_process, kill_process_group};
 use std::fs::{self, File};
 use std::io::{Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
-use std::sync::Once;
-use std::sync::atomic::{AtomicI32, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
 /// The environment variable that marks all processes of a run; its value is the run's folder.
@@ -76,7 +77,7 @@ impl Stage<'_> {
         }
         let message = match (status.code(), status.signal()) {
             (Some(code), _) => format!("failed with exit code {code}"),
-            (None, Some(libc::SIGKILL)) => {
+            (None, Some(signal)) if signal == Signal::KILL.as_raw() => {
                 "was killed (signal 9), perhaps because memory ran out".to_string()
             }
             (None, signal) => format!("was ended by signal {}", signal.unwrap_or(0)),
@@ -187,7 +188,7 @@ fn spawn(command: &mut Command, mark: &Path) -> std::io::Result<Child> {
 
 /// Ends a child and its process group: asks first, so that `mpirun` can end its ranks.
 fn stop(child: &mut Child) {
-    signal_group(child, libc::SIGTERM);
+    signal_group(child, Signal::TERM);
     let began = Instant::now();
     while began.elapsed() < GRACE {
         if !matches!(child.try_wait(), Ok(None)) {
@@ -196,14 +197,15 @@ fn stop(child: &mut Child) {
         std::thread::sleep(Duration::from_millis(10));
     }
     // The group may outlive its leader.
-    signal_group(child, libc::SIGKILL);
+    signal_group(child, Signal::KILL);
     let _ = child.wait();
 }
 
-/// The group was made for this child, which has not been waited for unless its group is empty or
-/// still its own.
-fn signal_group(child: &Child, signal: i32) {
-    system::send(signal, child.id() as i32, true);
+/// Sends a signal to the group that was made for this child. Its number is not another group's: a
+/// leader's number is not given away while it is not waited for, or while its group has members.
+fn signal_group(child: &Child, signal: Signal) {
+    // A group that is not there any more needs no signal.
+    let _ = Pid::from_raw(child.id() as i32).map(|pid| kill_process_group(pid, signal));
 }
 
 /// Kills every process that carries the mark of the run in `folder`, until there is none.
@@ -217,22 +219,23 @@ pub(crate) fn kill_marked(folder: &Path) {
             return;
         }
         for pid in found {
-            system::send(libc::SIGKILL, pid, false);
+            // One that is not there any more is none of ours.
+            let _ = kill_process(pid, Signal::KILL);
         }
         std::thread::sleep(Duration::from_millis(5));
     }
 }
 
 /// Processes other than this one that have `wanted` in their environment.
-fn marked(wanted: &[u8]) -> Vec<libc::pid_t> {
-    let own = std::process::id() as libc::pid_t;
+fn marked(wanted: &[u8]) -> Vec<Pid> {
+    let own = getpid();
     let entries = fs::read_dir("/proc").into_iter().flatten().flatten();
     entries
-        .filter_map(|entry| entry.file_name().to_str()?.parse().ok())
-        .filter(|&pid: &libc::pid_t| pid != own)
+        .filter_map(|entry| Pid::from_raw(entry.file_name().to_str()?.parse().ok()?))
+        .filter(|&pid| pid != own)
         // Processes of other users cannot be read, and are none of ours.
         .filter(|pid| {
-            fs::read(format!("/proc/{pid}/environ"))
+            fs::read(format!("/proc/{}/environ", pid.as_raw_pid()))
                 .is_ok_and(|text| text.split(|&b| b == 0).any(|variable| variable == wanted))
         })
         .collect()
@@ -278,51 +281,4 @@ fn size_of(folder: &Path) -> u64 {
             Err(_) => 0,
         })
         .sum()
-}
-
-/// The signal that asked this process to stop while a child ran; 0 if none did.
-static INTERRUPT: AtomicI32 = AtomicI32::new(0);
-/// Number of children being waited for.
-static ACTIVE: AtomicUsize = AtomicUsize::new(0);
-
-/// While one of these lives, a request to stop (Ctrl-C, SIGTERM, SIGHUP) ends the child first.
-struct Active;
-
-impl Active {
-    fn new() -> Self {
-        static INSTALL: Once = Once::new();
-        INSTALL.call_once(|| {
-            for signal in [libc::SIGINT, libc::SIGTERM, libc::SIGHUP] {
-                system::handle(signal, on_signal);
-            }
-        });
-        ACTIVE.fetch_add(1, Ordering::SeqCst);
-        Self
-    }
-}
-
-impl Drop for Active {
-    fn drop(&mut self) {
-        ACTIVE.fetch_sub(1, Ordering::SeqCst);
-    }
-}
-
-/// Notes the signal while a child runs; otherwise it does what it does by default.
-extern "C" fn on_signal(signal: i32) {
-    if ACTIVE.load(Ordering::SeqCst) > 0 {
-        INTERRUPT.store(signal, Ordering::SeqCst);
-    } else {
-        system::act_by_default(signal);
-    }
-}
-
-/// Tells whether this process was asked to stop while a child ran.
-///
-/// # Errors
-/// [`Error::Interrupted`] if it was.
-pub(crate) fn check_interrupt() -> Result<()> {
-    match INTERRUPT.load(Ordering::SeqCst) {
-        0 => Ok(()),
-        signal => Err(Error::Interrupted { signal }),
-    }
 }

@@ -1,7 +1,8 @@
 //! Bessel functions from tables, where many values are wanted: those of [`super::bessel`] on rows of
 //! arguments, as polynomials of the place within a row, in [-1, 1].
 
-use super::bessel::{bessel_j_odd, k0};
+use super::bessel::k0;
+use super::bessel_j::bessel_j_odd;
 use super::patches::chebyshev_node;
 use multiversion::{multiversion, target::target_cfg_f};
 use nalgebra::SMatrix;

@@ -1,6 +1,7 @@
 //! Closed forms as pure functions, and tables of those that are wanted often.
 
 pub mod bessel;
+mod bessel_j;
 pub mod bessel_table;
 pub mod boussinesq;
 pub mod deflection;

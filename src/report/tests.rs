@@ -8,7 +8,7 @@ use crate::study::synthetic::{self, Twist};
 /// Files of a run on made-up solutions.
 fn files(twist: Twist) -> StudyFiles {
     let run = synthetic::run(twist);
-    let gates: Gates = gate::parse(gate::DEFAULT_GATES, "gates.toml".as_ref()).unwrap();
+    let gates: Gates = Gates::built_in().unwrap();
     let outcomes = gate::evaluate(&run, &gates, Some(&Baseline::of(&run)));
     let context = Context {
         date: "2026-01-01T00:00:00Z",

@@ -12,10 +12,10 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// The thresholds that are built into the program.
-pub const DEFAULT_GATES: &str = include_str!("gates.toml");
+const DEFAULT_GATES: &str = include_str!("gates.toml");
 
 /// The accepted numbers that are built into the program.
-pub const DEFAULT_BASELINE: &str = include_str!("../../results/baseline.json");
+const DEFAULT_BASELINE: &str = include_str!("../../results/baseline.json");
 
 /// The thresholds file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -26,6 +26,16 @@ pub struct Gates {
     pub gate: Vec<Gate>,
     /// How far any number may move from the accepted one.
     pub drift: Option<Drift>,
+}
+
+impl Gates {
+    /// The thresholds that are built into the program.
+    ///
+    /// # Errors
+    /// As [`parse`].
+    pub fn built_in() -> Result<Self> {
+        parse(DEFAULT_GATES, Path::new("gates.toml"))
+    }
 }
 
 /// One absolute limit. Filters that are not given select everything.
@@ -306,6 +316,14 @@ impl Gate {
 }
 
 impl Baseline {
+    /// The accepted numbers that are built into the program.
+    ///
+    /// # Errors
+    /// As [`Baseline::parse`].
+    pub fn built_in() -> Result<Self> {
+        Self::parse(DEFAULT_BASELINE, Path::new("baseline.json"))
+    }
+
     /// The numbers of a run, to be accepted.
     pub fn of(run: &StudyRun) -> Self {
         let mut baseline =

@@ -9,6 +9,7 @@ pub mod errors;
 pub mod factorial;
 pub mod gate;
 pub mod live;
+mod models;
 pub mod reference;
 mod run;
 mod sampled;
@@ -16,9 +17,9 @@ pub mod sweep;
 pub mod timing;
 
 pub use errors::{ErrorRow, Range};
+pub use models::{Cold, Models, Solver};
 pub use run::{
-    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, Solver, StudyRun,
-    Timed, problem_key, run,
+    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, StudyRun, Timed, run,
 };
 pub use sampled::{Quantity, Sampled, SampledCurve, SampledLine};
 

@@ -3,15 +3,16 @@
 use super::errors::{
     CriticalPoint, ErrorRow, ErrorSummary, Range, compare, critical_point, summarise,
 };
+use super::models::{Attempt, Models, Work};
 use super::sampled::Sampled;
-use super::timing::{self, Timing};
+use super::timing::Timing;
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::solve::Solution;
-use rayon::prelude::*;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// FEM's answer for one case, and where it comes from.
 #[derive(Debug, Clone)]
@@ -72,9 +73,6 @@ pub struct Timed {
     /// Median seconds and spread of each model on one thread.
     pub methods: BTreeMap<String, (f64, f64)>,
 }
-
-/// Solves cases that share a scene by one edge model, one answer a case in their order.
-pub type Solver<'a> = dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync + 'a;
 
 /// The part that a case plays in its study.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -158,46 +156,14 @@ pub struct StudyRun {
 
 /// What a run needs besides the study.
 pub struct Setup<'a> {
-    /// Methods to run.
-    pub methods: Vec<EdgeModel>,
+    /// The models.
+    pub models: Models<'a>,
     /// Range of the errors.
     pub range: Range,
-    /// Warm repeats of the timing; 0 leaves the timing out.
-    pub repeats: usize,
-    /// Solves cases that differ only in scale by one method, one result each, in order.
-    pub solver: &'a Solver<'a>,
-    /// Seconds of one case by one method on this many threads in a process of its own, where that
-    /// can be measured.
-    pub cold: &'a dyn Fn(&Case, EdgeModel, usize) -> Option<f64>,
     /// FEM's answer for a case, or why there is none.
     pub reference: &'a dyn Fn(&Case) -> std::result::Result<Reference, String>,
     /// Called with the number of steps done and of all steps, and what was just done.
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
-}
-
-/// What cases must have in common to be one problem in units of C and p0: all but the scale.
-/// Numbers that differ by rounding only are the same.
-pub fn problem_key(case: &Case) -> String {
-    let factors = case.factors();
-    let stiffness = case.roller.material.young_pa / case.block.material.young_pa;
-    let (nu_roller, nu_block) = (case.roller.material.poisson, case.block.material.poisson);
-    format!(
-        "{:.9e} {:.9e} {nu_roller:e} {nu_block:e} {stiffness:.9e} {:e}",
-        factors.slenderness, factors.length_ratio, case.tolerance
-    )
-}
-
-/// Indices of the cases of each problem, in the order of first appearance.
-fn groups(cases: &[Case]) -> Vec<Vec<usize>> {
-    let mut order: Vec<(String, Vec<usize>)> = Vec::new();
-    for (i, case) in cases.iter().enumerate() {
-        let key = problem_key(case);
-        match order.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, members)) => members.push(i),
-            None => order.push((key, vec![i])),
-        }
-    }
-    order.into_iter().map(|(_, members)| members).collect()
 }
 
 /// The factors with two levels, and the coded levels of a case. A factor with one level is not a
@@ -246,14 +212,11 @@ fn role(case: &Case, study: &Study, factors: &[Factor]) -> Role {
 pub fn run(study: &Study, setup: &Setup) -> StudyRun {
     let cases: Vec<Case> = study.cases().cloned().collect();
     let factors = design(study);
-    let groups = groups(&cases);
-    let jobs: Vec<(&Vec<usize>, EdgeModel)> =
-        groups.iter().flat_map(|g| setup.methods.iter().map(move |&m| (g, m))).collect();
-    let timings = if setup.repeats > 0 { jobs.len() } else { 0 };
-    let steps = cases.len() + jobs.len() + timings;
-    let done = std::sync::atomic::AtomicUsize::new(0);
+    let work = Work::new(&cases, &setup.models);
+    let steps = cases.len() + work.steps();
+    let done = AtomicUsize::new(0);
     let step = |what: &str| {
-        let n = done.fetch_add(1, std::sync::atomic::Ordering::Relaxed) + 1;
+        let n = done.fetch_add(1, Ordering::Relaxed) + 1;
         (setup.progress)(n, steps, what);
     };
 
@@ -266,36 +229,20 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
         })
         .collect();
 
-    let members = |group: &[usize]| group.iter().map(|&i| cases[i].clone()).collect::<Vec<_>>();
-    let solved: Vec<Vec<Result<Solution>>> = jobs
-        .par_iter()
-        .map(|(group, method)| {
-            let solutions = (setup.solver)(&members(group), *method);
-            step(&format!("{method}, {}", cases[group[0]].name));
-            solutions
-        })
-        .collect();
-
-    // Timing runs alone, after everything else, and on one case of each problem: the others of the
-    // group only differ in scale.
-    let mut timing: Vec<Vec<Timing>> = vec![Vec::new(); jobs.len()];
-    if setup.repeats > 0 {
-        for (slot, (group, method)) in timing.iter_mut().zip(&jobs) {
-            let one = vec![cases[group[0]].clone()];
-            let work = || (setup.solver)(&one, *method).into_iter().collect::<Result<Vec<_>>>();
-            *slot = [1, 0]
-                .into_iter()
-                .filter_map(|threads| timing::measure(threads, setup.repeats, work).ok())
-                .map(|t| Timing { cold_s: (setup.cold)(&one[0], *method, t.threads), ..t })
-                .collect();
-            step(&format!("timing {method}, {}", one[0].name));
-        }
-    }
-
-    let mut runs: Vec<CaseRun> = cases
+    let attempts = work.run(&step);
+    let runs = cases
         .iter()
         .zip(references)
-        .map(|(case, reference)| {
+        .zip(attempts)
+        .map(|((case, reference), attempts)| {
+            let answer = |attempt: Attempt| MethodRun {
+                method: attempt.method,
+                answer: attempt
+                    .solution
+                    .and_then(|solution| answer(case, &reference, solution, &setup.range))
+                    .map_err(|e| e.to_string()),
+                timing: attempt.timing,
+            };
             let half_length = case.factors().slenderness;
             CaseRun {
                 case: case.clone(),
@@ -304,35 +251,32 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
                     .as_ref()
                     .ok()
                     .and_then(|r| critical_point(&r.sampled, half_length, setup.range.stress_c)),
+                methods: attempts.into_iter().map(answer).collect(),
                 reference,
-                methods: Vec::new(),
             }
         })
         .collect();
-    for (((group, method), solutions), timing) in jobs.iter().zip(solved).zip(timing) {
-        for (&i, solution) in group.iter().zip(solutions) {
-            let answer = solution.map_err(|e| e.to_string()).and_then(|solution| {
-                answer(&runs[i], solution, &setup.range).map_err(|e| e.to_string())
-            });
-            runs[i].methods.push(MethodRun { method: *method, answer, timing: timing.clone() });
-        }
-    }
     StudyRun {
         study: study.name.clone(),
         factors,
-        methods: setup.methods.clone(),
+        methods: setup.models.methods.clone(),
         range: setup.range.clone(),
+        solves: work.solves(),
         cases: runs,
-        solves: jobs.len(),
     }
 }
 
 /// Compares a solution with its case's reference.
-fn answer(run: &CaseRun, solution: Solution, range: &Range) -> Result<Answer> {
-    let half_length = run.case.factors().slenderness;
+fn answer(
+    case: &Case,
+    reference: &std::result::Result<Reference, String>,
+    solution: Solution,
+    range: &Range,
+) -> Result<Answer> {
+    let half_length = case.factors().slenderness;
     let sampled = Sampled::from_solution(&solution);
-    let errors = match &run.reference {
-        Ok(r) => compare(&run.case.name, half_length, &r.sampled, &sampled, range)?,
+    let errors = match reference {
+        Ok(r) => compare(&case.name, half_length, &r.sampled, &sampled, range)?,
         Err(_) => Vec::new(),
     };
     Ok(Answer {

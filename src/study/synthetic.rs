@@ -9,7 +9,7 @@ use crate::stress::{BodyKind, curves};
 use crate::study::bench::{FemMeshes, Mesh};
 use crate::study::run::{Provenance, Reference, Setup, StudyRun, Timed, run as run_study};
 use crate::study::timing::Timing;
-use crate::study::{Range, Sampled};
+use crate::study::{Models, Range, Sampled};
 
 /// What the made-up FEM answer differs by from the quarter-space one (p0).
 pub const SHIFT: f64 = 0.003;
@@ -252,11 +252,13 @@ pub fn run(twist: Twist) -> StudyRun {
     run_study(
         &Study::built_in(),
         &Setup {
-            methods: EdgeModel::ALL.to_vec(),
+            models: Models {
+                methods: EdgeModel::ALL.to_vec(),
+                repeats: 3,
+                solver: &solver,
+                cold: &|_, _, _| Some(0.02),
+            },
             range: Range::default(),
-            repeats: 3,
-            solver: &solver,
-            cold: &|_, _, _| Some(0.02),
             reference: &reference,
             progress: &|_, _, _| {},
         },

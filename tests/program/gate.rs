@@ -7,7 +7,7 @@ use edgeline::case::{Case, Study};
 use edgeline::fem;
 use edgeline::solve::{Options, Solution, solve_group};
 use edgeline::study::gate::{self, Baseline, Outcome};
-use edgeline::study::{Range, Setup, Solver, StudyRun, reference, run};
+use edgeline::study::{Models, Range, Setup, Solver, StudyRun, reference, run};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -27,11 +27,8 @@ fn run_with(solver: &Solver) -> StudyRun {
     run(
         &study,
         &Setup {
-            methods: METHODS.to_vec(),
+            models: Models { methods: METHODS.to_vec(), repeats: 0, solver, cold: &|_, _, _| None },
             range: Range::default(),
-            repeats: 0,
-            solver,
-            cold: &|_, _, _| None,
             reference: &answer,
             progress: &|_, _, _| {},
         },
@@ -43,7 +40,7 @@ fn usual(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
 }
 
 fn failed(run: &StudyRun, accepted: &Baseline) -> Vec<Outcome> {
-    let gates = gate::parse(gate::DEFAULT_GATES, Path::new("gates.toml")).unwrap();
+    let gates = gate::Gates::built_in().unwrap();
     let mut outcomes = gate::evaluate(run, &gates, Some(accepted));
     outcomes.retain(|o| !o.passed);
     outcomes

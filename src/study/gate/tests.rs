@@ -141,7 +141,7 @@ fn bad_thresholds_are_refused_with_their_line() {
 
 #[test]
 fn the_built_in_thresholds_parse() {
-    let gates = parse(DEFAULT_GATES, Path::new("gates.toml")).unwrap();
+    let gates = Gates::built_in().unwrap();
     assert!(gates.drift.is_some());
     assert!(gates.gate.iter().any(|g| g.method == EdgeModel::QuarterSpace));
 }

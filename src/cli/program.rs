@@ -1,0 +1,63 @@
+//! The program: its subcommands and exit codes.
+
+use super::output::{Outcome, say};
+use super::{bench, doctor, fem, gate, report, solve, study, sweep};
+use clap::{Parser, Subcommand};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Contact pressure and stresses at the ends of finite line contacts, by a semi-analytical
+/// solver, and the finite-element harness that proves it.
+///
+/// Results go to files and a short summary to standard output; progress and warnings go to
+/// standard error. A folder serves one run at a time. The exit code is 0 when all was done, 1 when
+/// an accuracy gate failed, and 2 when it could not run: bad input, a missing tool, a failed child
+/// process.
+#[derive(Parser)]
+#[command(name = "edgeline", version, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    Solve(solve::Arguments),
+    Fem(fem::Arguments),
+    Study(study::Arguments),
+    Sweep(sweep::Arguments),
+    Gate(gate::Arguments),
+    Bench(bench::Arguments),
+    Report(report::Arguments),
+    Doctor(doctor::Arguments),
+}
+
+/// Runs the program with `arguments`, the program's name first, and returns its exit code.
+pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(e) => {
+            // Help and version are no errors and go to standard output.
+            let _ = e.print();
+            return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
+        }
+    };
+    let outcome = match arguments.command {
+        Command::Solve(arguments) => solve::run(arguments),
+        Command::Fem(arguments) => fem::run(arguments),
+        Command::Study(arguments) => study::run(arguments),
+        Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Gate(arguments) => gate::run(arguments),
+        Command::Bench(arguments) => bench::run(arguments),
+        Command::Report(arguments) => report::run(arguments),
+        Command::Doctor(arguments) => doctor::run(arguments),
+    };
+    match outcome {
+        Ok(Outcome::Done) => ExitCode::SUCCESS,
+        Ok(Outcome::GateFailed) => ExitCode::from(1),
+        Err(e) => {
+            say(&format!("error: {e}"));
+            ExitCode::from(2)
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! What `edgeline study` and `edgeline gate` have in common: the study, its cases by every model, and FEM.
+
+use super::cold::ColdRuns;
+use super::fem_options::{FemOptions, FemSource, Size};
+use super::output::say;
+use super::progress::{progress_bar, show};
+use super::records::Records;
+use super::values::{chosen_models, edge_model};
+use crate::base::Result;
+use crate::body::EdgeModel;
+use crate::case::{Case, Study};
+use crate::host::{self, check_memory};
+use crate::solve::{Options, solve_group};
+use crate::study::bench::Bench;
+use crate::study::live::Live;
+use crate::study::{Models, Range, Reference, Setup, StudyRun, reference, run as run_study};
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// The study, and how it is run.
+#[derive(Args)]
+pub(super) struct StudyOptions {
+    /// A study file; the built-in two-level factorial study if left out
+    #[arg(value_hint = ValueHint::FilePath)]
+    pub(super) study: Option<PathBuf>,
+    /// Folder for the results; made if it is not there
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    pub(super) out: PathBuf,
+    /// Models to run, separated by commas; all of them if left out
+    #[arg(long, value_delimiter = ',', value_parser = edge_model())]
+    methods: Vec<EdgeModel>,
+    /// Where the finite-element curves come from
+    #[arg(long, value_enum, default_value = "recorded")]
+    pub(super) fem: FemSource,
+    /// Folder of recorded curves, one folder a case, in place of those built into the program
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    reference: Option<PathBuf>,
+    /// Distance from the roller's edge within which stresses are not compared, in half-widths C
+    #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
+    exclude: f64,
+    /// The same for pressure, separated by commas; summaries use the first
+    #[arg(long, value_name = "C,C", default_values_t = [0.1, 0.2], value_delimiter = ',', value_parser = distance)]
+    exclude_pressure: Vec<f64>,
+    /// Runs of the finite elements of each case with --fem live: their median counts
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    fem_repeats: usize,
+    /// Factor of the images of guilbault, in place of the one that follows from Poisson's ratio
+    #[arg(long, value_parser = factor)]
+    psi: Option<f64>,
+    #[command(flatten)]
+    size: Size,
+    #[command(flatten)]
+    options: FemOptions,
+}
+
+/// Memory that a case's curves take by one model or FEM, with their rows in the tables (bytes).
+const CASE_BYTES: f64 = 2e6;
+
+impl StudyOptions {
+    /// The study of a file, or the built-in one.
+    pub(super) fn find_study(&self) -> Result<Study> {
+        self.study.as_deref().map_or_else(|| Ok(Study::built_in()), Study::read)
+    }
+
+    /// The range of the errors.
+    pub(super) fn range(&self) -> Range {
+        Range { stress_c: self.exclude, pressure_c: self.exclude_pressure.clone() }
+    }
+
+    /// Runs `study` with live FEM in folders below the one for the results.
+    pub(super) fn run(&self, study: &Study, repeats: usize) -> Result<StudyRun> {
+        let methods = chosen_models(&self.methods);
+        let (cases, models) = (study.cases().count(), methods.len());
+        check_memory(
+            &format!("a study of {cases} cases by {models} models"),
+            CASE_BYTES * (cases * (models + 1)) as f64,
+            "give fewer cases or models, or take a sweep",
+        )?;
+        let answers = self.fem_answers()?;
+        let cold = ColdRuns::new(&self.out);
+        let bar = progress_bar();
+        let run = run_study(
+            study,
+            &Setup {
+                models: Models {
+                    methods,
+                    repeats,
+                    solver: &|cases, method| {
+                        solve_group(cases, &Options { psi: self.psi, ..Options::new(method) })
+                    },
+                    cold: &|case, method, threads| cold.seconds(case, method, threads),
+                },
+                range: self.range(),
+                reference: &|case| {
+                    answers.of(case, &|text| bar.set_message(format!("{}: {text}", case.name)))
+                },
+                progress: &|done, all, what| show(&bar, done, all, what),
+            },
+        );
+        bar.finish_and_clear();
+        // What was asked to stop is no study, even though every case has a row.
+        host::check_interrupt()?;
+        for case in &run.cases {
+            for m in &case.methods {
+                if let Err(message) = &m.answer {
+                    say(&format!("warning: {} by {}: {message}", case.case.name, m.method));
+                }
+            }
+        }
+        Ok(run)
+    }
+
+    /// Where FEM's answers come from.
+    fn fem_answers(&self) -> Result<FemAnswers> {
+        Ok(match self.fem {
+            FemSource::Live => FemAnswers::Live {
+                live: Live::new(self.options.settings(self.size.size), self.fem_repeats)?,
+                folder: self.out.join("fem"),
+            },
+            FemSource::Recorded => FemAnswers::Recorded {
+                records: Records::read(self.reference.as_deref())?,
+                times: Bench::recorded()?,
+            },
+        })
+    }
+}
+
+/// FEM's answers to the cases of a study.
+enum FemAnswers {
+    /// Computed now, each in a folder below this one.
+    Live { live: Live, folder: PathBuf },
+    /// As they were recorded, with times of one run where there are any.
+    Recorded { records: Records, times: Bench },
+}
+
+impl FemAnswers {
+    /// The answer to `case`, or why there is none; `progress` is told what goes on.
+    fn of(&self, case: &Case, progress: &dyn Fn(&str)) -> std::result::Result<Reference, String> {
+        match self {
+            FemAnswers::Live { live, folder } => {
+                live.run(case, &folder.join(&case.name), progress).map_err(|e| e.to_string())
+            }
+            FemAnswers::Recorded { records, times } => {
+                let found = records.find(case).map_err(|e| e.to_string())?;
+                let record = found.ok_or_else(|| "there is no record of it".to_string())?;
+                let mut answer = reference::from_fem(&record);
+                answer.provenance.timed = times.timed(case);
+                Ok(answer)
+            }
+        }
+    }
+}
+
+/// Parses the factor of images.
+fn factor(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=2.0).contains(&value) => Ok(value),
+        _ => Err("give a factor between 0 and 2".into()),
+    }
+}
+
+/// Parses a distance in units of C.
+fn distance(text: &str) -> std::result::Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if (0.0..=10.0).contains(&value) => Ok(value),
+        _ => Err("give a distance between 0 and 10 C".into()),
+    }
+}

@@ -1,0 +1,34 @@
+//! Values that several subcommands take.
+
+use crate::base::{Error, Result};
+use crate::body::EdgeModel;
+use crate::case::Case;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+
+/// Parses the name of an edge model.
+pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
+    PossibleValuesParser::new(EdgeModel::ALL.map(EdgeModel::name)).map(|name| {
+        let named = |model: &EdgeModel| model.name() == name;
+        EdgeModel::ALL.into_iter().find(named).expect("only these names pass")
+    })
+}
+
+/// The models that were named, simplest first; all of them if none was.
+pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
+    let wanted = |m: &EdgeModel| named.is_empty() || named.contains(m);
+    EdgeModel::ALL.into_iter().filter(wanted).collect()
+}
+
+/// The tolerance if it is within its legal range.
+pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64> {
+    let (low, high) = Case::TOLERANCE_RANGE;
+    if (low..=high).contains(&tolerance) {
+        return Ok(tolerance);
+    }
+    Err(Error::Value {
+        key: "--tolerance".into(),
+        value: tolerance.to_string(),
+        reason: format!("it is a fraction of p0 between {low:e} and {high:e}"),
+        remedy: "give for example 1e-3".into(),
+    })
+}

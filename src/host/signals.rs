@@ -1,0 +1,92 @@
+//! Requests to stop (Ctrl-C, SIGTERM, SIGHUP): while a child runs they are noted, so that it can be
+//! ended first; otherwise they do what they do by default.
+
+use crate::base::{Error, Result};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::flag;
+use std::fs;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, LazyLock, Mutex};
+
+/// What the handlers of signals see.
+struct Watch {
+    /// The signal that asked this process to stop while a child ran; 0 if none did.
+    interrupt: Arc<AtomicUsize>,
+    /// Whether no child runs, so that a signal ends this process at once.
+    idle: Arc<AtomicBool>,
+    /// Number of children that are waited for.
+    children: Mutex<usize>,
+}
+
+static WATCH: LazyLock<Watch> = LazyLock::new(|| {
+    let watch = Watch {
+        interrupt: Arc::new(AtomicUsize::new(0)),
+        idle: Arc::new(AtomicBool::new(true)),
+        children: Mutex::new(0),
+    };
+    for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&s| !is_ignored(s)) {
+        // The system refuses handlers only of signals that do not exist.
+        let _ = flag::register_conditional_default(signal, watch.idle.clone());
+        let _ = flag::register_usize(signal, watch.interrupt.clone(), signal as usize);
+    }
+    watch
+});
+
+/// Whether `signal` is ignored on purpose (nohup).
+fn is_ignored(signal: i32) -> bool {
+    fs::read_to_string("/proc/self/status").is_ok_and(|status| ignored(&status, signal))
+}
+
+/// [`is_ignored`] by the text of `/proc/self/status`, whose mask has signal 1 in its lowest bit.
+fn ignored(status: &str, signal: i32) -> bool {
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let bits = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    bits.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
+}
+
+/// While one of these lives, a request to stop is noted and can be asked for by [`check_interrupt`].
+pub(super) struct Active;
+
+impl Active {
+    pub(super) fn new() -> Self {
+        Self::count(|children| children + 1);
+        Self
+    }
+
+    fn count(change: impl Fn(usize) -> usize) {
+        let mut children = WATCH.children.lock().unwrap_or_else(|e| e.into_inner());
+        *children = change(*children);
+        WATCH.idle.store(*children == 0, Ordering::SeqCst);
+    }
+}
+
+impl Drop for Active {
+    fn drop(&mut self) {
+        Self::count(|children| children - 1);
+    }
+}
+
+/// Tells whether this process was asked to stop while a child ran.
+///
+/// # Errors
+/// [`Error::Interrupted`] if it was.
+pub(crate) fn check_interrupt() -> Result<()> {
+    match WATCH.interrupt.load(Ordering::SeqCst) {
+        0 => Ok(()),
+        signal => Err(Error::Interrupted { signal: signal as i32 }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ignored_signals_are_read_from_the_status() {
+        // As a process that was started by nohup has it.
+        let status = "Name:\tedgeline\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\n";
+        assert!(ignored(status, SIGHUP));
+        assert!(!ignored(status, SIGINT) && !ignored(status, SIGTERM));
+        assert!(!ignored("", SIGHUP) && !ignored("SigIgn:\tno mask\n", SIGHUP));
+    }
+}

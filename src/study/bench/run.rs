@@ -1,0 +1,233 @@
+//! The run: every case on FEM's meshes and by every model at every tolerance, compared with both
+//! references.
+
+use super::point::{Accuracy, BEST, CaseBench, Origin, Point};
+use crate::case::Case;
+use crate::fem::{self, Driver, MeshResult};
+use crate::study::errors::Range;
+use crate::study::live::repeated;
+use crate::study::models::{Attempt, Models, Work};
+use crate::study::reference::from_fem;
+use crate::study::sampled::Sampled;
+use crate::study::timing::Timing;
+use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A mesh and its times.
+pub struct Mesh {
+    /// The result.
+    pub result: MeshResult,
+    /// The times of its runs.
+    pub timing: Timing,
+}
+
+/// FEM's part in a case.
+pub struct FemMeshes {
+    /// The record of the case, if there is one.
+    pub recorded: Option<fem::Reference>,
+    /// Meshes of this run, by relative element size, or why one failed.
+    pub live: Vec<(f64, std::result::Result<Mesh, String>)>,
+}
+
+impl FemMeshes {
+    /// Runs `case` by each driver `repeats` times in folders below `folder`. A mesh that fails is
+    /// kept with its reason.
+    pub fn run(
+        recorded: Option<fem::Reference>,
+        drivers: &[(f64, Driver)],
+        repeats: usize,
+        case: &Case,
+        folder: &Path,
+        progress: &dyn Fn(&str),
+    ) -> Self {
+        let live = drivers
+            .iter()
+            .map(|(size, driver)| {
+                let folder = folder.join(format!("size-{size}"));
+                let run = repeated(driver, repeats, case, &folder, progress);
+                let mesh = run.map(|(result, timing)| Mesh { result, timing });
+                (*size, mesh.map_err(|e| e.to_string()))
+            })
+            .collect();
+        Self { recorded, live }
+    }
+
+    /// The finest mesh as the reference. Of two that are equally fine the recorded one counts.
+    fn reference(&self, case: &Case) -> Option<FemReference> {
+        let recorded = self.recorded.iter().flat_map(|r| &r.meshes).map(|m| ("recorded", m));
+        let live = self.live.iter().filter_map(|(_, m)| Some(("live", &m.as_ref().ok()?.result)));
+        let mut all: Vec<(&'static str, &MeshResult)> = recorded.chain(live).collect();
+        all.sort_by(|a, b| a.1.size.total_cmp(&b.1.size));
+        all.dedup_by(|a, b| a.1.size == b.1.size);
+        let (source, finest) = *all.first()?;
+        Some(FemReference {
+            finest: sampled(case, finest, source),
+            next: all.get(1).map(|(source, mesh)| sampled(case, mesh, source)),
+            size: finest.size,
+            words: format!("{source}, size {}", finest.size),
+        })
+    }
+}
+
+/// FEM's finest mesh as a reference.
+struct FemReference {
+    finest: Sampled,
+    /// The mesh after it, whose difference is what the finest says of its own error.
+    next: Option<Sampled>,
+    size: f64,
+    words: String,
+}
+
+/// One mesh at the standard points, in units of C and p0.
+fn sampled(case: &Case, mesh: &MeshResult, source: &'static str) -> Sampled {
+    let meshes = vec![mesh.clone()];
+    from_fem(&fem::Reference { case: case.clone(), source, meshes, errors: Vec::new() }).sampled
+}
+
+/// What a run needs.
+pub struct Setup<'a> {
+    /// The models, timed at least once.
+    pub models: Models<'a>,
+    /// Tolerances (p0), each once.
+    pub tolerances: Vec<f64>,
+    /// FEM's part in a case.
+    pub fem: &'a dyn Fn(&Case) -> FemMeshes,
+    /// Called with the number of steps done and of all steps, and what was just done.
+    pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
+}
+
+/// One sampled answer of a point.
+type Answered = (Point, Option<Sampled>);
+
+/// Runs every case on FEM's meshes, and then by every model at every tolerance. What fails is kept
+/// with its reason.
+pub fn run(cases: &[Case], setup: &Setup) -> Vec<CaseBench> {
+    let stages = setup.tolerances.len() + 1;
+    let fem: Vec<FemMeshes> = cases
+        .iter()
+        .enumerate()
+        .map(|(i, case)| {
+            let meshes = (setup.fem)(case);
+            let done = 100 * (i + 1) / cases.len();
+            (setup.progress)(done, 100 * stages, &format!("FEM of {}", case.name));
+            meshes
+        })
+        .collect();
+    let references: Vec<_> = cases.iter().zip(&fem).map(|(c, f)| f.reference(c)).collect();
+    let mut points: Vec<Vec<Answered>> = vec![Vec::new(); cases.len()];
+    for (stage, &tolerance) in setup.tolerances.iter().enumerate() {
+        let of_stage = models_at(cases, tolerance, &setup.models, &|done, all, what| {
+            let whole = 100 * ((stage + 1) * all + done) / all;
+            (setup.progress)(whole, 100 * stages, &format!("tolerance {tolerance:e}: {what}"));
+        });
+        for (all, more) in points.iter_mut().zip(of_stage) {
+            all.extend(more);
+        }
+    }
+    let limit = setup.tolerances.iter().copied().fold(f64::INFINITY, f64::min);
+    cases
+        .iter()
+        .zip(&fem)
+        .zip(references)
+        .zip(points)
+        .map(|(((case, meshes), reference), mut points)| {
+            points.extend(fem_points(case, meshes));
+            assess(case, points, reference, limit, &Range::default())
+        })
+        .collect()
+}
+
+/// The points of all models at one tolerance, one list a case; `step` is told of every step done and
+/// of all.
+fn models_at(
+    cases: &[Case],
+    tolerance: f64,
+    models: &Models,
+    step: &(dyn Fn(usize, usize, &str) + Sync),
+) -> Vec<Vec<Answered>> {
+    let cases: Vec<Case> = cases.iter().map(|c| Case { tolerance, ..c.clone() }).collect();
+    let work = Work::new(&cases, models);
+    let done = AtomicUsize::new(0);
+    let attempts =
+        work.run(&|what| step(done.fetch_add(1, Ordering::Relaxed) + 1, work.steps(), what));
+    let of_model = |attempt: Attempt| {
+        let (sampled, err) = match attempt.solution {
+            Ok(solution) => (Some(Sampled::from_solution(&solution)), None),
+            Err(e) => (None, Some(e.to_string())),
+        };
+        // No time counts for an answer that was not computed.
+        let timing = |i: usize| sampled.as_ref().and(attempt.timing.get(i)).copied();
+        let point = Point {
+            timing: timing(0),
+            all_threads: timing(1),
+            err,
+            ..Point::new(attempt.method.name(), Origin::Model, tolerance)
+        };
+        (point, sampled)
+    };
+    attempts.into_iter().map(|all| all.into_iter().map(of_model).collect()).collect()
+}
+
+/// The points of FEM, live meshes first.
+fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
+    let point = |origin, setting| Point::new("fem", origin, setting);
+    let live = meshes.live.iter().map(|(size, mesh)| match mesh {
+        Ok(mesh) => (
+            Point {
+                unknowns: Some(mesh.result.summary.unknowns as u64),
+                timing: Some(mesh.timing),
+                ..point(Origin::LiveFem, *size)
+            },
+            Some(sampled(case, &mesh.result, "live")),
+        ),
+        Err(message) => {
+            (Point { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
+        }
+    });
+    let recorded = meshes.recorded.iter().flat_map(|r| &r.meshes).map(|mesh| {
+        let seconds = mesh.summary.total_seconds();
+        let point = Point {
+            unknowns: Some(mesh.summary.unknowns as u64),
+            timing: Some(Timing::new(mesh.summary.ranks, &[seconds])),
+            machine: Some(mesh.summary.processor().to_string()),
+            ..point(Origin::RecordedFem, mesh.size)
+        };
+        (point, Some(sampled(case, mesh, "recorded")))
+    });
+    live.chain(recorded).collect()
+}
+
+/// Compares the points of a case with both references.
+fn assess(
+    case: &Case,
+    points: Vec<Answered>,
+    reference: Option<FemReference>,
+    limit: f64,
+    range: &Range,
+) -> CaseBench {
+    let is_limit = |p: &Point| p.source == BEST.name() && p.setting == limit;
+    let limit = points.iter().find(|(p, _)| is_limit(p)).and_then(|(_, s)| s.clone());
+    // The finest mesh against itself would be exact.
+    let own = reference
+        .as_ref()
+        .and_then(|r| Accuracy::between(case, &r.finest, r.next.as_ref()?, range));
+    let points = points
+        .into_iter()
+        .map(|(mut point, sampled)| {
+            let Some(sampled) = sampled else { return point };
+            point.to_fem = reference.as_ref().and_then(|r| {
+                if point.source == "fem" && point.setting <= r.size {
+                    return own;
+                }
+                Accuracy::between(case, &r.finest, &sampled, range)
+            });
+            if !is_limit(&point) {
+                point.to_limit = limit
+                    .as_ref()
+                    .and_then(|limit| Accuracy::between(case, limit, &sampled, range));
+            }
+            point
+        })
+        .collect();
+    CaseBench { case: case.clone(), fem_reference: reference.map(|r| r.words), points }
+}

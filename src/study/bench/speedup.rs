@@ -1,0 +1,66 @@
+//! FEM's time over a model's, at an error that both stay within.
+
+use super::point::{Against, BEST, CaseBench, Origin, Point};
+use crate::study::timing::Ratio;
+use serde::{Deserialize, Serialize};
+
+/// FEM against [`BEST`] at an error that both stay within, timed in one run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Speedup {
+    /// The case.
+    pub case: String,
+    /// The error that both stay within (p0).
+    pub level: f64,
+    /// What the model's error is taken against; FEM's is always that to its own finest mesh.
+    pub against: Against,
+    /// Relative element size of the fastest mesh within the level, its unknowns, and its error.
+    pub size: f64,
+    pub unknowns: Option<u64>,
+    pub fem_error: f64,
+    /// Median seconds and spread.
+    pub fem_seconds: (f64, f64),
+    /// The fastest tolerance within the level, and the error there.
+    pub tolerance: f64,
+    pub model_error: f64,
+    /// Median seconds and spread on one thread.
+    pub model_seconds: (f64, f64),
+    /// FEM's time over the model's.
+    pub ratio: Ratio,
+}
+
+/// FEM against [`BEST`] at each level, where both were timed in this run and stay within it.
+pub fn speedups(cases: &[CaseBench], levels: &[f64]) -> Vec<Speedup> {
+    let mut all = Vec::new();
+    for case in cases {
+        for &level in levels {
+            for against in [Against::Limit, Against::Fem] {
+                all.extend(speedup(case, level, against));
+            }
+        }
+    }
+    all
+}
+
+fn speedup(case: &CaseBench, level: f64, against: Against) -> Option<Speedup> {
+    let fastest = |chosen: &dyn Fn(&Point) -> bool, against: Against| {
+        let within = |p: &&Point| chosen(p) && p.error(against).is_some_and(|e| e <= level);
+        let timed = case.points.iter().filter(within).filter_map(|p| Some((p, p.timing?)));
+        timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
+    };
+    let (fem, fem_time) = fastest(&|p| p.origin == Origin::LiveFem, Against::Fem)?;
+    let best = |p: &Point| p.origin == Origin::Model && p.source == BEST.name();
+    let (model, model_time) = fastest(&best, against)?;
+    Some(Speedup {
+        case: case.case.name.clone(),
+        level,
+        against,
+        size: fem.setting,
+        unknowns: fem.unknowns,
+        fem_error: fem.error(Against::Fem)?,
+        fem_seconds: fem_time.with_spread(),
+        tolerance: model.setting,
+        model_error: model.error(against)?,
+        model_seconds: model_time.with_spread(),
+        ratio: Ratio::new(fem_time.with_spread(), model_time.with_spread()),
+    })
+}

@@ -1,0 +1,116 @@
+use super::*;
+use crate::body::EdgeModel;
+use crate::case::{Case, Study};
+use crate::study::Models;
+use crate::study::synthetic;
+use crate::study::timing::Timing;
+use std::path::Path;
+
+/// Two cases of the built-in study that differ only in load, on made-up answers.
+fn cases() -> Vec<Case> {
+    let study = Study::built_in();
+    let names = ["w1e-4_sl5_lr1", "w1e-3_sl5_lr1"];
+    study.corners.into_iter().filter(|c| names.contains(&c.name.as_str())).collect()
+}
+
+fn bench() -> Vec<CaseBench> {
+    run(
+        &cases(),
+        &Setup {
+            models: Models {
+                methods: vec![EdgeModel::Mirror, BEST],
+                repeats: 2,
+                solver: &synthetic::solve_to_tolerance,
+                cold: &|_, _, threads| Some(threads as f64),
+            },
+            tolerances: vec![1e-2, 1e-3, 1e-4],
+            fem: &|case| synthetic::fem_meshes(case, &[2.0, 1.0], &[1.4]),
+            progress: &|done, all, _| assert!(done <= all),
+        },
+    )
+}
+
+fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> &'a Point {
+    let is_it = |p: &&Point| p.source == source && p.origin == origin && p.setting == setting;
+    case.points.iter().find(is_it).unwrap()
+}
+
+#[test]
+fn errors_are_those_of_the_made_up_answers() {
+    for case in bench() {
+        assert_eq!(case.fem_reference.as_deref(), Some("recorded, size 1"));
+        // Two models at three tolerances, two recorded meshes and a live one.
+        assert_eq!(case.points.len(), 6 + 3);
+        // Off by its tolerance in every normal stress, and so is the limit.
+        let loose = find(&case, "quarter-space", Origin::Model, 1e-2);
+        let to_limit = loose.to_limit.unwrap();
+        assert!((to_limit.worst_rms - (1e-2 - 1e-4)).abs() < 1e-12, "{to_limit:?}");
+        assert!((to_limit.stress_max - (1e-2 - 1e-4)).abs() < 1e-12, "{to_limit:?}");
+        let to_fem = loose.to_fem.unwrap();
+        assert!((to_fem.pressure_max - (1e-2 - synthetic::mesh_shift(1.0))).abs() < 1e-12);
+        assert!(find(&case, "quarter-space", Origin::Model, 1e-4).to_limit.is_none());
+        assert!(find(&case, "mirror", Origin::Model, 1e-4).to_limit.unwrap().worst_rms > 0.01);
+        // Meshes against the finest, which says of itself what the next one is off by.
+        let off = |a: f64| synthetic::mesh_shift(a) - synthetic::mesh_shift(1.0);
+        for (origin, size, error) in [
+            (Origin::RecordedFem, 2.0, off(2.0)),
+            (Origin::LiveFem, 1.4, off(1.4)),
+            (Origin::RecordedFem, 1.0, off(1.4)),
+        ] {
+            let point = find(&case, "fem", origin, size);
+            assert!((point.error(Against::Fem).unwrap() - error).abs() < 1e-12, "{point:?}");
+            assert_eq!(point.machine.is_some(), origin == Origin::RecordedFem);
+        }
+        assert_eq!(loose.timing.unwrap().cold_s, Some(1.0));
+        assert!(loose.all_threads.is_some());
+    }
+}
+
+#[test]
+fn only_times_of_this_run_are_divided_and_only_within_the_level() {
+    let mut cases = bench();
+    for case in &mut cases {
+        for point in case.points.iter_mut().filter(|p| p.origin == Origin::Model) {
+            // A time that is known, ten times as long for a tenth of the tolerance.
+            point.timing = Some(Timing::new(1, &[0.9e-5 / point.setting, 1.1e-5 / point.setting]));
+        }
+    }
+    let fem_error = synthetic::mesh_shift(1.4) - synthetic::mesh_shift(1.0);
+    let all = speedups(&cases, &[fem_error * 1.01, fem_error * 0.99]);
+    // The tighter level is reached by no live mesh; each case at the other against both.
+    assert_eq!(all.len(), 2 * 2, "{all:?}");
+    for s in &all {
+        assert_eq!((s.size, s.tolerance), (1.4, 1e-3));
+        assert!((s.model_seconds.0 - 0.01).abs() < 1e-12);
+        let expected = s.fem_seconds.0 / 0.01;
+        assert!((s.ratio.value - expected).abs() < 1e-9 * expected);
+        let share = (s.fem_seconds.1 / s.fem_seconds.0).hypot(0.1);
+        assert!((s.ratio.plus_minus - expected * share).abs() < 1e-9 * expected);
+    }
+    // Without a live mesh there is no ratio, however good the record is.
+    cases.iter_mut().for_each(|c| c.points.retain(|p| p.origin != Origin::LiveFem));
+    assert!(speedups(&cases, &[1.0]).is_empty());
+}
+
+#[test]
+fn the_built_in_record_survives_its_file_and_finds_its_cases() {
+    let record = Bench::recorded().unwrap();
+    assert!(record.speedups.iter().all(|s| s.fem_error <= s.level && s.model_error <= s.level));
+    let text = serde_json::to_string(&record).unwrap();
+    assert_eq!(Bench::parse(&text, Path::new("b")).unwrap(), record);
+    let other = text.replacen("\"schema\":1", "\"schema\":9", 1);
+    assert!(Bench::parse(&other, Path::new("b")).unwrap_err().to_string().contains("schema 9"));
+
+    let made_up = Bench { cases: bench(), ..record };
+    for case in cases() {
+        let timed = made_up.timed(&Case { tolerance: 1e-3, ..case.clone() }).unwrap();
+        assert_eq!((timed.size, timed.methods.len()), (1.4, 2));
+        assert!(made_up.timed(&Case { tolerance: 3e-3, ..case }).is_none());
+    }
+}
+
+#[test]
+fn the_front_holds_what_nothing_beats() {
+    let points = vec![(3.0, 0.1), (1.0, 0.5), (2.0, 0.6), (2.0, 0.3), (4.0, 0.1), (5.0, 0.01)];
+    assert_eq!(front(points), [(1.0, 0.5), (2.0, 0.3), (3.0, 0.1), (5.0, 0.01)]);
+}

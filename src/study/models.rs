@@ -1,0 +1,131 @@
+//! Cases by models: cases of one problem are solved together, and each solve is timed by itself.
+
+use super::timing::{self, Timing};
+use crate::base::Result;
+use crate::body::EdgeModel;
+use crate::case::Case;
+use crate::solve::Solution;
+use rayon::prelude::*;
+
+/// Solves cases that share a scene by one edge model, one answer a case in their order.
+pub type Solver<'a> = dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync + 'a;
+
+/// Seconds of one case by one model on this many threads in a process of its own, where that can be
+/// measured.
+pub type Cold<'a> = dyn Fn(&Case, EdgeModel, usize) -> Option<f64> + Sync + 'a;
+
+/// The models to run, and how.
+pub struct Models<'a> {
+    /// Models to run.
+    pub methods: Vec<EdgeModel>,
+    /// Warm repeats of the timing; 0 leaves the timing out.
+    pub repeats: usize,
+    /// Solves cases that differ only in scale by one method, one result each, in order.
+    pub solver: &'a Solver<'a>,
+    /// Takes the time of a solve in a process of its own.
+    pub cold: &'a Cold<'a>,
+}
+
+/// What one model makes of one case.
+pub(super) struct Attempt {
+    /// The model.
+    pub method: EdgeModel,
+    /// Its solution.
+    pub solution: Result<Solution>,
+    /// Repeated timing on one thread and on all, where it was asked for.
+    pub timing: Vec<Timing>,
+}
+
+/// Contact problems to be solved: the cases of each by every model.
+pub(super) struct Work<'a> {
+    cases: &'a [Case],
+    models: &'a Models<'a>,
+    jobs: Vec<(Vec<usize>, EdgeModel)>,
+}
+
+impl<'a> Work<'a> {
+    /// Puts cases together that are one problem.
+    pub fn new(cases: &'a [Case], models: &'a Models<'a>) -> Self {
+        let of_group = |group: Vec<usize>| models.methods.iter().map(move |&m| (group.clone(), m));
+        Self { cases, models, jobs: groups(cases).into_iter().flat_map(of_group).collect() }
+    }
+
+    /// Number of contact problems to be solved.
+    pub fn solves(&self) -> usize {
+        self.jobs.len()
+    }
+
+    /// Number of times that [`Work::run`] tells of a step.
+    pub fn steps(&self) -> usize {
+        self.jobs.len() * if self.models.repeats > 0 { 2 } else { 1 }
+    }
+
+    /// Solves all problems and times them: for each case the models in their order. `step` is told
+    /// what was just done, from any thread.
+    pub fn run(&self, step: &(dyn Fn(&str) + Sync)) -> Vec<Vec<Attempt>> {
+        let solved: Vec<Vec<Result<Solution>>> = self
+            .jobs
+            .par_iter()
+            .map(|(group, method)| {
+                let members: Vec<Case> = group.iter().map(|&i| self.cases[i].clone()).collect();
+                let solutions = (self.models.solver)(&members, *method);
+                step(&format!("{method}, {}", members[0].name));
+                solutions
+            })
+            .collect();
+        // Timing runs alone, after everything else.
+        let timings: Vec<Vec<Timing>> = self
+            .jobs
+            .iter()
+            .map(|(group, method)| self.timing(&self.cases[group[0]], *method, step))
+            .collect();
+        let mut attempts: Vec<Vec<Attempt>> = self.cases.iter().map(|_| Vec::new()).collect();
+        for (((group, method), solutions), timing) in self.jobs.iter().zip(solved).zip(timings) {
+            for (&i, solution) in group.iter().zip(solutions) {
+                attempts[i].push(Attempt { method: *method, solution, timing: timing.clone() });
+            }
+        }
+        attempts
+    }
+
+    /// Times one case of a problem, on one thread and on all: the others only differ in scale.
+    fn timing(&self, case: &Case, method: EdgeModel, step: &dyn Fn(&str)) -> Vec<Timing> {
+        if self.models.repeats == 0 {
+            return Vec::new();
+        }
+        let one = std::slice::from_ref(case);
+        let work = || (self.models.solver)(one, method).into_iter().collect::<Result<Vec<_>>>();
+        let timings = [1, 0]
+            .into_iter()
+            .filter_map(|threads| timing::measure(threads, self.models.repeats, work).ok())
+            .map(|t| Timing { cold_s: (self.models.cold)(case, method, t.threads), ..t })
+            .collect();
+        step(&format!("timing {method}, {}", case.name));
+        timings
+    }
+}
+
+/// What cases must have in common to be one problem in units of C and p0: all but the scale.
+/// Numbers that differ by rounding only are the same.
+fn problem_key(case: &Case) -> String {
+    let factors = case.factors();
+    let stiffness = case.roller.material.young_pa / case.block.material.young_pa;
+    let (nu_roller, nu_block) = (case.roller.material.poisson, case.block.material.poisson);
+    format!(
+        "{:.9e} {:.9e} {nu_roller:e} {nu_block:e} {stiffness:.9e} {:e}",
+        factors.slenderness, factors.length_ratio, case.tolerance
+    )
+}
+
+/// Indices of the cases of each problem, in the order of first appearance.
+fn groups(cases: &[Case]) -> Vec<Vec<usize>> {
+    let mut order: Vec<(String, Vec<usize>)> = Vec::new();
+    for (i, case) in cases.iter().enumerate() {
+        let key = problem_key(case);
+        match order.iter_mut().find(|(k, _)| *k == key) {
+            Some((_, members)) => members.push(i),
+            None => order.push((key, vec![i])),
+        }
+    }
+    order.into_iter().map(|(_, members)| members).collect()
+}
