@@ -12,7 +12,7 @@ export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
 copy=$CARGO_TARGET_DIR/mutants
 mkdir -p "$copy"
 
-solver="--test numerics -- verification"
+solver="--test numerics -- verification fields"
 
 # File, the line's text, what it becomes, and the tests that should notice. A text must stand in its
 # file exactly once.

@@ -1,9 +1,12 @@
 //! What the tests of the numerics share: a plain scene, and comparisons in which a NaN never passes for
 //! small.
 
-use edgeline::base::{PerBody, StressTensor};
+use edgeline::base::{Material, PerBody, StressTensor};
 use edgeline::body::EdgeModel;
-use edgeline::solve::{Scene, SceneBody};
+use edgeline::case::{Case, Factors};
+use edgeline::solve::{Scene, SceneBody, SolvedScene};
+use edgeline::stress::curves::standard_curves;
+use edgeline::stress::{BodyKind, Field};
 
 /// A contact of equal materials: slenderness, length ratio, Poisson's ratio.
 pub fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
@@ -26,4 +29,46 @@ pub fn worse(a: f64, b: f64) -> f64 {
 pub fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
     let pairs = a.components().into_iter().zip(b.components());
     pairs.map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+}
+
+/// Distance from the roller's corner within which nothing is compared (C).
+pub const CORNER: f64 = 0.1;
+
+pub fn solved(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> SolvedScene {
+    SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap()
+}
+
+/// Half-length of a body of a scene.
+pub fn half_of(scene: &Scene, kind: BodyKind) -> f64 {
+    scene.bodies[kind].half
+}
+
+/// Points of the standard curves of a body, each outside [`CORNER`], named.
+pub fn curve_points(scene: &Scene, kind: BodyKind) -> Vec<(&'static str, [f64; 3])> {
+    let curves = standard_curves(kind, scene.half_length, half_of(scene, kind));
+    let away = |at: &[f64; 3]| (at[1] - scene.half_length).hypot(at[2]) > CORNER * 0.999;
+    let points = curves.into_iter().flat_map(|c| c.points.into_iter().map(move |p| (c.name, p)));
+    points.filter(|(_, at)| away(at)).collect()
+}
+
+pub fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {
+    field.at(y, z, &[x])[0]
+}
+
+/// Asserts |got - want| <= tolerance and says what was got.
+pub fn near(what: &str, got: f64, want: f64, tolerance: f64) {
+    println!("{what}: {got:.5}, expected {want:.5} +- {tolerance}");
+    assert!((got - want).abs() <= tolerance, "{what}: got {got}, expected {want} +- {tolerance}");
+}
+
+/// Asserts value <= tolerance and says what was got.
+pub fn small(what: &str, value: f64, tolerance: f64) {
+    println!("{what}: {value:.2e} of at most {tolerance:.0e}");
+    assert!(value <= tolerance, "{what}: {value:e} > {tolerance:e}");
+}
+
+pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load, slenderness, length_ratio };
+    Case::from_factors("case", 0.01, steel, steel, factors)
 }

@@ -3,7 +3,9 @@
 mod analytic;
 mod common;
 mod ends;
+mod fields;
 mod imports;
 mod layering;
+mod refinement;
 mod scenes;
 mod verification;

@@ -1,0 +1,296 @@
+//! The laws that any field of stress keeps: equilibrium, free faces, superposition, symmetry. Lengths are
+//! in units of C, stresses in units of p0.
+
+use crate::common::{apart, at, half_of, near, small, solved, worse};
+use edgeline::base::{Material, Panels, StressTensor};
+use edgeline::body::{Body, EdgeModel, Resolution, Shape};
+use edgeline::case::{Case, Factors};
+use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
+use edgeline::stress::{BodyKind, Field, Pressure};
+use proptest::prelude::RngCore;
+use proptest::test_runner::{RngAlgorithm, TestRng};
+use std::f64::consts::PI;
+
+/// On the roller's end face, off all planes of symmetry. Finite elements with 440,000 unknowns have
+/// sigma_zz = -0.2754 p0 on the end face there.
+#[test]
+fn the_round_roller_is_right_at_its_end_face() {
+    let material = Material { young_pa: 210e9, poisson: 0.25 };
+    let factors = Factors { load: 3e-4, slenderness: 8.0, length_ratio: 0.8 };
+    let case = Case::from_factors("case", 0.01, material, material, factors);
+    let hertz = case.hertz();
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves.clear();
+    options.points = [7.8, 7.95, 7.99, 7.999, 8.0]
+        .map(|y| Point { body: BodyKind::Roller, at_m: [1.392, y, 1.912].map(|v| v * hertz.c_m) })
+        .to_vec();
+    for tolerance in [5e-3, 1e-3, 1e-4] {
+        let solution = solve(&Case { tolerance, ..case.clone() }, &options).unwrap();
+        for (point, stress) in options.points.iter().zip(&solution.points) {
+            let off = (stress.zz / hertz.p0_pa + 0.2754).abs();
+            small(&format!("sigma_zz at y = {:e} m, {tolerance}", point.at_m[1]), off, 6e-3);
+        }
+    }
+}
+
+/// The field of a body under a pressure of half-width 1 and one mode, given by its amplitude
+/// along y.
+fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
+    let resolution = Resolution::for_tolerance(1e-3);
+    let shape = Shape { contact: 3.0, half: 4.0, nu: 0.3 };
+    let body = Body::new(shape, EdgeModel::QuarterSpace.end(0.3, None), &resolution);
+    let wavenumbers = resolution.wavenumbers(4.0);
+    let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
+    let axis = resolution.contact_axis(3.0);
+    let amplitudes = axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect();
+    let pressure = Pressure::new(axis.clone(), vec![1.0; axis.len()], amplitudes);
+    let moments = pressure.moments(&wavenumbers);
+    move |place| {
+        at(&Field::new(&body, &wavenumbers, &layers, &pressure, &moments, None, 1e-3), place)
+    }
+}
+
+/// What is left of the three tractions on the end faces, 40 x 40 points of each.
+#[test]
+fn end_faces_are_free() {
+    for (slenderness, length_ratio, nu) in [
+        (5.0, 1.0, 0.3),
+        (5.0, 0.5, 0.3),
+        (20.0, 1.0, 0.3),
+        (20.0, 0.5, 0.3),
+        (1.0, 1.0, 0.3),
+        (5.0, 0.99, 0.3),
+        (5.0, 1.0, 0.45),
+    ] {
+        let solved = solved(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
+        let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
+        for kind in BodyKind::ALL {
+            let field = solved.field(kind);
+            // On the face itself zero is put in; so near to it the fields say what they are.
+            let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
+            let mut left = [0.0; 3];
+            for i in 0..40 {
+                let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
+                for s in field.at(y, z, &xs) {
+                    for (worst, traction) in left.iter_mut().zip([s.yy, s.xy, s.yz]) {
+                        *worst = worse(*worst, traction.abs());
+                    }
+                }
+            }
+            for (name, left) in ["yy", "xy", "yz"].iter().zip(left) {
+                let what = format!("{} {slenderness} {length_ratio} {nu}: {name}", kind.name());
+                small(&what, left, 5e-3);
+            }
+        }
+    }
+}
+
+/// The force through a plane under the contact is the load: a half-space's misses what it lets pass
+/// beyond the end faces.
+#[test]
+fn planes_carry_the_load() {
+    for (slenderness, length_ratio) in [(5.0, 1.0), (5.0, 0.5), (20.0, 1.0)] {
+        let solved = solved(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        for kind in BodyKind::ALL {
+            let half = half_of(&solved.scene, kind);
+            let (field, ledge) = (solved.field(kind), half - slenderness);
+            let graded = |length: f64| {
+                let steps =
+                    (0..).map(|i| 0.05 * 1.8f64.powi(i)).take_while(move |s| 1.4 * s < length);
+                [0.0].into_iter().chain(steps).collect::<Vec<_>>()
+            };
+            let inner = graded(slenderness);
+            let mut breaks = vec![0.0];
+            breaks.extend(inner.iter().rev().map(|s| slenderness - s));
+            if ledge > 0.0 {
+                breaks.extend(graded(ledge)[1..].iter().map(|s| slenderness + s));
+                breaks.push(half);
+            }
+            let along = Panels::new(breaks, 5);
+            for depth in [0.5, 1.0, 2.0, 5.0] {
+                let mut breaks = vec![0.0];
+                let mut step = 0.5f64;
+                while breaks[breaks.len() - 1] < 100.0 {
+                    breaks.push(breaks[breaks.len() - 1] + step);
+                    step *= 1.4;
+                }
+                let across = Panels::new(breaks, 6);
+                let lines = along.nodes().iter().zip(along.weights()).map(|(&y, w)| {
+                    let stresses = field.at(y, depth, across.nodes());
+                    w * stresses.iter().zip(across.weights()).map(|(s, w)| -s.zz * w).sum::<f64>()
+                });
+                let force = 2.0 * lines.sum::<f64>() / (0.5 * PI * slenderness);
+                let what = format!("{} {slenderness} {length_ratio} at {depth}", kind.name());
+                near(&what, force, 1.0, 2e-3);
+            }
+        }
+    }
+}
+
+#[test]
+fn stresses_superpose_and_mirror() {
+    let end = |y: f64| (y / 3.0).powi(4);
+    let (one, other, both) = (field_of(end), field_of(|y| 2.0 - end(y)), field_of(|_| 2.0));
+    for place in
+        [[0.0, 0.0, 0.5], [0.7, 2.9, 0.2], [0.3, 3.5, 0.0], [1.0, 4.0, 1.0], [0.5, 3.9, 3.0]]
+    {
+        let (sum, whole) = (one(place) + other(place), both(place));
+        small(&format!("superposition at {place:?}"), apart(&sum, &whole), 1e-4);
+        // Even in x but for xy and xz, even in y but for xy and yz.
+        let [x, y, z] = place;
+        let s = both([-x, y, z]);
+        let turned = StressTensor { xy: -s.xy, xz: -s.xz, ..s };
+        small("mirrored in x", apart(&turned, &whole), 1e-12);
+        let s = both([x, -y, z]);
+        let turned = StressTensor { xy: -s.xy, yz: -s.yz, ..s };
+        // In y = 0 itself both are what is left of sums in single precision.
+        small("mirrored in y", apart(&turned, &whole), if y == 0.0 { 1e-6 } else { 1e-12 });
+    }
+    // What is odd in y vanishes in the middle plane, where nothing makes it do so but the loads.
+    for x in [0.2, 1.0] {
+        let s = both([x, 0.0, 0.4]);
+        small("xy in the middle plane", s.xy.abs(), 1e-6);
+        small("yz in the middle plane", s.yz.abs(), 1e-6);
+    }
+}
+
+// --- Equilibrium and compatibility at any place ------------------------------------------------
+
+/// Scenes, and places in each of their bodies.
+const SCENES: usize = 10;
+const PLACES: usize = 16;
+
+/// Step of the differences (C).
+const STEP: f64 = 0.03;
+
+/// Distance from where stresses are singular, the contact's end and edge, within which differences of
+/// that step see little (C).
+const SINGULAR: f64 = 0.3;
+
+/// Most of a divergence (p0 / C) and of a trace's Laplacian (p0 / C^2).
+const LIMITS: [f64; 2] = [0.006, 0.05];
+
+/// What the divergence in a round roller is allowed besides, for each C / R: its round shape is taken to
+/// first order, and alike all along the line.
+const FIRST_ORDER: f64 = 0.3;
+
+/// Numbers in 0 to 1 that are the same in every run.
+struct Random(TestRng);
+
+impl Random {
+    fn number(&mut self) -> f64 {
+        self.0.next_u64() as f64 / u64::MAX as f64
+    }
+
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.number()
+    }
+
+    /// Alike in the logarithm.
+    fn scale(&mut self, low: f64, high: f64) -> f64 {
+        low * (high / low).powf(self.number())
+    }
+
+    /// A case of any slenderness, ends, materials and load that matter to a field.
+    fn case(&mut self) -> Case {
+        let ratio = match self.number() {
+            u if u < 0.3 => 1.0,
+            u if u < 0.5 => 1.0 - self.scale(1e-4, 0.1),
+            _ => self.between(0.3, 0.95),
+        };
+        let factors = Factors {
+            load: self.scale(1e-5, 1e-3),
+            slenderness: self.scale(1.0, 100.0),
+            length_ratio: ratio,
+        };
+        let young_pa = 210e9;
+        let roller = Material { young_pa, poisson: self.between(0.0, 0.49) };
+        let stiffer = self.scale(0.2, 5.0);
+        let block = Material { young_pa: young_pa * stiffer, poisson: self.between(0.0, 0.49) };
+        Case { tolerance: 1e-4, ..Case::from_factors("case", 0.01, roller, block, factors) }
+    }
+
+    /// A place in a body of half-length `half`, off all planes of symmetry, the last coordinate the
+    /// depth below its surface: half of them near the contact's end, and all so far from surfaces that
+    /// differences lie within.
+    fn place(&mut self, contact: f64, half: f64) -> [f64; 3] {
+        const INSIDE: f64 = 2.1 * STEP;
+        loop {
+            let x = self.between(INSIDE, 2.5);
+            // Nearer to the surface a tolerance's worth of error varies over few steps.
+            let depth = self.scale(5.0 * STEP, 6.0);
+            let y = match self.number() {
+                u if u < 0.3 => contact - self.scale(INSIDE, 3.0),
+                u if u < 0.5 => contact + self.scale(INSIDE, 3.0),
+                _ => self.between(INSIDE, half - INSIDE),
+            };
+            let from_edge = if y < contact { (x - 1.0).hypot(depth) } else { f64::INFINITY };
+            let away = (y - contact).hypot(depth).min(from_edge) > SINGULAR;
+            if away && y > INSIDE && y < half - INSIDE {
+                return [x, y, depth];
+            }
+        }
+    }
+}
+
+/// At a place the largest component of a stress's divergence, and its trace's Laplacian, by central
+/// differences of the fourth order.
+fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64; 2] {
+    let trace = |s: &StressTensor| s.xx + s.yy + s.zz;
+    let here = trace(&stress(place));
+    let (mut divergence, mut laplacian) = ([0.0; 3], 0.0);
+    for axis in 0..3 {
+        let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|steps| {
+            let mut beside = place;
+            beside[axis] += steps * STEP;
+            stress(beside)
+        });
+        let slope = (a + b * -8.0 + c * 8.0 + d * -1.0) * (1.0 / (12.0 * STEP));
+        let row = match axis {
+            0 => [slope.xx, slope.xy, slope.xz],
+            1 => [slope.xy, slope.yy, slope.yz],
+            _ => [slope.xz, slope.yz, slope.zz],
+        };
+        for (sum, part) in divergence.iter_mut().zip(row) {
+            *sum += part;
+        }
+        let around = 16.0 * (trace(&b) + trace(&c)) - trace(&a) - trace(&d);
+        laplacian += (around - 30.0 * here) / (12.0 * STEP * STEP);
+    }
+    [divergence.into_iter().map(f64::abs).fold(0.0, worse), laplacian.abs()]
+}
+
+/// Elastic bodies without forces inside them: the divergence of the stress vanishes, and its trace is
+/// harmonic. A roller is seen in its true shape, whose surface falls by x^2 / (2 R).
+#[test]
+fn fields_are_in_equilibrium_and_compatible() {
+    let mut random = Random(TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    for _ in 0..SCENES {
+        let case = random.case();
+        let scene = Scene::new(&case, EdgeModel::QuarterSpace, None);
+        let solved = SolvedScene::new(&scene).unwrap();
+        for kind in BodyKind::ALL {
+            let field = solved.field(kind);
+            let curvature = match kind {
+                BodyKind::Block => 0.0,
+                BodyKind::Roller => case.hertz().c_m / case.roller.radius_m,
+            };
+            let fall = |x: f64| 0.5 * x * x * curvature;
+            let stress = |[x, y, z]: [f64; 3]| {
+                field.round_at(y, z - fall(x), &[x]).swap_remove(0).at(curvature)
+            };
+            for _ in 0..PLACES {
+                let [x, y, depth] = random.place(scene.half_length, half_of(&scene, kind));
+                let [divergence, laplacian] = imbalance(stress, [x, y, depth + fall(x)]);
+                let at = format!("{} at ({x:.3}, {y:.3}, {depth:.3})", kind.name());
+                let at = format!("{at}, C / R = {curvature:.3}, {scene:?}");
+                small(
+                    &format!("divergence, {at}"),
+                    divergence,
+                    LIMITS[0] + FIRST_ORDER * curvature,
+                );
+                small(&format!("Laplacian of the trace, {at}"), laplacian, LIMITS[1]);
+            }
+        }
+    }
+}

@@ -1,0 +1,241 @@
+//! The solver against itself: finer, with less left out, and with less shared. Lengths are in units of C,
+//! stresses in units of p0.
+
+use crate::common::{CORNER, apart, at, case, curve_points, half_of, scene, small, solved, worse};
+use edgeline::base::StressTensor;
+use edgeline::body::{EdgeModel, Resolution};
+use edgeline::solve::{Options, Scene, SolvedScene, solve};
+use edgeline::stress::BodyKind;
+use edgeline::stress::curves::standard_curves;
+
+/// What a resolution changes against a finer one: pressure and stresses outside [`CORNER`].
+fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
+    let length = coarse.scene.half_length;
+    let mut pressure: f64 = 0.0;
+    for i in 0..=200 {
+        // Denser towards the end.
+        let s = CORNER * (length / CORNER).powf(f64::from(i) / 200.0);
+        for x in [0.0, 0.4, 0.8] {
+            let p = [coarse, fine].map(|s3| s3.pressure.at(x, length - s));
+            pressure = worse(pressure, (p[0] - p[1]).abs());
+        }
+    }
+    let mut stress: f64 = 0.0;
+    for kind in BodyKind::ALL {
+        if coarse.bodies_shared() && kind == BodyKind::Roller {
+            continue;
+        }
+        let fields = [coarse.field(kind), fine.field(kind)];
+        for (_, place) in curve_points(&coarse.scene, kind) {
+            let [a, b] = [0, 1].map(|i| at(&fields[i], place));
+            stress = worse(stress, apart(&a, &b));
+        }
+    }
+    (pressure, stress)
+}
+
+// --- What is skipped ---------------------------------------------------------------------------
+
+/// Sources beyond a wave's reach, and end faces that a wavenumber does not reach.
+#[test]
+fn what_waves_do_not_reach_does_not_matter() {
+    let usual = Resolution::for_tolerance(1e-3);
+    let farther = Resolution { reach: 28.0, face_reach: 28.0, ..usual.clone() };
+    for (slenderness, length_ratio) in [(5.0, 1.0), (5.0, 0.5), (5.0, 0.1)] {
+        let scene = scene(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        let [near, far] =
+            [&usual, &farther].map(|r| SolvedScene::with_resolution(&scene, r).unwrap());
+        let field = near.field(BodyKind::Block);
+        at(&field, [0.0, slenderness - 1.0, 0.5]);
+        let work = field.work();
+        assert!(work.done > 0 && work.beyond_reach > 0, "{work:?}");
+        assert_eq!(work.ends > 0, length_ratio < 1.0, "{work:?}");
+        let (pressure, stress) = changes(&near, &far);
+        small(&format!("{slenderness} {length_ratio}: pressure"), pressure, 5e-4);
+        small(&format!("{slenderness} {length_ratio}: stresses"), stress, 5e-4);
+    }
+}
+
+#[test]
+fn faded_wavenumbers_do_not_matter() {
+    let solved = solved(5.0, 0.5, 0.3, EdgeModel::QuarterSpace);
+    for kind in BodyKind::ALL {
+        let usual = solved.field(kind);
+        let all = solved.field_with(kind, None, 0.0);
+        let mut worst: f64 = 0.0;
+        for (_, place) in curve_points(&solved.scene, kind) {
+            worst = worse(worst, apart(&at(&usual, place), &at(&all, place)));
+        }
+        assert!(usual.work().faded > 0 && all.work().faded == 0);
+        small(kind.name(), worst, 2e-4);
+    }
+}
+
+/// Points of the curves that are interpolated, ledges of about the depth included, below which the end
+/// face's corner is as near as the contact's. Where a coarse answer's own error is seen, as on the end
+/// face, whose load is given on coarse panels, the points between must not add to it.
+#[test]
+fn points_between_do_not_matter() {
+    let levels = [1e-2, 5e-3, 1e-3, 1e-4];
+    // Largest change, and for both ways the largest error and the sum of its squares.
+    let mut found = [[0.0; 5]; 4];
+    let (mut fewer, mut all, mut points) = ([0; 4], [0; 4], 0.0);
+    for (slenderness, length_ratio, model) in [
+        (5.0, 1.0, EdgeModel::QuarterSpace),
+        (5.0, 0.5, EdgeModel::QuarterSpace),
+        (20.0, 0.97, EdgeModel::QuarterSpace),
+        (1.0, 0.9, EdgeModel::QuarterSpace),
+        (200.0, 0.999, EdgeModel::QuarterSpace),
+        (8.0, 0.8, EdgeModel::Guilbault),
+    ] {
+        let scenes = levels
+            .map(|tolerance| Scene { tolerance, ..scene(slenderness, length_ratio, 0.3, model) });
+        let solved = scenes.each_ref().map(|scene| SolvedScene::new(scene).unwrap());
+        for kind in BodyKind::ALL {
+            let between = solved.each_ref().map(|s| s.field(kind));
+            let direct = solved.each_ref().map(|s| s.field(kind));
+            for curve in standard_curves(kind, slenderness, half_of(&scenes[0], kind)) {
+                let [x, y, z] = curve.points[0];
+                let run =
+                    |axis: usize| -> Vec<f64> { curve.points.iter().map(|p| p[axis]).collect() };
+                let values = between.each_ref().map(|field| match curve.name {
+                    "surface-along-x" => Vec::new(),
+                    name if name.starts_with("depth") => field.down(&[x], y, &run(2)).concat(),
+                    _ => field.along(x, z, &run(1)),
+                });
+                let away = |p: &[f64; 3]| (p[1] - slenderness).hypot(p[2]) > CORNER * 0.999;
+                for (i, place) in curve.points.iter().enumerate().take(values[0].len()) {
+                    let own = direct.each_ref().map(|field| at(field, *place));
+                    points += 1.0;
+                    for level in (0..levels.len()).filter(|_| away(place)) {
+                        let off = |a: &StressTensor, b| apart(a, b) / levels[level];
+                        let errors = [&values[level][i], &own[level]].map(|s| off(s, &own[3]));
+                        let so_far = &mut found[level];
+                        so_far[0] = worse(so_far[0], off(&values[level][i], &own[level]));
+                        for (error, sums) in errors.iter().zip(so_far[1..].chunks_mut(2)) {
+                            (sums[0], sums[1]) = (worse(sums[0], *error), sums[1] + error * error);
+                        }
+                    }
+                }
+            }
+            for level in 0..levels.len() {
+                fewer[level] += between[level].work().done;
+                all[level] += direct[level].work().done;
+            }
+        }
+    }
+    for level in 0..levels.len() {
+        let [change, max, square, direct_max, direct_square] = found[level];
+        let rms = [square, direct_square].map(|s: f64| (s / points).sqrt());
+        println!("{} of {} evaluations", fewer[level], all[level]);
+        println!("errors {max:.2} for {direct_max:.2}, RMS {:.3} for {:.3}", rms[0], rms[1]);
+        assert!(10 * fewer[level] < 6 * all[level]);
+        small(&format!("change in tolerances of {:e}", levels[level]), change, 2.0);
+        if level < 3 {
+            assert!(max <= 1.05 * direct_max && rms[0] <= 1.1 * rms[1]);
+        }
+    }
+    assert!(found[2][0] < 1.0 && found[3][0] < 1.0);
+}
+
+#[test]
+fn bodies_that_are_alike_are_computed_once() {
+    let alike = solved(5.0, 1.0, 0.3, EdgeModel::QuarterSpace);
+    let mut scene = alike.scene.clone();
+    scene.bodies.block.nu += 1e-12;
+    let different = SolvedScene::new(&scene).unwrap();
+    assert!(alike.bodies_shared() && !different.bodies_shared());
+    let (pressure, stress) = changes(&different, &alike);
+    small("pressure", pressure, 1e-8);
+    small("stresses", stress, 1e-6);
+}
+
+#[test]
+fn a_curve_alone_is_what_it_is_among_all() {
+    let case = case(5e-4, 5.0, 0.5);
+    let whole = solve(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.bodies = vec![BodyKind::Roller];
+    options.curves = vec!["depth-end".into()];
+    let alone = solve(&case, &options).unwrap();
+    assert_eq!(alone.curves.len(), 1);
+    let same = whole.curves.iter().find(|c| **c == alone.curves[0]);
+    assert!(same.is_some(), "the curve differs");
+}
+
+// --- Refinement --------------------------------------------------------------------------------
+
+/// Every panel halved and every extent doubled.
+fn assert_converged(scenes: &[(f64, f64, f64)]) {
+    let base = Resolution::for_tolerance(1e-3);
+    for &(slenderness, length_ratio, nu) in scenes {
+        let scene = scene(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
+        let coarse = SolvedScene::with_resolution(&scene, &base).unwrap();
+        let fine = SolvedScene::with_resolution(&scene, &base.refined()).unwrap();
+        let (pressure, stress) = changes(&coarse, &fine);
+        let what = format!("S_l = {slenderness}, L_r = {length_ratio}, nu = {nu}");
+        small(&format!("{what}: pressure"), pressure, 2e-3);
+        small(&format!("{what}: stresses"), stress, 5e-3);
+    }
+}
+
+#[test]
+fn refinement_changes_little() {
+    assert_converged(&[(5.0, 1.0, 0.3), (5.0, 0.5, 0.3), (20.0, 1.0, 0.3), (20.0, 0.5, 0.3)]);
+}
+
+#[test]
+fn refinement_changes_little_short_and_long() {
+    assert_converged(&[(1.0, 1.0, 0.3), (1.0, 0.5, 0.3), (2.0, 1.0, 0.3), (2.0, 0.5, 0.3)]);
+    assert_converged(&[(100.0, 1.0, 0.3), (100.0, 0.5, 0.3)]);
+}
+
+#[test]
+fn refinement_changes_little_at_other_ledges_and_materials() {
+    assert_converged(&[(5.0, 0.1, 0.3), (5.0, 0.95, 0.3), (5.0, 0.99, 0.3), (20.0, 0.99, 0.3)]);
+    assert_converged(&[(5.0, 1.0, 0.0), (5.0, 0.5, 0.0), (5.0, 1.0, 0.25), (5.0, 0.5, 0.25)]);
+    assert_converged(&[(5.0, 0.5, 0.45), (5.0, 1.0, 0.45)]);
+}
+
+/// One direction of refinement after the other: what a resolution half as fine as the default, and the
+/// default itself, are off from one twice as fine. The table stands in docs/theory.md.
+#[test]
+fn every_direction_converges() {
+    type Level = fn(&mut Resolution, f64);
+    let directions: [(&str, Level); 5] = [
+        ("panels along y and z", |r, level| {
+            r.corner *= 0.5f64.powf(level);
+            r.ratio = r.ratio.powf(0.5f64.powf(level));
+        }),
+        ("modes across x", |r, level| r.modes = (5.0 + 2.0 * level) as usize),
+        ("free half-widths", |r, level| r.spacing *= 0.5f64.powf(level)),
+        ("wavenumbers", |r, level| {
+            r.k_max *= 2f64.powf(level);
+            r.k_step *= 0.5f64.powf(level);
+            r.k_ratio = r.k_ratio.powf(0.5f64.powf(level));
+        }),
+        ("extents and images", |r, level| {
+            r.k_min *= 0.5f64.powf(level);
+            r.face_reach *= 2f64.powf(level);
+            r.reach = (r.reach * 2f64.powf(level)).min(30.0);
+            r.images = (r.images as f64 * 2f64.powf(level)).max(1.0) as usize;
+        }),
+    ];
+    for length_ratio in [1.0, 0.5] {
+        let scene = scene(5.0, length_ratio, 0.3, EdgeModel::QuarterSpace);
+        for (name, level) in directions {
+            let solve = |by: f64| {
+                let mut resolution = Resolution::for_tolerance(1e-3);
+                level(&mut resolution, by);
+                SolvedScene::with_resolution(&scene, &resolution).unwrap()
+            };
+            let fine = solve(1.0);
+            let errors = [-1.0, 0.0].map(|by| changes(&solve(by), &fine));
+            let text = errors.map(|(p, s)| format!("{p:.5} / {s:.5}"));
+            println!("| {length_ratio} | {name} | {} | {} |", text[0], text[1]);
+            let [coarse, usual] = errors;
+            assert!(usual.0 <= coarse.0 && usual.1 <= coarse.1, "{name}: {errors:?}");
+            assert!(usual.0 <= 2e-3 && usual.1 <= 2e-3, "{name}: {errors:?}");
+        }
+    }
+}
