@@ -27,6 +27,21 @@ impl StressTensor {
         Self { xx, yy, zz, xy, xz, yz }
     }
 
+    /// Which components change sign in a mirror image in the plane x = 0.
+    pub const ODD_IN_X: [bool; 6] = [false, false, false, true, true, false];
+
+    /// Which components change sign in a mirror image in the plane y = 0.
+    pub const ODD_IN_Y: [bool; 6] = [false, false, false, true, false, true];
+
+    /// Which components change sign in a mirror image in the plane z = 0.
+    pub const ODD_IN_Z: [bool; 6] = [false, false, false, false, true, true];
+
+    /// The mirror image in the plane whose components are `odd`.
+    pub fn mirrored(&self, odd: [bool; 6]) -> Self {
+        let own = self.components();
+        Self::from_components(std::array::from_fn(|i| if odd[i] { -own[i] } else { own[i] }))
+    }
+
     /// Von Mises equivalent stress, sqrt(3 J2).
     pub fn von_mises(&self) -> f64 {
         let (a, b, c) = (self.xx - self.yy, self.yy - self.zz, self.zz - self.xx);

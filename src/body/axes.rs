@@ -24,7 +24,7 @@ const FACE_TAIL: f64 = 8.0;
 ///
 /// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
 /// every extent, which is how convergence is shown.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Resolution {
     /// Gauss nodes per panel along y and along the end faces' depth.
     pub order: usize,
@@ -56,6 +56,70 @@ pub struct Resolution {
     pub reach: f64,
 }
 
+/// The levels for the tolerances 0.01, 0.005, 0.001 and 0.0001.
+const LEVELS: [Resolution; 4] = [
+    Resolution {
+        order: 3,
+        corner: 0.06,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.04,
+        ratio: 2.5,
+        modes: 4,
+        spacing: 0.1,
+        k_max: 20.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 6.5,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.015,
+        ratio: 2.0,
+        modes: 5,
+        spacing: 0.05,
+        k_max: 130.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.01,
+        k_ratio: 3.2,
+        images: 1,
+        face_reach: 14.0,
+        reach: 14.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.01,
+        ratio: 1.8,
+        modes: 7,
+        spacing: 0.05,
+        k_max: 260.0,
+        k_order: 5,
+        k_step: 3.0,
+        k_min: 0.005,
+        k_ratio: 2.2,
+        images: 2,
+        face_reach: 18.0,
+        reach: 18.0,
+    },
+];
+
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
     pub const FINEST: f64 = 1e-4;
@@ -79,66 +143,14 @@ impl Resolution {
     /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. How far each of them keeps to its
     /// tolerance is measured by its own refinement.
     pub fn for_tolerance(tolerance: f64) -> Self {
-        let usual = Self {
-            order: 5,
-            corner: 0.015,
-            ratio: 2.0,
-            modes: 5,
-            spacing: 0.05,
-            k_max: 130.0,
-            k_order: 4,
-            k_step: 4.0,
-            k_min: 0.01,
-            k_ratio: 3.2,
-            images: 1,
-            face_reach: 14.0,
-            reach: 14.0,
-        };
-        let coarse = Self {
-            order: 3,
-            corner: 0.04,
-            ratio: 2.5,
-            modes: 4,
-            spacing: 0.1,
-            k_max: 20.0,
-            k_order: 3,
-            k_step: 2.5,
-            k_min: 0.05,
-            k_ratio: 6.5,
-            face_reach: 10.0,
-            reach: 8.0,
-            ..usual.clone()
-        };
         if tolerance >= 1e-2 {
-            Self {
-                corner: 0.06,
-                ratio: 3.0,
-                modes: 3,
-                spacing: 0.15,
-                k_max: 12.0,
-                k_ratio: 5.0,
-                ..coarse
-            }
+            LEVELS[0]
         } else if tolerance >= Self::COARSE {
-            coarse
+            LEVELS[1]
         } else if tolerance >= 1e-3 {
-            usual
+            LEVELS[2]
         } else {
-            Self {
-                order: 7,
-                corner: 0.01,
-                ratio: 1.8,
-                modes: 7,
-                k_max: 260.0,
-                k_order: 5,
-                k_step: 3.0,
-                k_min: 0.005,
-                k_ratio: 2.2,
-                images: 2,
-                face_reach: 18.0,
-                reach: 18.0,
-                ..usual
-            }
+            LEVELS[3]
         }
     }
 

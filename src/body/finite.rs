@@ -8,7 +8,7 @@
 use super::axes::{PLATE_FADES, Resolution};
 use super::end::End;
 use super::stencil::{Image, Peak, Sources, Stencil};
-use crate::base::{Panels, linear};
+use crate::base::{Panels, StressTensor, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
@@ -114,7 +114,7 @@ impl Body {
             nu,
             end,
             face_wavenumbers: resolution.face_wavenumbers(half),
-            resolution: resolution.clone(),
+            resolution: *resolution,
             contact,
             images,
             strips: Vec::new(),
@@ -397,7 +397,7 @@ impl Body {
         let mut sum = [0.0; 6];
         for ((s, q), (sin, cos)) in kernel.iter().zip(transform).zip(phases) {
             for (i, (sum, s)) in sum.iter_mut().zip(s).enumerate() {
-                *sum += q * s * if i >= 4 { sin } else { cos };
+                *sum += q * s * if StressTensor::ODD_IN_Z[i] { sin } else { cos };
             }
         }
         sum

@@ -143,6 +143,13 @@ pub enum Peak {
     Kink,
 }
 
+/// Where a [`Stencil`]'s target is, and what a kernel does there; see [`Stencil::new`].
+struct TargetLine {
+    depth: f64,
+    shortest: f64,
+    peak: Peak,
+}
+
 /// Places that differ by less than this part of a panel are the same.
 const SAME: f64 = 1e-9;
 
@@ -162,7 +169,7 @@ impl Stencil {
         shortest: f64,
         peak: Peak,
     ) -> Self {
-        let (axis, order) = (&sources.axis, sources.axis.order());
+        let order = sources.axis.order();
         let mut stencil = Self {
             offsets: Vec::with_capacity(128),
             far: Vec::with_capacity(64),
@@ -170,10 +177,28 @@ impl Stencil {
             near_weights: Vec::with_capacity(64 * order),
             order,
         };
+        let near = stencil.add_far(sources, images, target, depth);
+        let line = TargetLine { depth, shortest, peak };
+        let mut pieces = Vec::with_capacity(32);
+        for (image, own, panel) in near {
+            stencil.add_near(sources, &line, image, own, panel, &mut pieces);
+        }
+        stencil
+    }
+
+    /// Adds the clusters of panels that are far enough from the target to act like charges; returns the
+    /// others: image, the target seen from the axis's own coordinate, and panel.
+    fn add_far<'a>(
+        &mut self,
+        sources: &Sources,
+        images: &'a [Image],
+        target: f64,
+        depth: f64,
+    ) -> Vec<(&'a Image, f64, usize)> {
+        let order = self.order;
         let mut near = Vec::with_capacity(32);
         let mut open = Vec::with_capacity(32);
         for image in images {
-            // The target seen from the axis's own coordinate.
             let own = image.sign * (target - image.shift);
             open.push(0);
             while let Some(index) = open.pop() {
@@ -184,8 +209,8 @@ impl Stencil {
                     if cluster.halves.is_some() { CLUSTER_DISTANCE } else { PANEL_DISTANCE };
                 if far >= factor * (b - a) {
                     for charge in index * order..(index + 1) * order {
-                        stencil.offsets.push(image.sign * (own - sources.places[charge]));
-                        stencil.far.push((charge as u32, image.weight));
+                        self.offsets.push(image.sign * (own - sources.places[charge]));
+                        self.far.push((charge as u32, image.weight));
                     }
                 } else if let Some(halves) = cluster.halves {
                     open.extend(halves);
@@ -194,45 +219,57 @@ impl Stencil {
                 }
             }
         }
-        let mut pieces = Vec::with_capacity(32);
-        for (image, own, panel) in near {
-            let [a, b] = axis.panel(panel);
-            let mut add = |s: f64, weight: f64| {
-                stencil.offsets.push(image.sign * (own - s));
-                stencil.near.push((panel * order) as u32);
-                let weight = image.weight * weight;
-                stencil.near_weights.extend(axis.polynomials(panel, s).map(|b| weight * b));
-            };
-            // Cut at the target first, so that pieces end there.
-            if a < own && own < b {
-                pieces.extend([[a, own], [own, b]]);
+        near
+    }
+
+    /// Adds the points of a `panel` that the target is near, at `own` in the axis's coordinate. `pieces` is for
+    /// scratch.
+    fn add_near(
+        &mut self,
+        sources: &Sources,
+        line: &TargetLine,
+        image: &Image,
+        own: f64,
+        panel: usize,
+        pieces: &mut Vec<[f64; 2]>,
+    ) {
+        let (axis, order) = (&sources.axis, self.order);
+        let [a, b] = axis.panel(panel);
+        let mut add = |s: f64, weight: f64| {
+            self.offsets.push(image.sign * (own - s));
+            self.near.push((panel * order) as u32);
+            let weight = image.weight * weight;
+            self.near_weights.extend(axis.polynomials(panel, s).map(|b| weight * b));
+        };
+        // Cut at the target first, so that pieces end there.
+        if a < own && own < b {
+            pieces.extend([[a, own], [own, b]]);
+        } else {
+            pieces.push([a, b]);
+        }
+        while let Some([c, d]) = pieces.pop() {
+            let length = d - c;
+            // Images of an end of a panel miss it by rounding.
+            let touches = |end: f64| (end - own).abs() < SAME * (b - a);
+            let steep = line.peak == Peak::Logarithm && (touches(c) || touches(d));
+            let flat = steep || line.peak == Peak::Kink;
+            let short = line.depth == 0.0 && flat && length <= line.shortest;
+            if !short && distances(c, d, own, line.depth) < PIECE_DISTANCE * length {
+                let mid = 0.5 * (c + d);
+                pieces.extend([[c, mid], [mid, d]]);
+            } else if short && steep {
+                let (from, away) = if touches(c) { (c, length) } else { (d, -length) };
+                for (t, w) in sources.steep_rule.0.iter().zip(&sources.steep_rule.1) {
+                    let t = 0.5 * (1.0 + t);
+                    let slope = f64::from(POWER) * t.powi(POWER - 1);
+                    add(from + away * t.powi(POWER), 0.5 * length * w * slope);
+                }
             } else {
-                pieces.push([a, b]);
-            }
-            while let Some([c, d]) = pieces.pop() {
-                let length = d - c;
-                // Images of an end of a panel miss it by rounding.
-                let touches = |end: f64| (end - own).abs() < SAME * (b - a);
-                let steep = peak == Peak::Logarithm && (touches(c) || touches(d));
-                let short = depth == 0.0 && (steep || peak == Peak::Kink) && length <= shortest;
-                if !short && distances(c, d, own, depth) < PIECE_DISTANCE * length {
-                    let mid = 0.5 * (c + d);
-                    pieces.extend([[c, mid], [mid, d]]);
-                } else if short && steep {
-                    let (from, away) = if touches(c) { (c, length) } else { (d, -length) };
-                    for (t, w) in sources.steep_rule.0.iter().zip(&sources.steep_rule.1) {
-                        let t = 0.5 * (1.0 + t);
-                        let slope = f64::from(POWER) * t.powi(POWER - 1);
-                        add(from + away * t.powi(POWER), 0.5 * length * w * slope);
-                    }
-                } else {
-                    for (t, w) in sources.piece_rule.0.iter().zip(&sources.piece_rule.1) {
-                        add(0.5 * (c + d + length * t), 0.5 * length * w);
-                    }
+                for (t, w) in sources.piece_rule.0.iter().zip(&sources.piece_rule.1) {
+                    add(0.5 * (c + d + length * t), 0.5 * length * w);
                 }
             }
         }
-        stencil
     }
 
     /// Offsets target - source of its source points.

@@ -57,15 +57,7 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
         };
         (0..4).map(term).sum::<f64>() / k
     };
-    // Panels that resolve e^(-k depth) and the fall of the mean.
-    let smallest = (1e-3 / depth).min(first);
-    let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;
-    let graded = |i| smallest * (top / smallest).powf(f64::from(i) / f64::from(steps));
-    let mut breaks: Vec<f64> = std::iter::once(0.0).chain((0..=steps).map(graded)).collect();
-    breaks.push(first);
-    breaks.sort_by(f64::total_cmp);
-    breaks.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *a);
-    let own = Panels::new(breaks, 6);
+    let own = fading_panels(depth, first, top);
     let faded: f64 = own
         .nodes()
         .iter()
@@ -76,4 +68,17 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
     let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
     let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
     (long - faded + short) / (PI * PI)
+}
+
+/// Panels that resolve e^(-k `depth`) and the fall of the mean up to the wavenumber `top`, with a break at
+/// `first`.
+fn fading_panels(depth: f64, first: f64, top: f64) -> Panels {
+    let smallest = (1e-3 / depth).min(first);
+    let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;
+    let graded = |i| smallest * (top / smallest).powf(f64::from(i) / f64::from(steps));
+    let mut breaks: Vec<f64> = std::iter::once(0.0).chain((0..=steps).map(graded)).collect();
+    breaks.push(first);
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|a, b| (*a - *b).abs() <= 1e-9 * *a);
+    Panels::new(breaks, 6)
 }

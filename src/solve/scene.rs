@@ -162,19 +162,7 @@ impl SolvedScene {
                 (body, layers)
             })
             .collect();
-        let condition = bodies
-            .iter()
-            .flat_map(|(_, layers)| layers)
-            .map(|l| l.condition)
-            .fold(1.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
-        if condition > WORST_CONDITION {
-            return Err(Error::Unsound {
-                law: "the condition number of the end faces' equations",
-                value: condition,
-                limit: WORST_CONDITION,
-                remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
-            });
-        }
+        let condition = checked_condition(&bodies)?;
         let compliances: Vec<_> = (0..coarse.len())
             .map(|i| {
                 let of = |body: usize| &bodies[body.min(bodies.len() - 1)].1[i].compliance;
@@ -197,7 +185,7 @@ impl SolvedScene {
         let total = start.elapsed().as_secs_f64();
         Ok(Self {
             scene: scene.clone(),
-            resolution: resolution.clone(),
+            resolution: *resolution,
             wavenumbers,
             pressure,
             contact,
@@ -257,4 +245,22 @@ impl SolvedScene {
     pub fn approach(&self, depth: f64) -> f64 {
         self.contact.approach - contact::reference(&self.compliance(), &self.contact, depth)
     }
+}
+
+/// The largest condition number of the bodies' equations, refused where rounding would matter.
+fn checked_condition(bodies: &[(Body, Vec<Layer>)]) -> Result<f64> {
+    let condition = bodies
+        .iter()
+        .flat_map(|(_, layers)| layers)
+        .map(|l| l.condition)
+        .fold(1.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
+    if condition <= WORST_CONDITION {
+        return Ok(condition);
+    }
+    Err(Error::Unsound {
+        law: "the condition number of the end faces' equations",
+        value: condition,
+        limit: WORST_CONDITION,
+        remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
+    })
 }

@@ -9,7 +9,7 @@
 
 use super::pressure::Pressure;
 use super::round::RoundStress;
-use super::waves::{Sight, Waves};
+use super::waves::{Influence, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::{Body, Layer, transition};
 use crate::kernels::line_load::WaveStress;
@@ -356,95 +356,28 @@ impl<'a> Field<'a> {
         if self.on_face(y) && self.body.end.freed {
             (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
         }
-        if y < 0.0 {
-            (s.xy, s.yz) = (-s.xy, -s.yz);
-        }
-        s
+        if y < 0.0 { s.mirrored(StressTensor::ODD_IN_Y) } else { s }
     }
 
     /// Stresses at (x, |`y`|, `z`) for each x of `xs`, less those of an endless contact of the
     /// pressure at `y`.
     fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let (y, body) = (y.abs(), self.body);
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let central = farthest == 0.0;
-        let waves = if central { self.central.clone() } else { self.all(farthest) };
-        let faded = if central {
+        let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
+        let faded = if farthest == 0.0 {
             self.wavenumbers.coarse().order()
         } else {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
-        let surface = Sight::of_surface(body, &waves, y, z);
-        let complete = body.end.freed;
-        let faces = complete.then(|| {
-            let depths = [if self.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
-            Sight::of_faces(body, &waves, y, z, depths)
-        });
-        let correction = self.gamma.map(|gamma| {
-            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, gamma));
-            (Sight::of_surface(body, &waves, body.half, z), shares[0] + shares[1])
-        });
-        let local: Vec<(usize, f64)> = self.pressure.neighbours(y).into_iter().flatten().collect();
+        let mut target = Target::new(self, &waves, y.abs(), z);
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
-        let on_faces: usize = faces.iter().flatten().map(Sight::len).sum();
-        let on_surface = surface.len() + correction.as_ref().map_or(0, |c| c.0.len());
-        let mut work = Work::default();
-        let phases = if complete { body.plate_phases(z) } else { Vec::new() };
-        let plates = (complete && central).then(|| self.plates(y));
-        let mut loads = Vec::new();
-        let mut felt = Felt::default();
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
-                work.faded = ((waves.k.len() - i) * (on_surface + on_faces)) as u64;
+                target.work.faded = ((waves.k.len() - i) * target.loads()) as u64;
                 break;
             }
-            let wave = i % WAVES;
-            if wave == 0 {
-                let block = &waves.blocks[i / WAVES];
-                felt.surface = surface.stresses(body, block, &mut loads);
-                if let Some((end, _)) = &correction {
-                    felt.end = end.stresses(body, block, &mut loads);
-                }
-                if let Some(faces) = faces.as_ref().filter(|_| i < waves.ends) {
-                    felt.faces = faces.each_ref().map(|f| f.stresses(body, block, &mut loads));
-                }
-            }
-            let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = felt.surface[wave];
-            let mut amplitudes = [xx, ww, dd, xw, xd, wd];
-            if let Some((_, share)) = &correction {
-                let (on_end, count) = felt.end[wave];
-                amplitudes[1] -= on_end.ww * share;
-                done += count;
-            }
-            let mut ends = on_faces;
-            if complete && i < waves.ends {
-                for (face, into) in felt.faces.iter().zip([-1.0, 1.0]) {
-                    let (s, count) = face[wave];
-                    let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
-                    amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
-                    done += count;
-                }
-                let transform = &waves.plate[i];
-                let plate = match &plates {
-                    Some(plates) => Body::plate_stress(&plates[i], transform, &phases),
-                    None => {
-                        let kernel = body.plate_kernel(&waves.plate_waves[i], y);
-                        Body::plate_stress(&kernel, transform, &phases)
-                    }
-                };
-                amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
-                ends = 0;
-            }
-            work.done += done as u64;
-            work.ends += ends as u64;
-            work.beyond_reach += (on_surface + on_faces - ends - done) as u64;
-            let p: f64 = local.iter().map(|(j, w)| w * waves.contact[(i, *j)]).sum();
-            let e = (-k * z).exp() * p;
-            amplitudes[0] += (1.0 - k * z) * e;
-            amplitudes[1] += 2.0 * body.nu * e;
-            amplitudes[2] += (1.0 + k * z) * e;
-            amplitudes[4] += k * z * e;
+            let amplitudes = target.amplitudes(i);
             let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
             // Only once oscillations across the contact are resolved does a small amplitude last.
             let small = k > 1.0 && weight * largest < self.negligible;
@@ -452,23 +385,166 @@ impl<'a> Field<'a> {
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
                 for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
-                    *s += weight * a * if i == 3 || i == 4 { sin } else { cos };
+                    *s += weight * a * if StressTensor::ODD_IN_X[i] { sin } else { cos };
                 }
             }
         }
-        self.counters.add(&work);
+        self.counters.add(&target.work);
         sums.into_iter().map(StressTensor::from_components).collect()
     }
 }
 
+/// A place (y, z) and what it feels of all loads.
+struct Target<'a> {
+    body: &'a Body,
+    waves: &'a Waves,
+    y: f64,
+    z: f64,
+    surface: Influence,
+    /// The loads on the end faces at +H and -H, if there are any.
+    faces: Option<[Influence; 2]>,
+    /// The surface's loads as the end face feels them, and the share of its normal stress that the
+    /// stress correction takes away here.
+    correction: Option<(Influence, f64)>,
+    /// The contact's nodes whose pressures make up the local one, and their shares.
+    local: Vec<(usize, f64)>,
+    plate: Option<PlateAt>,
+    /// What the latest [`WAVES`] wavenumbers do.
+    felt: BlockStress,
+    work: Work,
+    /// Scratch.
+    loads: Vec<[f32; WAVES]>,
+}
+
+/// The plate's remainder at a place: its kernels, where they are kept, and its phases.
+struct PlateAt {
+    kernels: Option<Plates>,
+    phases: Vec<(f64, f64)>,
+}
+
 /// What a target feels of some wavenumbers: stresses, and the numbers of loads that they are from.
 #[derive(Default)]
-struct Felt {
+struct BlockStress {
     surface: [(WaveStress, usize); WAVES],
     /// Of the surface's loads, at the end face.
     end: [(WaveStress, usize); WAVES],
     /// Of the loads on either end face.
     faces: [[(WaveStress, usize); WAVES]; 2],
+}
+
+impl<'a> Target<'a> {
+    /// The place (`y` >= 0, `z`) of `field` under the loads of `waves`.
+    fn new(field: &'a Field, waves: &'a Waves, y: f64, z: f64) -> Self {
+        let body = field.body;
+        let faces = body.end.freed.then(|| {
+            let depths = [if field.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
+            Influence::of_faces(body, waves, y, z, depths)
+        });
+        let correction = field.gamma.map(|gamma| {
+            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, gamma));
+            (Influence::of_surface(body, waves, body.half, z), shares[0] + shares[1])
+        });
+        let plate = body.end.freed.then(|| PlateAt {
+            kernels: waves.central.then(|| field.plates(y)),
+            phases: body.plate_phases(z),
+        });
+        Self {
+            body,
+            waves,
+            y,
+            z,
+            surface: Influence::of_surface(body, waves, y, z),
+            faces,
+            correction,
+            local: field.pressure.neighbours(y).into_iter().flatten().collect(),
+            plate,
+            felt: BlockStress::default(),
+            work: Work::default(),
+            loads: Vec::new(),
+        }
+    }
+
+    /// Number of loads on the end faces.
+    fn on_faces(&self) -> usize {
+        self.faces.iter().flatten().map(Influence::len).sum()
+    }
+
+    /// Number of all loads.
+    fn loads(&self) -> usize {
+        let on_end = self.correction.as_ref().map_or(0, |c| c.0.len());
+        self.surface.len() + on_end + self.on_faces()
+    }
+
+    /// Sums the loads of the [`WAVES`] wavenumbers from number `first` on.
+    fn feel(&mut self, first: usize) {
+        let (body, block, loads) = (self.body, &self.waves.blocks[first / WAVES], &mut self.loads);
+        self.felt.surface = self.surface.stresses(body, block, loads);
+        if let Some((end, _)) = &self.correction {
+            self.felt.end = end.stresses(body, block, loads);
+        }
+        if let Some(faces) = self.faces.as_ref().filter(|_| first < self.waves.ends) {
+            self.felt.faces = faces.each_ref().map(|f| f.stresses(body, block, loads));
+        }
+    }
+
+    /// Amplitudes of the six components at wavenumber number `i`; all that come before have been asked for.
+    fn amplitudes(&mut self, i: usize) -> [f64; 6] {
+        let wave = i % WAVES;
+        if wave == 0 {
+            self.feel(i);
+        }
+        let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = self.felt.surface[wave];
+        let mut amplitudes = [xx, ww, dd, xw, xd, wd];
+        if let Some((_, share)) = &self.correction {
+            let (on_end, count) = self.felt.end[wave];
+            amplitudes[1] -= on_end.ww * share;
+            done += count;
+        }
+        let felt = self.body.end.freed && i < self.waves.ends;
+        if felt {
+            done += self.add_faces(i, &mut amplitudes);
+        }
+        let ends = if felt { 0 } else { self.on_faces() };
+        self.work.done += done as u64;
+        self.work.ends += ends as u64;
+        self.work.beyond_reach += (self.loads() - ends - done) as u64;
+        self.take_endless_contact(i, &mut amplitudes);
+        amplitudes
+    }
+
+    /// Adds what the loads on the end faces and the plate's remainder do; the number of loads that reach here.
+    fn add_faces(&self, i: usize, amplitudes: &mut [f64; 6]) -> usize {
+        let mut done = 0;
+        for (face, into) in self.felt.faces.iter().zip([-1.0, 1.0]) {
+            let (s, count) = face[i % WAVES];
+            let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
+            amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
+            done += count;
+        }
+        if let Some(PlateAt { kernels, phases }) = &self.plate {
+            let transform = &self.waves.plate[i];
+            let plate = match kernels {
+                Some(kernels) => Body::plate_stress(&kernels[i], transform, phases),
+                None => {
+                    let kernel = self.body.plate_kernel(&self.waves.plate_waves[i], self.y);
+                    Body::plate_stress(&kernel, transform, phases)
+                }
+            };
+            amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
+        }
+        done
+    }
+
+    /// Takes off what an endless contact of the local pressure does.
+    fn take_endless_contact(&self, i: usize, amplitudes: &mut [f64; 6]) {
+        let (k, z) = (self.waves.k[i], self.z);
+        let p: f64 = self.local.iter().map(|(j, w)| w * self.waves.contact[(i, *j)]).sum();
+        let e = (-k * z).exp() * p;
+        amplitudes[0] += (1.0 - k * z) * e;
+        amplitudes[1] += 2.0 * self.body.nu * e;
+        amplitudes[2] += (1.0 + k * z) * e;
+        amplitudes[4] += k * z * e;
+    }
 }
 
 /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.

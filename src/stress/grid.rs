@@ -141,11 +141,15 @@ pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress
                     round.iter().map(|s| s.at(curvature)).collect()
                 }
             };
-            let sign_y = if negative { -1.0 } else { 1.0 };
-            for (ix, &(i, negative)) in x.of.iter().enumerate() {
-                let (s, sign_x) = (&stresses[i], if negative { -1.0 } else { 1.0 });
+            let mirrored = |s: StressTensor, negative: bool, odd| match negative {
+                true => s.mirrored(odd),
+                false => s,
+            };
+            for (ix, &(i, behind)) in x.of.iter().enumerate() {
+                let s = mirrored(stresses[i], behind, StressTensor::ODD_IN_X);
+                let s = mirrored(s, negative, StressTensor::ODD_IN_Y);
                 (xx[ix], yy[ix], zz[ix]) = (s.xx, s.yy, s.zz);
-                (xy[ix], xz[ix], yz[ix]) = (sign_x * sign_y * s.xy, sign_x * s.xz, sign_y * s.yz);
+                (xy[ix], xz[ix], yz[ix]) = (s.xy, s.xz, s.yz);
             }
         },
     );
@@ -157,8 +161,7 @@ pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress
                     continue;
                 }
                 plane.copy_within(from * nx..(from + 1) * nx, iy * nx);
-                // xy and yz are odd in y.
-                if negative != y.of[from].1 && (component == 3 || component == 5) {
+                if negative != y.of[from].1 && StressTensor::ODD_IN_Y[component] {
                     plane[iy * nx..(iy + 1) * nx].iter_mut().for_each(|v| *v = -*v);
                 }
             }

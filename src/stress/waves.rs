@@ -27,7 +27,7 @@ pub(super) struct Waves {
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
     /// Whether they serve the plane x = 0 only, where shears that are odd in x vanish.
-    central: bool,
+    pub central: bool,
 }
 
 /// The loads of some wavenumbers, in single precision, as the kernels' tables are.
@@ -84,29 +84,7 @@ impl Waves {
         shares: impl Fn(usize) -> (usize, S),
     ) -> Self {
         let shares: Vec<_> = (0..k.len()).map(shares).collect();
-        let mut surface = DMatrix::zeros(body.surface.axis.len(), k.len());
-        let mut face = DMatrix::zeros(body.face.axis.len(), k.len());
-        for (at, layer) in layers.iter().enumerate() {
-            // The wavenumbers that a layer leads to follow each other.
-            let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
-            let start = shares.partition_point(|s| end(s) <= at);
-            let waves = start..shares.partition_point(|s| s.0 <= at);
-            let p = DMatrix::from_fn(contact.ncols(), waves.len(), |node, i| {
-                let (first, shares) = &shares[start + i];
-                shares.as_ref()[at - first] * contact[(start + i, node)]
-            });
-            // Short waves leave an end face's deep nodes without load.
-            let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
-                into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
-            };
-            match &layer.surface {
-                Some(matrix) => add(&mut surface, matrix),
-                None => surface.view_range_mut(..p.nrows(), waves.clone()).add_assign(&p),
-            }
-            if let Some(matrix) = &layer.face {
-                add(&mut face, matrix);
-            }
-        }
+        let (surface, face) = nodal_loads(body, &contact, layers, &shares);
         // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
         let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
         let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
@@ -140,9 +118,43 @@ impl Waves {
     }
 }
 
+/// The loads at the nodes of the surface and of the end faces, a column for each wavenumber, under the
+/// transforms `contact` of the pressure; see [`Waves::new`].
+fn nodal_loads<S: AsRef<[f64]>>(
+    body: &Body,
+    contact: &DMatrix<f64>,
+    layers: &[Layer],
+    shares: &[(usize, S)],
+) -> (DMatrix<f64>, DMatrix<f64>) {
+    let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
+    let mut face = DMatrix::zeros(body.face.axis.len(), shares.len());
+    for (at, layer) in layers.iter().enumerate() {
+        // The wavenumbers that a layer leads to follow each other.
+        let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
+        let start = shares.partition_point(|s| end(s) <= at);
+        let waves = start..shares.partition_point(|s| s.0 <= at);
+        let p = DMatrix::from_fn(contact.ncols(), waves.len(), |node, i| {
+            let (first, shares) = &shares[start + i];
+            shares.as_ref()[at - first] * contact[(start + i, node)]
+        });
+        // Short waves leave an end face's deep nodes without load.
+        let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
+            into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
+        };
+        match &layer.surface {
+            Some(matrix) => add(&mut surface, matrix),
+            None => surface.view_range_mut(..p.nrows(), waves.clone()).add_assign(&p),
+        }
+        if let Some(matrix) = &layer.face {
+            add(&mut face, matrix);
+        }
+    }
+    (surface, face)
+}
+
 /// The loads on one surface of a body, or on an end face, as a target feels them.
 #[derive(Debug, Clone)]
-pub(super) struct Sight {
+pub(super) struct Influence {
     side: Side,
     stencil: Stencil,
     /// Weights of the mean load on strips, whose places come last.
@@ -168,7 +180,7 @@ enum Target {
     Upon(Vec<f32>, Vec<(usize, f64)>),
 }
 
-impl Sight {
+impl Influence {
     /// P on z = 0 and its images, from (`y`, `z`).
     pub fn of_surface(body: &Body, waves: &Waves, y: f64, z: f64) -> Self {
         let mut strips = Vec::with_capacity(body.most_strips());
@@ -321,8 +333,8 @@ mod tests {
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
             let sights = |waves: &Waves| {
-                let faces = Sight::of_faces(&body, waves, y, z, [body.half - y, body.half + y]);
-                [vec![Sight::of_surface(&body, waves, y, z)], faces.into()].concat()
+                let faces = Influence::of_faces(&body, waves, y, z, [body.half - y, body.half + y]);
+                [vec![Influence::of_surface(&body, waves, y, z)], faces.into()].concat()
             };
             let own = sights(&all);
             for (i, &k) in k.iter().enumerate() {

@@ -36,7 +36,7 @@ fn strengths_do_not_depend_on_the_mesh() {
     let usual = Resolution::for_tolerance(1e-3);
     for slenderness in [5.0, 20.0] {
         let longer = scene(slenderness, 0.5, 0.3, EdgeModel::QuarterSpace);
-        let fits = [usual.clone(), usual.refined()].map(|r| match strength(&longer, &r) {
+        let fits = [usual, usual.refined()].map(|r| match strength(&longer, &r) {
             Some(EdgeStrength::Singular {
                 exponent, factor, corner_exponent, residual, ..
             }) => {
@@ -48,7 +48,7 @@ fn strengths_do_not_depend_on_the_mesh() {
         assert!((fits[0][0] - fits[1][0]).abs() < 2e-3, "{fits:?}");
         assert!((fits[0][1] / fits[1][1] - 1.0).abs() < 5e-3, "{fits:?}");
         let flush = scene(slenderness, 1.0, 0.3, EdgeModel::QuarterSpace);
-        let limits = [usual.clone(), usual.refined()].map(|r| match strength(&flush, &r) {
+        let limits = [usual, usual.refined()].map(|r| match strength(&flush, &r) {
             Some(EdgeStrength::Finite { limit, residual, .. }) => {
                 // Next to the last free half-width p is good to some 0.002 p0.
                 assert!(residual < 3e-3, "{residual}");

@@ -40,7 +40,7 @@ fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
 #[test]
 fn what_waves_do_not_reach_does_not_matter() {
     let usual = Resolution::for_tolerance(1e-3);
-    let farther = Resolution { reach: 28.0, face_reach: 28.0, ..usual.clone() };
+    let farther = Resolution { reach: 28.0, face_reach: 28.0, ..usual };
     for (slenderness, length_ratio) in [(5.0, 1.0), (5.0, 0.5), (5.0, 0.1)] {
         let scene = scene(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
         let [near, far] =

@@ -280,12 +280,12 @@ fn equations_of_the_end_faces_are_well_conditioned() {
     say("k", wavenumbers.map(|k| at(5.0, 5.0, 0.3, &usual, k)).to_vec());
     say("k, longer", wavenumbers.map(|k| at(5.0, 10.0, 0.3, &usual, k)).to_vec());
     say("nu", [0.0, 0.1, 0.3, 0.45, 0.499].map(|nu| at(5.0, 5.0, nu, &usual, 0.1)).to_vec());
-    let graded = |corner: f64| Resolution { corner, ..usual.clone() };
+    let graded = |corner: f64| Resolution { corner, ..usual };
     let corners = [0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
     say("corner", corners.map(|c| at(5.0, 5.0, 0.3, &graded(c), 1.0)).to_vec());
-    let ratio = |ratio: f64| Resolution { ratio, ..usual.clone() };
+    let ratio = |ratio: f64| Resolution { ratio, ..usual };
     say("ratio", [3.0, 2.0, 1.5, 1.3].map(|r| at(5.0, 5.0, 0.3, &ratio(r), 1.0)).to_vec());
-    let reach = |face_reach: f64| Resolution { face_reach, ..usual.clone() };
+    let reach = |face_reach: f64| Resolution { face_reach, ..usual };
     say("depth", [7.0, 14.0, 28.0, 56.0].map(|r| at(5.0, 5.0, 0.3, &reach(r), 0.1)).to_vec());
     let lengths = [0.5, 5.0, 50.0, 500.0];
     say("length", lengths.map(|s| at(s, s, 0.3, &usual, 0.25 / s)).to_vec());
