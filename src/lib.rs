@@ -34,6 +34,7 @@
 
 // The one exception is `host/system.rs`, which says why.
 #![deny(unsafe_code)]
+#![warn(missing_docs)]
 
 pub mod base;
 pub mod kernels;

@@ -4,11 +4,17 @@ use std::ops::{Add, AddAssign, Mul, Sub};
 /// A symmetric stress tensor, positive in tension; in whatever unit its owner states.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct StressTensor {
+    /// Normal stress across the contact.
     pub xx: f64,
+    /// Normal stress along the contact line.
     pub yy: f64,
+    /// Normal stress along the depth.
     pub zz: f64,
+    /// Shear stress in planes of constant depth.
     pub xy: f64,
+    /// Shear stress in planes across the contact line.
     pub xz: f64,
+    /// Shear stress in planes along the contact line.
     pub yz: f64,
 }
 

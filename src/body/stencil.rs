@@ -8,8 +8,11 @@ use nalgebra::{DMatrix, DMatrixView, Dyn};
 /// A copy of the axis: the point s of the axis acts at `sign` s + `shift`, `weight` times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Image {
+    /// 1, or -1 for a mirror image.
     pub sign: f64,
+    /// Where the axis's origin goes.
     pub shift: f64,
+    /// How often it acts.
     pub weight: f64,
 }
 

@@ -20,13 +20,17 @@ use std::f64::consts::FRAC_1_PI;
 /// Amplitudes of the six stresses; see the module for which vary as cos(k x) and which as sin(k x).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WaveStress {
+    /// Along the load's line.
     pub xx: f64,
     /// Along the surface, across the load's line.
     pub ww: f64,
     /// Along the depth.
     pub dd: f64,
+    /// Shear of the load's line and the direction across it.
     pub xw: f64,
+    /// Shear of the load's line and the depth.
     pub xd: f64,
+    /// Shear of the direction across the line and the depth.
     pub wd: f64,
 }
 

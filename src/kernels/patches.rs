@@ -21,8 +21,9 @@ pub const WW: Fineness = Fineness { order: 6, rows: 1, angles: 6 };
 const LOW: i32 = -9;
 const HIGH: i32 = 5;
 
-/// Ends of the tabulated range of rho.
+/// Lower end of the tabulated range of rho.
 pub const FLOOR: f64 = 1.0 / 512.0;
+/// Its upper end.
 pub const CEILING: f64 = 32.0;
 
 impl Fineness {

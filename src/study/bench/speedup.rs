@@ -13,14 +13,17 @@ pub struct Speedup {
     pub level: f64,
     /// What the model's error is taken against; FEM's is always that to its own finest mesh.
     pub against: Against,
-    /// Relative element size of the fastest mesh within the level, its unknowns, and its error.
+    /// Relative element size of the fastest mesh within the level.
     pub size: f64,
+    /// Its unknowns.
     pub unknowns: Option<u64>,
+    /// Its error (p0).
     pub fem_error: f64,
     /// Median seconds and spread.
     pub fem_seconds: (f64, f64),
-    /// The fastest tolerance within the level, and the error there.
+    /// The fastest tolerance within the level.
     pub tolerance: f64,
+    /// The model's error there (p0).
     pub model_error: f64,
     /// Median seconds and spread on one thread.
     pub model_seconds: (f64, f64),
