@@ -584,7 +584,7 @@ fn clocks_that_are_off_change_nothing() {
     }
     asks.retain(|p| p.extension().is_some_and(|e| e == "rs" || e == "py"));
     asks.sort();
-    assert_eq!(asks, ["fem/edgeline_fem/record.py", "src/cli/study.rs"].map(PathBuf::from));
+    assert_eq!(asks, ["fem/edgeline_fem/record.py", "src/cli/provenance.rs"].map(PathBuf::from));
 }
 
 #[test]
