@@ -106,7 +106,7 @@ fn exponent(x: &[f64], y: &[f64]) -> f64 {
 fn case(load: f64, slenderness: f64, tolerance: f64) -> Case {
     let steel = Material { young_pa: 210e9, poisson: 0.3 };
     let factors = Factors { load, slenderness, length_ratio: 1.0 };
-    Case { tolerance, ..Case::from_factors("growth", 10e-3, steel, steel, factors) }
+    Case::from_factors("growth", 10e-3, steel, steel, factors).with_tolerance(tolerance)
 }
 
 fn main() {

@@ -31,7 +31,7 @@ fn case(slenderness: f64, length_ratio: f64) -> Case {
     let steel = Material { young_pa: 210e9, poisson: NU };
     let factors = Factors { load: 1e-4, slenderness, length_ratio };
     let case = Case::from_factors("bench", 10e-3, steel, steel, factors);
-    Case { tolerance: TOLERANCE, ..case }
+    case.with_tolerance(TOLERANCE)
 }
 
 fn kernels(c: &mut Criterion) {
@@ -169,7 +169,7 @@ fn complete(c: &mut Criterion) {
 /// The pressure alone of the problem that general contact codes solve; within 1 % at this tolerance
 /// (tests/numerics/verification.rs).
 fn half_space(c: &mut Criterion) {
-    let scene = Scene::new(&Case { tolerance: 1e-2, ..case(5.0, 1.0) }, EdgeModel::HalfSpace, None);
+    let scene = Scene::new(&case(5.0, 1.0).with_tolerance(1e-2), EdgeModel::HalfSpace, None);
     c.bench_function("half-space/pressure, S_l 5", |b| {
         b.iter(|| SolvedScene::new(&scene).expect("it converges"));
     });

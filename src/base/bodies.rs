@@ -27,7 +27,7 @@ impl BodyKind {
 }
 
 /// Something that each of the two bodies has.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PerBody<T> {
     /// The block's.
     pub block: T,

@@ -1,7 +1,7 @@
 //! The case files that are built into the binary, so that it runs from any folder.
 
 use super::Case;
-use crate::base::Result;
+use crate::base::{Error, Result};
 use std::path::Path;
 
 /// Name and text of every case file in `cases/`.
@@ -18,6 +18,28 @@ pub const BUILTIN_CASES: [(&str, &str); 6] = [
 pub fn builtin_case(name: &str) -> Option<Result<Case>> {
     let (name, text) = BUILTIN_CASES.iter().find(|(known, _)| *known == name)?;
     Some(Case::parse(text, Path::new(name)))
+}
+
+impl Case {
+    /// Reads the case file at `path`, or takes the built-in case of that name where no such file
+    /// exists.
+    ///
+    /// # Errors
+    /// As [`Case::read`]; the error about a missing file names the built-in cases.
+    pub fn find(path: &Path) -> Result<Case> {
+        if path.exists() {
+            return Case::read(path);
+        }
+        path.to_str().and_then(builtin_case).unwrap_or_else(|| {
+            let names: Vec<&str> = BUILTIN_CASES.iter().map(|(name, _)| *name).collect();
+            Err(Error::File {
+                path: path.to_path_buf(),
+                line: None,
+                message: "no such file".into(),
+                remedy: format!("give a case file, or a built-in case: {}", names.join(", ")),
+            })
+        })
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 // Study and sweep files, which the program alone reads, need more of it than case files do.
 #![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
-use super::Case;
+use super::model::Case;
 use crate::base::{Error, Result};
 use crate::host;
 use std::ops::Range;
@@ -17,6 +17,12 @@ use toml::de::{DeTable, DeValue};
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String> {
     host::read_text(path, Case::MAX_BYTES, "give a case or study file in TOML")
+}
+
+/// The known name that is most like `name`.
+pub(super) fn nearest<'k>(name: &str, known: &[&'k str]) -> &'k str {
+    let distance = |k: &&&str| strsim::levenshtein(k, name);
+    known.iter().min_by_key(distance).expect("there are known names")
 }
 
 /// A parsed file that can say where things stand in it.
@@ -83,10 +89,7 @@ impl<'d> Table<'d> {
             .filter(|k| !known.contains(&k.get_ref().as_ref()))
             .min_by_key(|k| k.span().start);
         let Some(key) = unknown else { return Ok(()) };
-        let nearest = known
-            .iter()
-            .min_by_key(|k| edit_distance(k, key.get_ref()))
-            .expect("every table has known keys");
+        let nearest = nearest(key.get_ref(), known);
         let place = match self.name.as_str() {
             "" => "the top level".to_string(),
             name => format!("[{name}]"),
@@ -126,6 +129,24 @@ impl<'d> Table<'d> {
         }
     }
 
+    /// The value at a path below this table, `roller.radius_m`, if it is there.
+    pub fn find(&self, path: &str) -> Option<Entry<'d>> {
+        match path.split_once('.') {
+            None => self.get(path),
+            Some((table, rest)) => self.get(table)?.as_table()?.find(rest),
+        }
+    }
+
+    /// An error about a value with its place in the file; a value that the file does not give is
+    /// blamed on this table.
+    pub fn place(&self, error: Error) -> Error {
+        let Error::Value { key, value, reason, remedy } = error else { return error };
+        match self.document.root().find(&key) {
+            Some(entry) => entry.refuse(reason, remedy),
+            None => self.error(format!("{key} = {value} is not valid: {reason}"), remedy),
+        }
+    }
+
     /// An error about the whole table.
     pub fn error(&self, message: impl Into<String>, remedy: impl Into<String>) -> Error {
         self.document.error(self.span.clone(), message, remedy)
@@ -156,6 +177,14 @@ impl<'d> Entry<'d> {
         };
         let message = format!("{} = {shown} is not valid: {}", self.key, reason.as_ref());
         self.document.error(Some(span), message, remedy)
+    }
+
+    /// The outcome of a check of this value, its error with the place in the file.
+    pub fn placed<T>(&self, checked: Result<T>) -> Result<T> {
+        checked.map_err(|e| match e {
+            Error::Value { reason, remedy, .. } => self.refuse(reason, remedy),
+            other => other,
+        })
     }
 
     /// The value as a table.
@@ -198,20 +227,6 @@ impl<'d> Entry<'d> {
         }
     }
 
-    /// The value as a finite number in `low..=high`; `what` names the quantity and its unit.
-    pub fn number_in(&self, low: f64, high: f64, what: &str) -> Result<f64> {
-        let value = self.number()?;
-        if (low..=high).contains(&value) {
-            return Ok(value);
-        }
-        let reason = if value <= 0.0 && low > 0.0 {
-            format!("{what} is greater than zero")
-        } else {
-            format!("{what} lies between {low:e} and {high:e}")
-        };
-        Err(self.refuse(reason, "correct the value, and check its unit"))
-    }
-
     /// The value as a string.
     pub fn string(&self) -> Result<&'d str> {
         match self.value.get_ref() {
@@ -237,34 +252,5 @@ impl<'d> Entry<'d> {
             }
             _ => Err(self.refuse("a list belongs here", "write [first, second]")),
         }
-    }
-}
-
-/// Levenshtein's distance.
-pub(super) fn edit_distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, ca) in a.chars().enumerate() {
-        let mut diagonal = row[0];
-        row[0] = i + 1;
-        for (j, &cb) in b.iter().enumerate() {
-            let substituted = diagonal + usize::from(ca != cb);
-            diagonal = row[j + 1];
-            row[j + 1] = substituted.min(row[j] + 1).min(diagonal + 1);
-        }
-    }
-    row[b.len()]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn distances_count_single_edits() {
-        assert_eq!(edit_distance("poisson", "poisson"), 0);
-        assert_eq!(edit_distance("poison", "poisson"), 1);
-        assert_eq!(edit_distance("radius_m", "radius"), 2);
-        assert_eq!(edit_distance("", "abc"), 3);
     }
 }

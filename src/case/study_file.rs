@@ -1,11 +1,13 @@
 //! The study file: a factorial design around one pair of bodies, and further cases.
 
-use super::case_file::{
-    MAX_NAME, length_ratio, load_factor, material, name, radius, slenderness, tolerance,
-};
+use super::builtin::builtin_case;
+use super::case_file::{entries, name};
+use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, read_text};
-use super::{Case, Factors, builtin_case};
-use crate::base::{Material, Result};
+use super::draft::{Draft, Form};
+use super::keys::{KEYS, Key, Presence};
+use super::model::{Case, Factors};
+use crate::base::{Error, Result};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
@@ -68,14 +70,16 @@ impl Study {
             );
         }
         root.only(&["name", "centre", "cases", "roller", "block", "factors", "accuracy"])?;
-        let base = Base::read(&root)?;
-        let levels = root.table("factors")?;
-        levels.only(&["W", "S_l", "L_r"])?;
+        let base = read_base(&root)?;
+        let study_name = name(&root)?;
+        check_name(study_name).map_err(|e| root.place(e))?;
+        let table = root.table("factors")?;
+        table.only(&["W", "S_l", "L_r"])?;
         let mut study = Study {
-            name: name(&root)?,
-            load_levels: read_levels(&levels, "W", load_factor)?,
-            slenderness_levels: read_levels(&levels, "S_l", slenderness)?,
-            length_ratio_levels: read_levels(&levels, "L_r", length_ratio)?,
+            name: study_name.to_string(),
+            load_levels: read_levels(&table, "W")?,
+            slenderness_levels: read_levels(&table, "S_l")?,
+            length_ratio_levels: read_levels(&table, "L_r")?,
             corners: Vec::new(),
             centre: None,
             extra: Vec::new(),
@@ -83,38 +87,50 @@ impl Study {
         let sizes = [&study.load_levels, &study.slenderness_levels, &study.length_ratio_levels];
         if sizes.iter().map(|l| l.len()).product::<usize>() > MAX_CASES {
             let message = format!("the levels combine to more than {MAX_CASES} cases");
-            return Err(levels.error(message, "give fewer levels"));
+            return Err(table.error(message, "give fewer levels"));
         }
+        let case = |name: String, factors| design_case(&base, name, factors, &table);
         for &load in &study.load_levels {
             for &slenderness in &study.slenderness_levels {
                 for &length_ratio in &study.length_ratio_levels {
                     let name = format!("w{load:e}_sl{slenderness}_lr{length_ratio}");
-                    let factors = Factors { load, slenderness, length_ratio };
-                    study.corners.push(base.case(name, factors, &levels)?);
+                    study.corners.push(case(name, Factors { load, slenderness, length_ratio })?);
                 }
             }
         }
         if root.get("centre").map_or(Ok(false), |entry| entry.flag())? {
-            let factors = Factors {
-                load: geometric_mean(&study.load_levels),
-                slenderness: geometric_mean(&study.slenderness_levels),
-                length_ratio: study.length_ratio_levels.iter().sum::<f64>()
-                    / study.length_ratio_levels.len() as f64,
-            };
-            study.centre = Some(base.case("centre".into(), factors, &levels)?);
+            study.centre = Some(case("centre".into(), study.middle())?);
         }
         if let Some(files) = root.get("cases") {
-            let mut names: BTreeSet<String> = study.cases().map(|c| c.name.clone()).collect();
-            for entry in files.list()? {
-                let case = listed_case(&entry, path.parent().unwrap_or(Path::new("")))?;
-                if !names.insert(case.name.clone()) {
-                    let reason = format!("the study has another case called {}", case.name);
-                    return Err(entry.refuse(reason, "rename one of them"));
-                }
-                study.extra.push(case);
-            }
+            study.list(&files.list()?, path.parent().unwrap_or(Path::new("")))?;
         }
         Ok(study)
+    }
+
+    /// The middle of the design.
+    fn middle(&self) -> Factors {
+        let geometric_mean =
+            |v: &[f64]| (v.iter().map(|v| v.ln()).sum::<f64>() / v.len() as f64).exp();
+        let ratios = &self.length_ratio_levels;
+        Factors {
+            load: geometric_mean(&self.load_levels),
+            slenderness: geometric_mean(&self.slenderness_levels),
+            length_ratio: ratios.iter().sum::<f64>() / ratios.len() as f64,
+        }
+    }
+
+    /// Takes up the further cases that the file lists; paths start at `folder`.
+    fn list(&mut self, files: &[Entry], folder: &Path) -> Result<()> {
+        let mut names: BTreeSet<String> = self.cases().map(|c| c.name.clone()).collect();
+        for entry in files {
+            let case = listed_case(entry, folder)?;
+            if !names.insert(case.name.clone()) {
+                let reason = format!("the study has another case called {}", case.name);
+                return Err(entry.refuse(reason, "rename one of them"));
+            }
+            self.extra.push(case);
+        }
+        Ok(())
     }
 
     /// All cases: the corners, the centre point, the further cases.
@@ -124,49 +140,49 @@ impl Study {
 }
 
 /// What all cases of the design share.
-struct Base {
-    radius_m: f64,
-    roller: Material,
-    block: Material,
-    tolerance: f64,
+fn read_base(root: &Table) -> Result<Draft> {
+    let keys: Vec<&'static Key> =
+        KEYS.iter().filter(|key| !matches!(key.presence, Presence::With(_))).collect();
+    let mut draft = Draft::new("base", Form::Factors);
+    for (key, entry) in entries(root, &keys)? {
+        key.set(&mut draft, read_number(key, &entry)?);
+    }
+    Ok(draft)
 }
 
-impl Base {
-    fn read(root: &Table) -> Result<Base> {
-        let roller = root.table("roller")?;
-        roller.only(&["radius_m", "young_pa", "poisson"])?;
-        let block = root.table("block")?;
-        block.only(&["young_pa", "poisson"])?;
-        Ok(Base {
-            radius_m: radius(&roller)?,
-            roller: material(&roller)?,
-            block: material(&block)?,
-            tolerance: tolerance(root)?,
-        })
-    }
+/// A legal value of `key`.
+fn read_number(key: &Key, entry: &Entry) -> Result<f64> {
+    let value = entry.number()?;
+    entry.placed(key.check(value))?;
+    Ok(value)
+}
 
-    fn case(&self, name: String, factors: Factors, levels: &Table) -> Result<Case> {
-        let case = Case::from_factors(name, self.radius_m, self.roller, self.block, factors);
-        if case.name.len() > MAX_NAME {
-            let message =
-                format!("the case {} has a name of more than {MAX_NAME} letters", case.name);
-            return Err(levels.error(message, "give levels with fewer digits"));
-        }
-        if let Some(reason) = case.out_of_range() {
-            let message = format!("in the case {}, {reason}", case.name);
-            return Err(
-                levels.error(message, "check the radius (m), the moduli (Pa) and the levels")
-            );
-        }
-        Ok(Case { tolerance: self.tolerance, ..case })
+/// A case of the design, by the levels of the table `levels`.
+fn design_case(base: &Draft, name: String, factors: Factors, levels: &Table) -> Result<Case> {
+    if name.len() > MAX_NAME {
+        let message = format!("the case {name} has a name of more than {MAX_NAME} letters");
+        return Err(levels.error(message, "give levels with fewer digits"));
     }
+    let mut draft = base.clone().named(name);
+    draft.factors = Some(factors);
+    draft.case().map_err(|e| match e {
+        Error::Value { key, value, reason, remedy } => {
+            let name = &draft.case.name;
+            levels.error(
+                format!("in the case {name}, {key} = {value} is not valid: {reason}"),
+                remedy,
+            )
+        }
+        other => other,
+    })
 }
 
 /// The levels of one factor, all different.
-fn read_levels(table: &Table, key: &str, read: impl Fn(&Entry) -> Result<f64>) -> Result<Vec<f64>> {
+fn read_levels(table: &Table, name: &str) -> Result<Vec<f64>> {
+    let key = Key::find(&format!("dimensionless.{name}")).expect("a factor");
     let mut levels: Vec<f64> = Vec::new();
-    for entry in table.require(key, &format!("{key} = [low, high]"))?.list()? {
-        let level = read(&entry)?;
+    for entry in table.require(name, &format!("{name} = [low, high]"))?.list()? {
+        let level = read_number(key, &entry)?;
         if levels.contains(&level) {
             return Err(entry.refuse("this level is there already", "remove it"));
         }
@@ -186,8 +202,4 @@ fn listed_case(entry: &Entry, folder: &Path) -> Result<Case> {
         let reason = format!("there is no file {}", path.display());
         Err(entry.refuse(reason, "paths are relative to the study file"))
     })
-}
-
-fn geometric_mean(values: &[f64]) -> f64 {
-    (values.iter().map(|v| v.ln()).sum::<f64>() / values.len() as f64).exp()
 }

@@ -72,7 +72,7 @@ fn count(text: &str) -> std::result::Result<usize, String> {
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let mut case = Case::find(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
-        case.tolerance = checked_tolerance(tolerance)?;
+        case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
     let mut options = Options::new(arguments.method);
     if !arguments.body.is_empty() {

@@ -2,7 +2,7 @@
 
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::Case;
+use crate::case::Key;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 /// Parses the name of an edge model.
@@ -21,7 +21,7 @@ pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
 
 /// The tolerance if it is within its legal range.
 pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64> {
-    let (low, high) = Case::TOLERANCE_RANGE;
+    let (low, high) = Key::find("accuracy.tolerance").expect("a key of the list").range;
     if (low..=high).contains(&tolerance) {
         return Ok(tolerance);
     }

@@ -6,7 +6,9 @@
 //! tells whether what is there belongs to the same request.
 
 use super::jit_cache;
-use super::result::{MeshResult, MeshSummary, ResultTexts, wanted_curves, wanted_lines};
+use super::request::Request;
+use super::result::{MeshResult, MeshSummary, ResultTexts};
+use super::sum::sha256;
 use super::tools::{self, Interpreter};
 use crate::base::{Error, Result};
 use crate::case::Case;
@@ -14,7 +16,6 @@ use crate::host::{
     Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there, write_set,
     write_whole,
 };
-use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -174,7 +175,8 @@ impl Driver {
         // Whoever was here before is dead; so are its children, unless the kernel cannot tell.
         kill_marked(folder);
 
-        let request = request(case, &self.settings);
+        let (settings, linear) = (&self.settings, self.settings.linear.name());
+        let request = Request::new(case, settings.size, linear, &settings.gmsh);
         let text = serde_json::to_string_pretty(&request).expect("plain data");
         let key = self.key(&text);
         let run = Run { driver: self, case, folder, work: folder.join("work") };
@@ -214,11 +216,7 @@ impl Driver {
             text += name;
             text += source;
         }
-        // FNV-1a: these are accidents to be told apart, not attacks.
-        let hash = text.bytes().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
-            (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3)
-        });
-        format!("{hash:016x}\n")
+        format!("{}\n", sha256(&text))
     }
 }
 
@@ -354,45 +352,6 @@ impl Run<'_> {
         let settings = &self.driver.settings;
         MeshResult::parse(self.case, settings.size, settings.ranks, texts, folder)
     }
-}
-
-/// The request to the finite-element side.
-fn request(case: &Case, settings: &Settings) -> Value {
-    let curves: Vec<Value> = wanted_curves(case)
-        .into_iter()
-        .map(|(body, curve, points)| json!({"body": body, "curve": curve, "points_m": points}))
-        .collect();
-    let lines: serde_json::Map<String, Value> = wanted_lines(case)
-        .into_iter()
-        .map(|(name, points)| (name.to_string(), json!(points)))
-        .collect();
-    json!({
-        "schema": 1,
-        "case": {
-            "name": case.name,
-            "roller": {
-                "radius_m": case.roller.radius_m,
-                "length_m": case.roller.length_m,
-                "young_pa": case.roller.material.young_pa,
-                "poisson": case.roller.material.poisson,
-            },
-            "block": {
-                "length_m": case.block.length_m,
-                "young_pa": case.block.material.young_pa,
-                "poisson": case.block.material.poisson,
-            },
-            "force_n": case.force_n,
-        },
-        "mesh": {"size": settings.size},
-        "solver": {
-            "linear": settings.linear.name(),
-            "tolerance": 1e-8,
-            "max_iterations": 200,
-        },
-        "gmsh": settings.gmsh,
-        "curves": curves,
-        "pressure_points_m": lines,
-    })
 }
 
 /// No file of a child that did its work comes near this size (bytes).

@@ -3,7 +3,9 @@
 mod driver;
 mod jit_cache;
 mod reference;
+mod request;
 mod result;
+mod sum;
 #[cfg(test)]
 mod tests;
 pub mod tools;

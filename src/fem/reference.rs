@@ -1,12 +1,13 @@
 //! Recorded finite-element results, as `results/reference/README.md` describes them.
 
+use super::request::Problem;
 use super::result::{FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines};
-use crate::base::{Error, Material, Result};
-use crate::case::{Block, Case, Roller};
+use super::sum::sha256;
+use crate::base::{Error, Result};
+use crate::case::Case;
 use crate::host::read_text;
 use crate::solve::{Curve, PressureLine};
 use serde::{Deserialize, Serialize};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -40,7 +41,7 @@ fn check_sum(text: &str, name: &str, sums: &str, folder: &Path) -> Result<()> {
         .find_map(|line| line.split_once("  ").filter(|(_, of)| *of == name))
         .ok_or_else(|| refuse(SUMS, format!("holds no checksum of {name}")))?
         .0;
-    let found: String = Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect();
+    let found = sha256(text);
     if found == wanted {
         return Ok(());
     }
@@ -90,32 +91,10 @@ pub struct Reference {
 #[derive(Deserialize)]
 struct Record {
     schema: u32,
-    case: RecordedCase,
+    #[serde(with = "Problem")]
+    case: Case,
     meshes: BTreeMap<String, FemSummary>,
     errors: Vec<ErrorEstimate>,
-}
-
-#[derive(Deserialize)]
-struct RecordedCase {
-    name: String,
-    roller: RecordedRoller,
-    block: RecordedBlock,
-    force_n: f64,
-}
-
-#[derive(Deserialize)]
-struct RecordedRoller {
-    radius_m: f64,
-    length_m: f64,
-    #[serde(flatten)]
-    material: Material,
-}
-
-#[derive(Deserialize)]
-struct RecordedBlock {
-    length_m: f64,
-    #[serde(flatten)]
-    material: Material,
 }
 
 impl Reference {
@@ -202,21 +181,8 @@ impl Reference {
             let message = format!("has schema {}, this program reads 1", record.schema);
             return Err(nonsense(&path, None, message));
         }
-        let RecordedCase { name, roller, block, force_n } = record.case;
-        let case = Case {
-            name,
-            roller: Roller {
-                radius_m: roller.radius_m,
-                length_m: roller.length_m,
-                material: roller.material,
-            },
-            block: Block { length_m: block.length_m, material: block.material },
-            force_n,
-            tolerance: Case::DEFAULT_TOLERANCE,
-        };
-        if let Err(Error::File { message, .. }) = Case::parse(&case.to_toml(), &path) {
-            return Err(nonsense(&path, None, format!("is not of a legal case: {message}")));
-        }
+        let case = record.case;
+        case.check().map_err(|e| nonsense(&path, None, format!("is not of a legal case: {e}")))?;
         let mut curves = parse_curves(curves, &folder.join(FILES[1]))?;
         let mut lines = parse_lines(lines, &folder.join(FILES[2]))?;
         let mut meshes = Vec::new();

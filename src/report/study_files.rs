@@ -240,7 +240,7 @@ impl<'a> Row<'a> {
         row.set("L_r", &significant(factors.length_ratio, FACTOR_DIGITS));
         row.set("c_m", &number(hertz.c_m));
         row.set("p0_pa", &number(hertz.p0_pa));
-        row.set("load_n", &number(case.case.force_n));
+        row.set("load_n", &number(case.case.load.force_n));
         row
     }
 
@@ -546,8 +546,8 @@ fn summary(
                 "S_l": factors.slenderness,
                 "L_r": factors.length_ratio,
                 "hertz": { "c_m": hertz.c_m, "p0_pa": hertz.p0_pa },
-                "load_n": c.case.force_n,
-                "tolerance": c.case.tolerance,
+                "load_n": c.case.load.force_n,
+                "tolerance": c.case.accuracy.tolerance,
                 "roller": c.case.roller,
                 "block": c.case.block,
                 "fem": fem,

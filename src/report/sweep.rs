@@ -72,7 +72,7 @@ fn result_cells(outcome: &Outcome) -> Vec<String> {
     };
     let KeyResults { hertz, p_at_pa, critical, .. } = results;
     let (factors, p0) = (case.factors(), hertz.p0_pa);
-    let mut cells = vec![number(case.tolerance)];
+    let mut cells = vec![number(case.accuracy.tolerance)];
     cells.extend(
         [
             factors.load,

@@ -99,7 +99,7 @@ mod tests {
     #[test]
     fn a_grid_is_what_points_are() {
         let mut case = builtin_case("half-short").unwrap().unwrap();
-        case.tolerance = 5e-3;
+        case.accuracy.tolerance = 5e-3;
         let c = case.hertz().c_m;
         let end = 0.5 * case.roller.length_m;
         let grid = Grid {

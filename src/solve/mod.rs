@@ -17,7 +17,7 @@ use std::time::Instant;
 
 pub use grid::{MOST_GRID_POINTS, solve_on_grid};
 pub use key::{END_DISTANCES, KeyResults, key_results};
-pub use scene::{Scene, SceneBody, Seconds, SolvedScene};
+pub use scene::{Scene, SceneBody, SceneKey, Seconds, SolvedScene};
 
 /// What to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -161,7 +161,7 @@ pub fn solve(case: &Case, options: &Options) -> Result<Solution> {
 /// Solves cases that differ in scale only together: the first one's scene is solved once, and every
 /// case gets its own scales, approach and roller. A case of another scene is solved by itself.
 pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
-    let mut shared: Option<(Scene, SceneAnswer)> = None;
+    let mut shared: Option<(SceneKey, SceneAnswer)> = None;
     cases
         .iter()
         .map(|case| {
@@ -169,10 +169,10 @@ pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
             let scene = Scene::new(case, options.method, options.psi);
             // Extra points are given in metres, so they are another case's own.
             let own = !options.points.is_empty();
-            let fits = !own && shared.as_ref().is_some_and(|(s, _)| *s == scene);
+            let fits = !own && shared.as_ref().is_some_and(|(key, _)| *key == scene.key());
             if !fits {
                 let answer = SceneAnswer::new(&scene, case, options)?;
-                shared = Some((scene, answer));
+                shared = Some((scene.key(), answer));
             }
             let (_, answer) = shared.as_ref().expect("solved above");
             Ok(answer.scaled(case, options))
@@ -287,14 +287,14 @@ impl SceneAnswer {
             case: case.name.clone(),
             method: options.method,
             hertz,
-            load_n: case.force_n,
+            load_n: case.load.force_n,
             approach_m: solved.approach(reference / c) * unit,
             p_centre_pa: solved.pressure.at(0.0, 0.0) * p0,
             p_max_pa: top.p_pa,
             p_max_at_m: [top.x_m.abs(), top.y_m.abs()],
             converged: true,
             iterations: solved.contact.iterations,
-            load_error_rel: (carried / case.force_n - 1.0).abs(),
+            load_error_rel: (carried / case.load.force_n - 1.0).abs(),
             seconds: self.seconds,
             critical: critical(&curves, 0.5 * case.roller.length_m, c),
             points: self
@@ -304,7 +304,7 @@ impl SceneAnswer {
                 .map(|(s, point)| stress(point.body, s))
                 .collect(),
             details: json!({
-                "tolerance": case.tolerance,
+                "tolerance": case.accuracy.tolerance,
                 "resolution": solved.resolution,
                 "wavenumbers": [solved.wavenumbers.coarse().len(), solved.wavenumbers.fine().len()],
                 "contact_nodes": solved.pressure.axis().len(),

@@ -1,8 +1,8 @@
 //! A contact in units of C and p0: what is left of a case when its scales are taken out.
 
-use crate::base::{Error, PerBody, Result, Wavenumbers};
+use crate::base::{Error, Material, PerBody, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
-use crate::case::Case;
+use crate::case::{Accuracy, Block, Case, Load, Roller};
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
 use crate::stress::{BodyKind, Field, Pressure};
 use nalgebra::DMatrix;
@@ -31,7 +31,7 @@ pub struct SceneBody {
 
 /// A dimensionless contact. The load factor W is not in it: only the approach's reference depth
 /// and the roller's diametral tension know the radius.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct Scene {
     /// S_l, the contact's half-length (C).
     pub half_length: f64,
@@ -48,28 +48,48 @@ pub struct Scene {
 impl Scene {
     /// The scene of a case.
     pub fn new(case: &Case, model: EdgeModel, psi: Option<f64>) -> Self {
+        // Each field of a case is in the scene, in the scales or in neither.
+        let Case { name: _, roller, block, load, accuracy: Accuracy { tolerance } } = case;
+        let Roller { radius_m: _, length_m: roller_length_m, material: roller_material } = *roller;
+        let Block { length_m: block_length_m, material: block_material } = *block;
+        let Load { force_n: _ } = load;
         let hertz = case.hertz();
-        // Twelve digits: cases that differ by rounding alone share a scene.
-        let round = |v: f64| format!("{v:.12e}").parse::<f64>().expect("a formatted number");
-        let half = |length_m: f64| round(0.5 * length_m / hertz.c_m);
-        let body = |half: f64, material: crate::base::Material| SceneBody {
+        let half = |length_m: f64| rounded(0.5 * length_m / hertz.c_m);
+        let body = |half: f64, material: Material| SceneBody {
             half,
             nu: material.poisson,
-            share: round(hertz.e_star_pa * material.plane_strain_compliance()),
+            share: rounded(hertz.e_star_pa * material.plane_strain_compliance()),
         };
-        let half_length = half(case.roller.length_m);
-        let block = half(case.block.length_m);
+        let half_length = half(roller_length_m);
+        let block = half(block_length_m);
         // Flush ends must not leave a ledge of rounding.
         let block = if block < half_length * (1.0 + 1e-9) { half_length } else { block };
         Self {
             half_length,
             bodies: PerBody {
-                block: body(block, case.block.material),
-                roller: body(half_length, case.roller.material),
+                block: body(block, block_material),
+                roller: body(half_length, roller_material),
             },
             model,
             psi,
-            tolerance: case.tolerance,
+            tolerance: *tolerance,
+        }
+    }
+
+    /// What tells whether one solution serves two scenes: all that a scene has, its numbers to
+    /// twelve digits. Numbers that agree to more may still fall on two sides of a rounding, and make
+    /// two keys; that costs a solve and is no error.
+    pub fn key(&self) -> SceneKey {
+        let Self { half_length, bodies, model, psi, tolerance } = self;
+        // 0.0 and -0.0 are one number.
+        let bits = |v: f64| (rounded(v) + 0.0).to_bits();
+        let body = |SceneBody { half, nu, share }: &SceneBody| [half, nu, share].map(|v| bits(*v));
+        SceneKey {
+            half_length: bits(*half_length),
+            bodies: PerBody { block: body(&bodies.block), roller: body(&bodies.roller) },
+            model: *model,
+            psi: psi.map(bits),
+            tolerance: bits(*tolerance),
         }
     }
 
@@ -87,6 +107,21 @@ impl Scene {
         });
         corner_exponent(&bodies)
     }
+}
+
+/// What scenes of one solution have in common, see [`Scene::key`].
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub struct SceneKey {
+    half_length: u64,
+    bodies: PerBody<[u64; 3]>,
+    model: EdgeModel,
+    psi: Option<u64>,
+    tolerance: u64,
+}
+
+/// The number to twelve digits: what rounding alone makes different is the same.
+fn rounded(v: f64) -> f64 {
+    format!("{v:.12e}").parse().expect("a formatted number")
 }
 
 /// Seconds of each stage.

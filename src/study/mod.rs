@@ -8,6 +8,7 @@ pub mod effects;
 pub mod errors;
 pub mod factorial;
 pub mod gate;
+mod groups;
 pub mod live;
 mod models;
 pub mod reference;

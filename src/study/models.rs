@@ -1,10 +1,11 @@
 //! Cases by models: cases of one problem are solved together, and each solve is timed by itself.
 
+use super::groups::groups;
 use super::timing::{self, Timing};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::solve::Solution;
+use crate::solve::{Scene, Solution};
 use rayon::prelude::*;
 
 /// Solves cases that share a scene by one edge model, one answer a case in their order.
@@ -47,7 +48,10 @@ impl<'a> Work<'a> {
     /// Puts cases together that are one problem.
     pub fn new(cases: &'a [Case], models: &'a Models<'a>) -> Self {
         let of_group = |group: Vec<usize>| models.methods.iter().map(move |&m| (group.clone(), m));
-        Self { cases, models, jobs: groups(cases).into_iter().flat_map(of_group).collect() }
+        // Which cases share a scene does not depend on the edge model; any will do.
+        let key = |case: &Case| Some(Scene::new(case, EdgeModel::QuarterSpace, None).key());
+        let groups = groups(cases.iter().map(key));
+        Self { cases, models, jobs: groups.into_iter().flat_map(of_group).collect() }
     }
 
     /// Number of contact problems to be solved.
@@ -103,29 +107,4 @@ impl<'a> Work<'a> {
         step(&format!("timing {method}, {}", case.name));
         timings
     }
-}
-
-/// What cases must have in common to be one problem in units of C and p0: all but the scale.
-/// Numbers that differ by rounding only are the same.
-fn problem_key(case: &Case) -> String {
-    let factors = case.factors();
-    let stiffness = case.roller.material.young_pa / case.block.material.young_pa;
-    let (nu_roller, nu_block) = (case.roller.material.poisson, case.block.material.poisson);
-    format!(
-        "{:.9e} {:.9e} {nu_roller:e} {nu_block:e} {stiffness:.9e} {:e}",
-        factors.slenderness, factors.length_ratio, case.tolerance
-    )
-}
-
-/// Indices of the cases of each problem, in the order of first appearance.
-fn groups(cases: &[Case]) -> Vec<Vec<usize>> {
-    let mut order: Vec<(String, Vec<usize>)> = Vec::new();
-    for (i, case) in cases.iter().enumerate() {
-        let key = problem_key(case);
-        match order.iter_mut().find(|(k, _)| *k == key) {
-            Some((_, members)) => members.push(i),
-            None => order.push((key, vec![i])),
-        }
-    }
-    order.into_iter().map(|(_, members)| members).collect()
 }

@@ -1,12 +1,12 @@
 //! A run over thousands of cases: similar cases are solved once, a case that fails is a result like
 //! any other, and the work can be cut into shards and gone on with.
 
-use crate::base::{Error, PerBody, Result};
+use super::groups::groups as scenes;
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
-use crate::solve::{KeyResults, Scene, key_results};
+use crate::solve::{KeyResults, Scene, SceneKey, key_results};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -54,50 +54,25 @@ pub struct Group {
     pub rows: Vec<usize>,
 }
 
-/// What rows have in common when one solution serves them, as bits; a row that is no case stands alone.
-type Key = [u64; 8];
-
-fn key(case: &Case, method: EdgeModel) -> Key {
-    let scene = Scene::new(case, method, None);
-    let PerBody { block, roller } = scene.bodies;
-    [
-        scene.half_length,
-        block.half,
-        block.nu,
-        block.share,
-        roller.half,
-        roller.nu,
-        roller.share,
-        scene.tolerance,
-    ]
-    .map(f64::to_bits)
-}
-
 /// The case of row `i` under `settings`.
 fn case_of(sweep: &Sweep, i: usize, settings: &Settings) -> std::result::Result<Case, String> {
-    let mut case = sweep.case(i)?;
-    case.tolerance = settings.tolerance.unwrap_or(case.tolerance);
-    Ok(case)
+    let case = sweep.case(i).map_err(|e| e.to_string())?;
+    Ok(match settings.tolerance {
+        Some(tolerance) => case.with_tolerance(tolerance),
+        None => case,
+    })
 }
 
 /// The sweep's rows by the contact problem that answers them, in the order of their first rows.
 ///
 /// A shard gets every n-th problem with all of its rows, so that no problem is solved by two.
 pub fn groups(sweep: &Sweep, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
-    let keys: Vec<Option<Key>> = (0..sweep.len())
+    let key = |case: Case| Scene::new(&case, settings.method, None).key();
+    let keys: Vec<Option<SceneKey>> = (0..sweep.len())
         .into_par_iter()
-        .map(|i| case_of(sweep, i, settings).ok().map(|case| key(&case, settings.method)))
+        .map(|i| case_of(sweep, i, settings).ok().map(key))
         .collect();
-    let mut index: HashMap<Key, usize> = HashMap::new();
-    let mut groups: Vec<Group> = Vec::new();
-    for (row, key) in keys.into_iter().enumerate() {
-        let next = groups.len();
-        let at = key.map_or(next, |key| *index.entry(key).or_insert(next));
-        if at == next {
-            groups.push(Group { rows: Vec::new() });
-        }
-        groups[at].rows.push(row);
-    }
+    let groups = scenes(keys).into_iter().map(|rows| Group { rows }).collect::<Vec<_>>();
     let Some(shard) = shard else { return groups };
     groups.into_iter().skip(shard.index - 1).step_by(shard.count).collect()
 }

@@ -78,7 +78,7 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
         y_m: 0.0,
         dx_m: 2.0 * c,
         dy_m: case.roller.length_m,
-        p_pa: case.force_n / (2.0 * c * case.roller.length_m),
+        p_pa: case.load.force_n / (2.0 * c * case.roller.length_m),
     }];
     let (p_centre_pa, p_end_pa) = (pressure(0.0, 0.0) * p0, pressure(0.0, half) * p0);
     let end_is_peak = p_end_pa > p_centre_pa;
@@ -86,7 +86,7 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
         case: case.name.clone(),
         method,
         hertz,
-        load_n: case.force_n,
+        load_n: case.load.force_n,
         approach_m: 0.7 * c * c / case.roller.radius_m,
         p_centre_pa,
         p_max_pa: p_centre_pa.max(p_end_pa),
@@ -111,7 +111,7 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
 
 /// Solutions that are off by their tolerance.
 pub fn solve_to_tolerance(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
-    cases.iter().map(|c| Ok(solution(c, method, end_share(method), c.tolerance))).collect()
+    cases.iter().map(|c| Ok(solution(c, method, end_share(method), c.accuracy.tolerance))).collect()
 }
 
 /// What a made-up mesh is off by (p0): its size squared.
@@ -236,7 +236,7 @@ pub fn run(twist: Twist) -> StudyRun {
             unknowns: 80_000,
             seconds: (fem_seconds, 0.3),
             error: Some(0.004),
-            tolerance: case.tolerance,
+            tolerance: case.accuracy.tolerance,
             methods: EdgeModel::ALL.map(|m| (m.name().to_string(), (0.01, 0.0004))).into(),
         };
         let provenance = Provenance {

@@ -83,12 +83,12 @@ impl Draw {
         }
     }
 
-    /// The case as its file gives it, if it may.
+    /// The case, if it is legal.
     fn case(&self) -> edgeline::base::Result<Case> {
-        let mut case =
-            Case::from_factors("scene", self.radius_m, self.roller, self.block, self.factors);
-        case.tolerance = self.tolerance;
-        Case::parse(&case.to_toml(), Path::new("scene.toml"))
+        let case =
+            Case::from_factors("scene", self.radius_m, self.roller, self.block, self.factors)
+                .with_tolerance(self.tolerance);
+        case.check().map(|()| case)
     }
 
     fn row(&self) -> String {
@@ -268,10 +268,10 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     other.block.length_m *= length;
     other.roller.material.young_pa *= stress;
     other.block.material.young_pa *= stress;
-    other.force_n *= length * length * stress;
+    other.load.force_n *= length * length * stress;
     let rescaled = Scene::new(&other, draw.model, None);
     // A scene has twelve digits of the case: the same ones, but where rounding takes the other side.
-    if rescaled != scene {
+    if rescaled.key() != scene.key() {
         note(Law::Perturbed, pressures_apart(&solved, &SolvedScene::new(&rescaled)?));
     }
     for (a, b) in scene.bodies.iter().zip(rescaled.bodies.iter()) {
@@ -294,7 +294,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
 
     // More load, more approach.
     let mut heavier = case.clone();
-    heavier.force_n *= 1.05;
+    heavier.load.force_n *= 1.05;
     let pressed = SolvedScene::new(&Scene::new(&heavier, draw.model, None))?;
     let approach = |case: &Case, solved: &SolvedScene| {
         let (c, r) = (case.hertz().c_m, case.roller.radius_m);
@@ -323,7 +323,7 @@ fn is_legal(draw: &Draw) -> bool {
     (1e-12..=5e-2).contains(&draw.factors.load)
         && lengths.iter().all(|length| (1e-9..=1e4).contains(length))
         && moduli.iter().all(|young| (1e3..=1e14).contains(young))
-        && (1e-12..=1e15).contains(&case.force_n)
+        && (1e-12..=1e15).contains(&case.load.force_n)
 }
 
 /// Answers and errors of scenes of one kind.

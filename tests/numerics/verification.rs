@@ -350,7 +350,7 @@ fn pressure_never_pulls() {
             let what = format!("{model} {slenderness} {length_ratio}");
             assert!(solution.cells.iter().all(|c| c.p_pa >= 0.0), "{what} pulls");
             let force: f64 = solution.cells.iter().map(|c| c.p_pa * c.dx_m * c.dy_m).sum();
-            small(&format!("{what} load"), (force / case.force_n - 1.0).abs(), 1e-10);
+            small(&format!("{what} load"), (force / case.load.force_n - 1.0).abs(), 1e-10);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! One way to solve a case: what it took, and how good it is.
 
+use super::case_form::CaseForm;
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::study::errors::{ErrorRow, Range, compare, summarise};
@@ -153,6 +154,7 @@ pub enum Against {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseBench {
     /// The case; its tolerance means nothing here.
+    #[serde(with = "CaseForm")]
     pub case: Case,
     /// The FEM mesh that is the reference, in words.
     pub fem_reference: Option<String>,

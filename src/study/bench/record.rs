@@ -115,7 +115,7 @@ impl Bench {
         let live = found.points.iter().filter(|p| p.origin == Origin::LiveFem);
         let fem =
             live.filter(|p| p.timing.is_some()).min_by(|a, b| a.setting.total_cmp(&b.setting))?;
-        let same = |p: &&Point| (p.setting / case.tolerance - 1.0).abs() < 1e-9;
+        let same = |p: &&Point| (p.setting / case.accuracy.tolerance - 1.0).abs() < 1e-9;
         let models = found.points.iter().filter(|p| p.origin == Origin::Model).filter(same);
         let methods: std::collections::BTreeMap<_, _> =
             models.filter_map(|p| Some((p.source.clone(), p.timing?.with_spread()))).collect();
@@ -127,7 +127,7 @@ impl Bench {
             unknowns: fem.unknowns.unwrap_or(0),
             seconds: fem.timing.map(|t| t.with_spread()).expect("filtered above"),
             error: fem.error(Against::Fem),
-            tolerance: case.tolerance,
+            tolerance: case.accuracy.tolerance,
             methods,
         })
     }

@@ -145,7 +145,7 @@ fn models_at(
     models: &Models,
     step: &(dyn Fn(usize, usize, &str) + Sync),
 ) -> Vec<Vec<Answered>> {
-    let cases: Vec<Case> = cases.iter().map(|c| Case { tolerance, ..c.clone() }).collect();
+    let cases: Vec<Case> = cases.iter().map(|c| c.clone().with_tolerance(tolerance)).collect();
     let work = Work::new(&cases, models);
     let done = AtomicUsize::new(0);
     let attempts =

@@ -1,0 +1,187 @@
+//! One contact problem in SI units. The structs have the form of the case file, so that serde writes
+//! it and a field is declared once; `keys.rs` lists their numbers.
+
+use crate::base::{HertzScales, Material};
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value};
+
+/// A right circular cylinder with its axis along y.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Roller {
+    /// Radius (m).
+    pub radius_m: f64,
+    /// Length along y (m).
+    pub length_m: f64,
+    /// Material.
+    #[serde(flatten)]
+    pub material: Material,
+}
+
+/// A rectangular block, deep and wide against the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Block {
+    /// Length along y (m), not shorter than the roller.
+    pub length_m: f64,
+    /// Material.
+    #[serde(flatten)]
+    pub material: Material,
+}
+
+/// What presses the roller on the block.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    /// Force (N), of the whole roller.
+    pub force_n: f64,
+}
+
+/// How accurately the case is to be solved; no part of the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Requested accuracy of the semi-analytical solution, as a fraction of p0.
+    pub tolerance: f64,
+}
+
+impl Default for Accuracy {
+    /// The accuracy that is asked for where a case does not say.
+    fn default() -> Self {
+        Self { tolerance: 1e-3 }
+    }
+}
+
+/// A contact problem in SI units. [`Case::check`] tells whether it is legal; a case that was read
+/// from a file is.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Case {
+    /// The case's name, unique in a study.
+    pub name: String,
+    /// The roller.
+    pub roller: Roller,
+    /// The block.
+    pub block: Block,
+    /// The load.
+    pub load: Load,
+    /// The accuracy.
+    pub accuracy: Accuracy,
+}
+
+/// The three factors of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Factors {
+    /// Load factor W = w / (E* R L1).
+    pub load: f64,
+    /// Contact slenderness S_l = L1 / (2 C).
+    pub slenderness: f64,
+    /// Contact length ratio L_r = L1 / L2.
+    pub length_ratio: f64,
+}
+
+impl Factors {
+    /// Legal range of W. Above, the half-width C is more than a quarter of the radius, which no
+    /// small-strain theory of contact covers.
+    pub const LOAD_RANGE: (f64, f64) = (1e-12, 0.05);
+    /// Legal range of S_l.
+    pub const SLENDERNESS_RANGE: (f64, f64) = (0.5, 1e4);
+    /// Legal range of L_r.
+    pub const LENGTH_RATIO_RANGE: (f64, f64) = (1e-3, 1.0);
+}
+
+/// Numbers of two cases that agree to this fraction are the same number: what formatting, reading
+/// and the way through the factors may cost.
+const SAME: f64 = 1e-9;
+
+/// Why a case can always be written.
+const PLAIN: &str = "a case has the form of its file";
+
+impl Case {
+    /// Larger case and study files are refused unread: none comes near (bytes).
+    pub const MAX_BYTES: u64 = 1 << 20;
+
+    /// The case that has the dimensionless `factors`, with a roller of radius `radius_m` (m), and
+    /// the default accuracy. Does not check its arguments; see [`Case::check`].
+    pub fn from_factors(
+        name: impl Into<String>,
+        radius_m: f64,
+        roller: Material,
+        block: Material,
+        factors: Factors,
+    ) -> Self {
+        let mut case = Self {
+            name: name.into(),
+            roller: Roller { radius_m, length_m: f64::NAN, material: roller },
+            block: Block { length_m: f64::NAN, material: block },
+            load: Load { force_n: f64::NAN },
+            accuracy: Accuracy::default(),
+        };
+        case.set_factors(factors);
+        case
+    }
+
+    /// The same case, to be solved to another tolerance.
+    #[must_use]
+    pub fn with_tolerance(self, tolerance: f64) -> Self {
+        Self { accuracy: Accuracy { tolerance }, ..self }
+    }
+
+    /// Gives the case the lengths and the force that follow from `factors`, its radius and its
+    /// materials.
+    pub(super) fn set_factors(&mut self, factors: Factors) {
+        let e_star = self.roller.material.contact_modulus(&self.block.material);
+        let radius_m = self.roller.radius_m;
+        let c_m = 2.0 * radius_m * (factors.load / std::f64::consts::PI).sqrt();
+        let length_m = 2.0 * c_m * factors.slenderness;
+        self.roller.length_m = length_m;
+        self.block.length_m = length_m / factors.length_ratio;
+        self.load.force_n = factors.load * e_star * radius_m * length_m;
+    }
+
+    /// The Hertz line-contact scales.
+    pub fn hertz(&self) -> HertzScales {
+        let e_star = self.roller.material.contact_modulus(&self.block.material);
+        HertzScales::new(e_star, self.roller.radius_m, self.roller.length_m, self.load.force_n)
+    }
+
+    /// W, S_l and L_r.
+    pub fn factors(&self) -> Factors {
+        let hertz = self.hertz();
+        let (roller, force_n) = (self.roller, self.load.force_n);
+        Factors {
+            load: force_n / (hertz.e_star_pa * roller.radius_m * roller.length_m),
+            slenderness: roller.length_m / (2.0 * hertz.c_m),
+            length_ratio: roller.length_m / self.block.length_m,
+        }
+    }
+
+    /// Whether `other` is the same problem, whatever it is called and however accurately it is to be
+    /// solved: all the rest of both case files agrees, numbers to nine digits.
+    pub fn is_same_problem(&self, other: &Case) -> bool {
+        alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
+    }
+
+    /// The case file but for the name and the accuracy.
+    fn problem(&self) -> Table {
+        let mut table = Table::try_from(self).expect(PLAIN);
+        for other in ["name", "accuracy"] {
+            table.remove(other).expect("every case has them");
+        }
+        table
+    }
+
+    /// The case file that [`Case::parse`] reads this case from, to the last digit.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(self).expect(PLAIN)
+    }
+}
+
+/// Whether two values are the same but for rounding.
+fn alike(a: &Value, b: &Value) -> bool {
+    match (a, b) {
+        (Value::Float(a), Value::Float(b)) => (a - b).abs() <= SAME * a.abs().max(b.abs()),
+        (Value::Array(a), Value::Array(b)) => {
+            a.len() == b.len() && a.iter().zip(b).all(|(a, b)| alike(a, b))
+        }
+        (Value::Table(a), Value::Table(b)) => {
+            a.len() == b.len() && a.iter().all(|(key, a)| b.get(key).is_some_and(|b| alike(a, b)))
+        }
+        _ => a == b,
+    }
+}

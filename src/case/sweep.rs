@@ -1,0 +1,136 @@
+//! A sweep: thousands of cases as a grid or as lists of parameters, or as a table.
+//!
+//! A sweep knows its rows without holding them: row i is the base with the values of that row, and is
+//! checked as every case is. What is wrong with the file is an error; what is wrong with a row belongs
+//! to that row.
+
+use super::draft::Draft;
+use super::keys::Key;
+use super::model::Case;
+use crate::base::{Error, Result};
+use std::path::Path;
+
+/// Many cases that differ in some numbers.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Sweep {
+    /// What varies.
+    pub(super) columns: Vec<Column>,
+    /// Names of the columns.
+    pub(super) names: Vec<String>,
+    /// What does not vary.
+    pub(super) base: Draft,
+    pub(super) rows: Rows,
+}
+
+/// What a column of a sweep gives.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Column {
+    /// The names of the cases.
+    Name,
+    /// Values of these numbers.
+    Numbers(Vec<&'static Key>),
+}
+
+/// The values of the columns.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) enum Rows {
+    /// Every combination of the columns' levels; the last column varies fastest.
+    Grid(Vec<Vec<f64>>),
+    /// The columns' values side by side, as many of each; one row where there is no column.
+    Side(Vec<Vec<f64>>),
+    /// Texts, row by row.
+    List(Vec<Vec<String>>),
+}
+
+impl Sweep {
+    /// Reads a sweep from a file in TOML or, if its name ends in `.csv`, from a table. `base` gives
+    /// a table's rows what its columns do not give; a TOML file gives everything itself.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line when it is not
+    /// TOML or CSV, has an unknown or missing key or column, or a value of the wrong type. Values
+    /// out of their range are no errors here: see [`Sweep::case`].
+    pub fn read(path: &Path, base: Option<&Case>) -> Result<Sweep> {
+        if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
+            return Sweep::read_csv(path, base);
+        }
+        if base.is_some() {
+            return Err(Error::File {
+                path: path.to_path_buf(),
+                line: None,
+                message: "a sweep in TOML gives all parameters itself".into(),
+                remedy: "leave out --base, or give a CSV table".into(),
+            });
+        }
+        Sweep::read_toml(path)
+    }
+
+    /// Number of rows, at least 1.
+    pub fn len(&self) -> usize {
+        match &self.rows {
+            // Its readers have made sure that the product is a number of rows.
+            Rows::Grid(levels) => levels.iter().map(Vec::len).product(),
+            Rows::Side(columns) => columns.first().map_or(1, Vec::len),
+            Rows::List(rows) => rows.len(),
+        }
+    }
+
+    /// Whether there are no rows (never, by construction).
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// Names of what varies, in the order of the file.
+    pub fn columns(&self) -> &[String] {
+        &self.names
+    }
+
+    /// What stands in the columns in row `i`.
+    pub fn cells(&self, i: usize) -> Vec<String> {
+        let text_of = |value: f64| format!("{value:e}");
+        match &self.rows {
+            Rows::List(rows) => rows[i].clone(),
+            Rows::Side(columns) => columns.iter().map(|values| text_of(values[i])).collect(),
+            Rows::Grid(levels) => {
+                let mut rest = i;
+                let mut cells: Vec<String> = levels
+                    .iter()
+                    .rev()
+                    .map(|l| {
+                        let value = l[rest % l.len()];
+                        rest /= l.len();
+                        text_of(value)
+                    })
+                    .collect();
+                cells.reverse();
+                cells
+            }
+        }
+    }
+
+    /// The case of row `i`; it is called what the column `name` says, or `row-1` and so on.
+    ///
+    /// # Errors
+    /// [`Error::Value`] about the first value of the row that is not legal.
+    pub fn case(&self, i: usize) -> Result<Case> {
+        let mut draft = self.base.clone().named(format!("row-{}", i + 1));
+        for ((cell, column), name) in self.cells(i).into_iter().zip(&self.columns).zip(&self.names)
+        {
+            let keys = match column {
+                Column::Numbers(keys) => keys,
+                Column::Name => {
+                    draft = draft.named(cell);
+                    continue;
+                }
+            };
+            let value: f64 = cell.parse().map_err(|_| Error::Value {
+                key: name.clone(),
+                value: cell,
+                reason: "a number belongs here".into(),
+                remedy: "write for example 1.5".into(),
+            })?;
+            keys.iter().for_each(|key| key.set(&mut draft, value));
+        }
+        draft.case()
+    }
+}

@@ -1,0 +1,141 @@
+//! The sweep as a table: one row a case, with a column for each number that is given.
+
+use super::document::nearest;
+use super::draft::{Draft, Form};
+use super::keys::{KEYS, Key, Presence};
+use super::levels::MAX_ROWS;
+use super::model::Case;
+use super::sweep::{Column, Rows, Sweep};
+use crate::base::{Error, Result};
+use crate::host::{check_memory, read_text};
+use std::path::Path;
+
+/// Columns that give both bodies the same value.
+const BOTH: [&str; 2] = ["young_pa", "poisson"];
+
+/// Larger tables are refused unread: [`MAX_ROWS`] rows are smaller (bytes).
+const MAX_BYTES: u64 = 4 << 30;
+
+/// Memory that a table takes in units of its file's size: cells of some six letters become texts.
+const GROWTH: f64 = 15.0;
+
+impl Sweep {
+    pub(super) fn read_csv(path: &Path, base: Option<&Case>) -> Result<Sweep> {
+        let remedy = "split it into several files";
+        let size = std::fs::metadata(path).map_or(0, |m| m.len());
+        check_memory(&format!("the table {}", path.display()), size as f64 * GROWTH, remedy)?;
+        Sweep::parse_csv(&read_text(path, MAX_BYTES, remedy)?, path, base)
+    }
+
+    /// Parses a CSV table with a column for each number and optionally a column `name`. `base` gives
+    /// what has no column.
+    ///
+    /// # Errors
+    /// As [`Sweep::read`].
+    pub fn parse_csv(text: &str, path: &Path, base: Option<&Case>) -> Result<Sweep> {
+        let refuse = |line: Option<usize>, message: String, remedy: String| Error::File {
+            path: path.to_path_buf(),
+            line,
+            message,
+            remedy,
+        };
+        let in_header = |(message, remedy)| refuse(Some(1), message, remedy);
+        let broken = |e: csv::Error| {
+            let line = e.position().map(|p| p.line() as usize);
+            refuse(line, e.to_string(), "give as many cells in every row as in the header".into())
+        };
+        let mut reader =
+            csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
+        let names: Vec<String> =
+            reader.headers().map_err(broken)?.iter().map(str::to_string).collect();
+        let columns = names
+            .iter()
+            .map(|name| column(name))
+            .collect::<Finding<Vec<_>>>()
+            .map_err(in_header)?;
+        let given = given_once(&columns).map_err(in_header)?;
+        let form = form_of(&given).map_err(in_header)?;
+        let base = match base {
+            Some(case) => Draft::of(case, form),
+            None => {
+                nothing_missing(&given, form).map_err(in_header)?;
+                Draft::new("", form)
+            }
+        };
+        let mut rows = Vec::new();
+        for record in reader.records() {
+            rows.push(record.map_err(broken)?.iter().map(str::to_string).collect());
+        }
+        if rows.is_empty() || rows.len() > MAX_ROWS {
+            let message = format!("has {} rows", rows.len());
+            return Err(refuse(None, message, format!("give between 1 and {MAX_ROWS}")));
+        }
+        Ok(Sweep { columns, names, base, rows: Rows::List(rows) })
+    }
+}
+
+/// What is found in the header, or what is wrong with it and what to do about that.
+type Finding<T> = std::result::Result<T, (String, String)>;
+
+/// The column called `name`.
+fn column(name: &str) -> Finding<Column> {
+    if name == "name" {
+        return Ok(Column::Name);
+    }
+    if BOTH.contains(&name) {
+        return Ok(Column::Numbers(KEYS.iter().filter(|key| key.leaf() == name).collect()));
+    }
+    if let Some(key) = KEYS.iter().find(|key| key.path == name || key.column == name) {
+        return Ok(Column::Numbers(vec![key]));
+    }
+    let mut known = vec!["name"];
+    known.extend(BOTH);
+    known.extend(KEYS.iter().map(|key| key.column));
+    let remedy =
+        format!("did you mean {}? The columns are {}", nearest(name, &known), known.join(", "));
+    Err((format!("unknown column {name}"), remedy))
+}
+
+/// The numbers that the columns give, each by one column only.
+fn given_once(columns: &[Column]) -> Finding<Vec<&'static Key>> {
+    let remedy = || "remove one of them".to_string();
+    if columns.iter().filter(|column| **column == Column::Name).count() > 1 {
+        return Err(("has two columns name".into(), remedy()));
+    }
+    let mut given: Vec<&'static Key> = Vec::new();
+    for column in columns {
+        let Column::Numbers(keys) = column else { continue };
+        for &key in keys {
+            if given.contains(&key) {
+                return Err((format!("{} is given by two columns", key.path), remedy()));
+            }
+            given.push(key);
+        }
+    }
+    Ok(given)
+}
+
+/// How the columns give the load; by factors where they leave it to the base.
+fn form_of(given: &[&Key]) -> Finding<Form> {
+    let any_of = |form: Form| given.iter().any(|key| key.presence == Presence::With(form));
+    match (any_of(Form::Factors), any_of(Form::Load)) {
+        (true, true) => Err((
+            "gives the load twice, by W, S_l, L_r and by force_n and lengths".into(),
+            "keep the columns of one of the two".into(),
+        )),
+        (false, true) => Ok(Form::Load),
+        _ => Ok(Form::Factors),
+    }
+}
+
+/// Refuses a table without a base that does not give all that a case needs.
+fn nothing_missing(given: &[&Key], form: Form) -> Finding<()> {
+    let needed = |key: &&Key| key.is_of(form) && key.presence != Presence::Optional;
+    let missing: Vec<&str> =
+        KEYS.iter().filter(needed).filter(|key| !given.contains(key)).map(|key| key.path).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let message = format!("has no column for {}", missing.join(", "));
+    Err((message, "add them, or take them from a case with --base".into()))
+}

@@ -1,0 +1,109 @@
+//! The sweep file in TOML: a case file in which every number may also be a list or a range.
+
+use super::case_file::{entries, form, keys_of, only_tables};
+use super::document::{Document, Entry, Table, read_text};
+use super::draft::Draft;
+use super::keys::Key;
+use super::levels::{Levels, MAX_ROWS, levels};
+use super::sweep::{Column, Rows, Sweep};
+use crate::base::Result;
+use crate::host::check_memory;
+use std::path::Path;
+
+/// Memory that a row takes while a sweep runs, and each of its numbers in lists (bytes).
+const ROW_BYTES: f64 = 300.0;
+const CELL_BYTES: f64 = 8.0;
+
+/// A number that varies: where it stands in the file, and its values.
+struct Varying<'d> {
+    key: &'static Key,
+    entry: Entry<'d>,
+    levels: Levels,
+}
+
+impl Sweep {
+    pub(super) fn read_toml(path: &Path) -> Result<Sweep> {
+        Sweep::parse(&read_text(path)?, path)
+    }
+
+    /// Parses a sweep file in TOML: a case file in which every number may also be a list of numbers
+    /// or a range, and `[sweep] combine` says whether lists are combined (`grid`, the default) or
+    /// read side by side (`list`).
+    ///
+    /// # Errors
+    /// As [`Sweep::read`].
+    pub fn parse(text: &str, path: &Path) -> Result<Sweep> {
+        let document = Document::parse(path, text)?;
+        let root = document.root();
+        only_tables(&root, &["name", "sweep"])?;
+        if let Some(entry) = root.get("name") {
+            // It only tells readers what the file is about, but must not be nonsense.
+            entry.string()?;
+        }
+        let side_by_side = side_by_side(&root)?;
+        let (form, _) = form(&root)?;
+        let mut base = Draft::new("", form);
+        let mut varying: Vec<Varying> = Vec::new();
+        for (key, entry) in entries(&root, &keys_of(form))? {
+            match levels(&entry)? {
+                Levels::One(value) => key.set(&mut base, value),
+                levels => varying.push(Varying { key, entry, levels }),
+            }
+        }
+        // The order of the file is the order of the columns.
+        varying.sort_by_key(|v| v.entry.place());
+        check_rows(&varying, side_by_side, &root)?;
+        let keys: Vec<&'static Key> = varying.iter().map(|v| v.key).collect();
+        let values = varying.into_iter().map(|v| v.levels.expand()).collect();
+        Ok(Sweep {
+            columns: keys.iter().map(|&key| Column::Numbers(vec![key])).collect(),
+            names: keys.iter().map(|key| key.path.to_string()).collect(),
+            base,
+            rows: if side_by_side { Rows::Side(values) } else { Rows::Grid(values) },
+        })
+    }
+}
+
+/// Whether lists are read side by side.
+fn side_by_side(root: &Table) -> Result<bool> {
+    let Some(entry) = root.get("sweep") else { return Ok(false) };
+    let table = entry.table()?;
+    table.only(&["combine"])?;
+    let combine = table.require("combine", "combine = \"grid\"")?;
+    match combine.string()? {
+        "grid" => Ok(false),
+        "list" => Ok(true),
+        _ => Err(combine.refuse(
+            "lists are combined in one of two ways",
+            "write \"grid\" for every combination, \"list\" for one row for each place in the lists",
+        )),
+    }
+}
+
+/// Refuses lists that do not fit together, or combine to too many rows.
+fn check_rows(varying: &[Varying], side_by_side: bool, root: &Table) -> Result<()> {
+    let count = |v: &Varying| v.levels.len();
+    let first = varying.first().map_or(1, count);
+    if let Some(other) = varying.iter().find(|v| side_by_side && count(v) != first) {
+        let (own, name) = (count(other), varying[0].key.path);
+        return Err(other.entry.refuse(
+            format!("it has {own} values and {name} has {first}, but lists are read side by side"),
+            "give lists of one length, or [sweep] combine = \"grid\"",
+        ));
+    }
+    let (rows, columns) = match side_by_side {
+        true => (first as f64, varying.len()),
+        false => (varying.iter().map(|v| count(v) as f64).product(), 0),
+    };
+    let bytes = rows * (ROW_BYTES + CELL_BYTES * columns as f64);
+    let remedy = "give fewer values, or several files";
+    if rows > MAX_ROWS as f64 {
+        let gib = bytes / (1u64 << 30) as f64;
+        let message = format!(
+            "the lists combine to more than {MAX_ROWS} rows: {rows:.2e} rows would take about \
+             {gib:.1e} GiB"
+        );
+        return Err(root.error(message, remedy));
+    }
+    check_memory(&format!("a sweep of {rows} rows"), bytes, remedy)
+}

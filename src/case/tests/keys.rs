@@ -1,0 +1,128 @@
+use super::super::*;
+use crate::base::Material;
+use std::collections::BTreeMap;
+use toml::{Table, Value};
+
+/// A case whose numbers all differ. It is written out so that a new field does not compile before it
+/// is here, and with that in the tests below.
+fn every_field() -> Case {
+    Case {
+        name: "all".into(),
+        roller: Roller {
+            radius_m: 1e-2,
+            length_m: 2e-2,
+            material: Material { young_pa: 2.1e11, poisson: 0.3 },
+        },
+        block: Block { length_m: 3e-2, material: Material { young_pa: 0.7e11, poisson: 0.33 } },
+        load: Load { force_n: 1e3 },
+        accuracy: Accuracy { tolerance: 2e-3 },
+    }
+}
+
+/// The numbers of a table by their paths.
+fn numbers(table: &Table, prefix: &str) -> BTreeMap<String, f64> {
+    let mut found = BTreeMap::new();
+    for (key, value) in table {
+        let path = format!("{prefix}{key}");
+        match value {
+            Value::Float(number) => drop(found.insert(path, *number)),
+            Value::Table(below) => found.extend(numbers(below, &format!("{path}."))),
+            Value::String(_) => assert_eq!(path, "name"),
+            other => panic!("{path} = {other} is neither a number nor a known text"),
+        }
+    }
+    found
+}
+
+fn file_of(case: &Case) -> BTreeMap<String, f64> {
+    numbers(&case.to_toml().parse().unwrap(), "")
+}
+
+#[test]
+fn every_number_of_a_case_file_is_a_key() {
+    let case = every_field();
+    let file = file_of(&case);
+    let mut keys: Vec<&str> =
+        KEYS.iter().filter(|key| key.is_of(Form::Load)).map(|key| key.path).collect();
+    keys.sort_unstable();
+    assert_eq!(keys, file.keys().map(String::as_str).collect::<Vec<_>>());
+    for (path, value) in &file {
+        let key = Key::find(path).unwrap();
+        let mut draft = Draft::of(&case, Form::Load);
+        assert_eq!(key.get(&draft), Some(*value), "{path}");
+        key.set(&mut draft, 1.01 * value);
+        let mut wanted = file.clone();
+        wanted.insert(path.clone(), 1.01 * value);
+        assert_eq!(file_of(&draft.case().unwrap()), wanted, "{path}");
+    }
+}
+
+#[test]
+fn every_factor_is_a_key() {
+    let fields = serde_json::to_value(every_field().factors()).unwrap();
+    let keys: Vec<&Key> =
+        KEYS.iter().filter(|key| key.presence == Presence::With(Form::Factors)).collect();
+    assert_eq!(keys.len(), fields.as_object().unwrap().len());
+    for key in keys {
+        let mut draft = Draft::of(&every_field(), Form::Factors);
+        let wanted = 0.5 * key.get(&draft).unwrap();
+        key.set(&mut draft, wanted);
+        let again = Draft::of(&draft.case().unwrap(), Form::Factors);
+        assert!((key.get(&again).unwrap() / wanted - 1.0).abs() < 1e-13, "{}", key.path);
+        assert_eq!(key.get(&Draft::of(&every_field(), Form::Load)), None);
+    }
+}
+
+#[test]
+fn keys_are_told_apart_and_their_examples_are_legal() {
+    for (i, key) in KEYS.iter().enumerate() {
+        assert!(KEYS[..i].iter().all(|k| k.path != key.path && k.column != key.column));
+        key.check(key.example.parse().unwrap()).unwrap();
+        for end in [key.range.0, key.range.1] {
+            key.check(end).unwrap();
+        }
+        for beyond in [key.range.0.next_down(), key.range.1.next_up(), f64::NAN, f64::INFINITY] {
+            let said = key.check(beyond).unwrap_err().to_string();
+            assert!(
+                said.starts_with(&format!("{} = {beyond:e} is not valid: ", key.path)),
+                "{said}"
+            );
+        }
+    }
+}
+
+#[test]
+fn every_key_is_checked_as_a_part_of_its_case() {
+    for key in &KEYS {
+        let form = if key.is_of(Form::Load) { Form::Load } else { Form::Factors };
+        let mut draft = Draft::of(&every_field(), form);
+        draft.case().unwrap();
+        key.set(&mut draft, -1.0);
+        let said = draft.case().unwrap_err().to_string();
+        assert!(said.starts_with(&format!("{} = -1e0 is not valid: ", key.path)), "{said}");
+    }
+}
+
+#[test]
+fn a_name_of_another_alphabet_is_refused() {
+    for name in ["", ".", ".a", "a/b", "a b", "über", "a\n", &"x".repeat(65)] {
+        let said = Case { name: name.into(), ..every_field() }.check().unwrap_err().to_string();
+        assert!(said.starts_with(&format!("name = {name:?} is not valid: a name has 1 to 64")));
+    }
+}
+
+#[test]
+fn problems_differ_by_any_number_but_the_accuracy() {
+    let case = every_field();
+    for key in KEYS.iter().filter(|key| key.is_of(Form::Load)) {
+        let changed = |factor: f64| {
+            let mut draft = Draft::of(&case, Form::Load).named("other");
+            let value = key.get(&draft).unwrap();
+            key.set(&mut draft, factor * value);
+            draft.case().unwrap()
+        };
+        assert!(case.is_same_problem(&changed(1.0 + 1e-13)), "{}", key.path);
+        let matters = key.path != "accuracy.tolerance";
+        assert_eq!(case.is_same_problem(&changed(1.0 + 1e-6)), !matters, "{}", key.path);
+    }
+}

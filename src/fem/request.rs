@@ -1,0 +1,73 @@
+//! What the finite-element side is asked to do: the content of `request.json`, which
+//! `fem/edgeline_fem/request.py` reads.
+
+use super::result::{wanted_curves, wanted_lines};
+use crate::case::{Accuracy, Block, Case, Load, Roller};
+use crate::stress::BodyKind;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The form of a case in requests and records. It leaves out the accuracy, which is the models' own.
+#[derive(Serialize, Deserialize)]
+#[serde(remote = "Case")]
+pub(super) struct Problem {
+    name: String,
+    roller: Roller,
+    block: Block,
+    #[serde(flatten)]
+    load: Load,
+    #[serde(skip)]
+    accuracy: Accuracy,
+}
+
+/// A request to the finite-element side.
+#[derive(Serialize)]
+pub(super) struct Request<'a> {
+    schema: u32,
+    #[serde(with = "Problem")]
+    case: Case,
+    mesh: Mesh,
+    solver: Solver,
+    gmsh: &'a Path,
+    curves: Vec<WantedCurve>,
+    pressure_points_m: BTreeMap<&'static str, Vec<[f64; 2]>>,
+}
+
+#[derive(Serialize)]
+struct Mesh {
+    size: f64,
+}
+
+#[derive(Serialize)]
+struct Solver {
+    linear: &'static str,
+    tolerance: f64,
+    max_iterations: u32,
+}
+
+#[derive(Serialize)]
+struct WantedCurve {
+    body: BodyKind,
+    curve: &'static str,
+    points_m: Vec<[f64; 3]>,
+}
+
+impl<'a> Request<'a> {
+    /// Asks for the standard curves and pressure lines of `case` on a mesh of relative size `size`,
+    /// with the linear solver called `linear`.
+    pub fn new(case: &Case, size: f64, linear: &'static str, gmsh: &'a Path) -> Self {
+        Self {
+            schema: 1,
+            case: case.clone(),
+            mesh: Mesh { size },
+            solver: Solver { linear, tolerance: 1e-8, max_iterations: 200 },
+            gmsh,
+            curves: wanted_curves(case)
+                .into_iter()
+                .map(|(body, curve, points_m)| WantedCurve { body, curve, points_m })
+                .collect(),
+            pressure_points_m: wanted_lines(case).into_iter().collect(),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Which cases one solution serves.
+
+use crate::solve::SceneKey;
+use std::collections::HashMap;
+
+/// Indices of the cases of each scene, in the order of first appearance; what has no key stands
+/// alone.
+pub fn groups(keys: impl IntoIterator<Item = Option<SceneKey>>) -> Vec<Vec<usize>> {
+    let mut index: HashMap<SceneKey, usize> = HashMap::new();
+    let mut groups: Vec<Vec<usize>> = Vec::new();
+    for (i, key) in keys.into_iter().enumerate() {
+        let next = groups.len();
+        let at = key.map_or(next, |key| *index.entry(key).or_insert(next));
+        if at == next {
+            groups.push(Vec::new());
+        }
+        groups[at].push(i);
+    }
+    groups
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::EdgeModel;
+    use crate::case::{Draft, Form, KEYS, builtin_case};
+    use crate::solve::Scene;
+
+    #[test]
+    fn a_solution_serves_cases_that_differ_in_scale_or_by_rounding() {
+        let case = builtin_case("half-short").unwrap().unwrap();
+        let key =
+            |draft: &Draft| Scene::new(&draft.case().unwrap(), EdgeModel::QuarterSpace, None).key();
+        let own = Draft::of(&case, Form::Factors);
+        for number in KEYS.iter().filter(|number| number.is_of(Form::Factors)) {
+            let changed = |factor: f64| {
+                let mut draft = own.clone().named("other");
+                let value = number.get(&draft).unwrap();
+                number.set(&mut draft, factor * value);
+                key(&draft)
+            };
+            let is_scale = ["roller.radius_m", "dimensionless.W"].contains(&number.path);
+            assert_eq!(changed(1.01) == key(&own), is_scale, "{}", number.path);
+            assert_eq!(changed(1.0 + 1e-15), key(&own), "{}", number.path);
+        }
+        let scene = |model, psi| Scene::new(&case, model, psi).key();
+        let guilbault = scene(EdgeModel::Guilbault, None);
+        assert_ne!(guilbault, scene(EdgeModel::Mirror, None));
+        assert_ne!(guilbault, scene(EdgeModel::Guilbault, Some(1.2)));
+    }
+
+    #[test]
+    fn groups_keep_the_order_and_what_has_no_key_stands_alone() {
+        let case = builtin_case("half-short").unwrap().unwrap();
+        let key = |tolerance: f64| {
+            let case = case.clone().with_tolerance(tolerance);
+            Some(Scene::new(&case, EdgeModel::QuarterSpace, None).key())
+        };
+        let keys = [key(1e-2), None, key(1e-3), key(1e-2), None];
+        assert_eq!(groups(keys), [vec![0, 3], vec![1], vec![2], vec![4]]);
+    }
+}
