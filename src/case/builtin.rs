@@ -1,6 +1,6 @@
 //! The case files that are built into the binary, so that it runs from any folder.
 
-use super::Case;
+use super::model::Case;
 use crate::base::{Error, Result};
 use std::path::Path;
 

@@ -81,7 +81,7 @@ pub(super) fn entries<'d>(
     if let Some(length) = lengths.filter_map(|key| root.find(key.path)).next() {
         return Err(length.refuse(
             "the lengths follow from W, S_l and L_r",
-            "remove it, or give [load] and both lengths in a case file",
+            "remove it: lengths are given with [load] only",
         ));
     }
     let mut found = Vec::new();

@@ -4,6 +4,7 @@
 //! cases of different loads, and the fraction of p0 is what a user can judge.
 
 pub mod bench;
+pub mod design;
 pub mod effects;
 pub mod errors;
 pub mod factorial;

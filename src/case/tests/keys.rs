@@ -126,3 +126,22 @@ fn problems_differ_by_any_number_but_the_accuracy() {
         assert_eq!(case.is_same_problem(&changed(1.0 + 1e-6)), !matters, "{}", key.path);
     }
 }
+
+#[test]
+fn the_readme_explains_every_key_with_its_range() {
+    let readme = include_str!("../../../cases/README.md");
+    for key in &KEYS {
+        let names = [key.path, key.leaf()].map(|name| format!("`{name}`"));
+        let named = |row: &&str| row.starts_with('|') && names.iter().any(|n| row.contains(n));
+        let row = readme.lines().find(named).unwrap_or_else(|| panic!("no row for {}", key.path));
+        let numbers: Vec<f64> = row
+            .split(|c: char| !c.is_ascii_alphanumeric() && !".-".contains(c))
+            .filter_map(|word| word.parse().ok())
+            .collect();
+        for end in [key.range.0, key.range.1] {
+            // The README says "less than 0.5".
+            let there = numbers.iter().any(|v| (v - end).abs() <= f64::EPSILON * end);
+            assert!(there, "{} lacks {end:e}: {row}", key.path);
+        }
+    }
+}

@@ -73,7 +73,11 @@ fn what_is_wrong_with_the_file_is_an_error() {
         ("[dimensionless]", "[load]\nforce_n = 1\n[dimensionless]", "the load is given twice"),
         ("[block]", "[sweep]\ncombine = \"zip\"\n[block]", "lists are combined in one of two"),
         ("[block]", "[blok]", "unknown key blok; did you mean block"),
-        ("radius_m = 10e-3", "radius_m = 10e-3\nlength_m = 1", "unknown key roller.length_m"),
+        (
+            "radius_m = 10e-3",
+            "radius_m = 10e-3\nlength_m = 1",
+            "s.toml:3: roller.length_m = 1 is not valid: the lengths follow",
+        ),
     ] {
         assert!(GRID.contains(from), "{from}");
         let said = parse(&GRID.replacen(from, to, 1)).unwrap_err().to_string();
