@@ -9,8 +9,7 @@
 use edgeline::base::Result;
 use edgeline::body::EdgeModel;
 use edgeline::case::builtin_case;
-use edgeline::report::chart::{Figure, Panel, Series, look};
-use edgeline::report::contour::Plane;
+use edgeline::report::draw::{Figure, Map, Panel, Series, look};
 use edgeline::solve::{Scene, SolvedScene};
 use edgeline::stress::BodyKind;
 use std::path::Path;
@@ -22,20 +21,22 @@ const LIMIT: f64 = 1.0;
 fn main() -> Result<()> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/figures");
     std::fs::create_dir_all(&folder).expect("docs can be written");
-    let write = |name: &str, text: &str| {
-        std::fs::write(folder.join(format!("{name}.svg")), text).expect("docs can be written");
+    let write = |name: &str, figure: &Figure| {
+        let path = folder.join(format!("{name}.svg"));
+        std::fs::write(path, figure.draw().to_svg()).expect("docs can be written");
     };
     let case = builtin_case("flush-short").expect("a case of that name")?;
     let mut panels: Vec<Panel> = [
-        ("Pressure on x = 0", "distance from the roller's end (C)", "p / p0"),
-        ("Along the contact, x = 0, z = 0.5 C", "distance from the roller's end (C)", "σyy / p0"),
-        ("Down the end face, x = 0", "depth (C)", "σyy / p0"),
+        ("Pressure on x = 0", "distance from the roller's end (C)", 5.0, "p / p0"),
+        ("Along x = 0, z = 0.5 C", "distance from the roller's end (C)", 5.0, "σyy / p0"),
+        ("Down the end face, x = 0", "depth (C)", 3.0, "σyy / p0"),
     ]
     .into_iter()
-    .map(|(title, x_label, y_label)| Panel {
+    .map(|(title, x_label, reach, y_label)| Panel {
         title: title.into(),
         x_label: x_label.into(),
         y_label: y_label.into(),
+        x_range: Some((0.0, reach)),
         ..Panel::default()
     })
     .collect();
@@ -66,15 +67,10 @@ fn main() -> Result<()> {
             let field = &field;
             ys.iter().map(move |&y| field.at(y, z, &[0.0])[0].yy.clamp(-LIMIT, LIMIT))
         });
-        let plane = Plane {
-            title: format!("{model}: σyy in the plane x = 0; the end face is the right border"),
-            labels: ["y / C".into(), "z / C".into()],
-            value_label: "σyy / p0".into(),
-            values: values.collect(),
-            axes: [ys, zs],
-            down: true,
-        };
-        write(model.name(), &plane.to_svg());
+        let map =
+            Map { label: "σyy / p0".into(), values: values.collect(), axes: [ys, zs], down: true };
+        let title = format!("{model}: σyy in the plane x = 0; the end face is the right border");
+        write(model.name(), &Figure::of_map(title, ["y / C", "z / C"], map));
     }
     let figure = Figure {
         title: "Flush ends, S_l = 5, ν = 0.3".into(),
@@ -82,6 +78,6 @@ fn main() -> Result<()> {
         panels,
         panel_size: (420, 320),
     };
-    write("models", &figure.to_svg());
+    write("models", &figure);
     Ok(())
 }

@@ -1,6 +1,6 @@
 //! The files of `edgeline bench`: `pareto.csv`, `pareto.svg` and `bench.json`.
 
-use super::chart::{Figure, Look, Marker, Panel, Series, look};
+use super::draw::{Figure, Look, Marker, Panel, Series, look};
 use super::table::{Table, number, optional};
 use crate::base::Result;
 use crate::host::write_set;
@@ -17,7 +17,7 @@ use std::path::Path;
 pub fn write(bench: &Bench, folder: &Path) -> Result<()> {
     let files = [
         ("pareto.csv", table(bench).to_csv().into_bytes()),
-        ("pareto.svg", figure(bench).to_svg().into_bytes()),
+        ("pareto.svg", figure(bench).draw().to_svg().into_bytes()),
         ("bench.json", json(bench).into_bytes()),
     ];
     write_set(folder, &files)
@@ -187,7 +187,7 @@ fn summed_up(cases: &[CaseBench], against: Against) -> Vec<Entry<'_>> {
 }
 
 fn panel(title: String, entries: &[Entry]) -> Panel {
-    let recorded = Look { marker: Marker::Diamond, dash: Some((2, 4)), ..look("fem") };
+    let recorded = Look { marker: Marker::Diamond, dash: Some((2.0, 4.0)), ..look("fem") };
     let mut sources: Vec<(&str, Origin)> = Vec::new();
     for e in entries {
         if !sources.contains(&(e.source, e.origin)) {
@@ -200,7 +200,7 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
         all.into_iter().map(|e| e.at).collect()
     };
     let best = front(points(&|e| e.origin == Origin::Model));
-    let line = Look { dash: Some((1, 3)), ..look("fem") };
+    let line = Look { dash: Some((1.0, 3.0)), ..look("fem") };
     let front = Series { markers: false, ..Series::curve("front of the models", line, best) };
     let curves = sources.iter().map(|&(source, origin)| {
         let (name, look) = match origin {

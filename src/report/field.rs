@@ -3,9 +3,9 @@
 //! The field is evaluated on a quarter of each body and mirrored: sigma_xy and sigma_xz are odd in
 //! x, sigma_xy and sigma_yz odd in y, everything else is even.
 
-use super::contour::Plane;
+use super::draw::{Figure, Map};
 use super::vtk::Grid;
-use crate::base::{Error, Result, StressTensor};
+use crate::base::{Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::solve_on_grid;
@@ -152,61 +152,56 @@ impl<'a> Quarter<'a> {
         (self.axes[1][j] - half).hypot(self.axes[2][k]) < EDGE * (1.0 - 1e-9)
     }
 
+    /// Von Mises stress (p0) at a point of the grid.
+    fn von_mises(&self, i: usize, j: usize, k: usize) -> f64 {
+        self.at(i, j, k).von_mises() / self.case.hertz().p0_pa
+    }
+
+    /// The largest von Mises stress (p0) outside the surroundings of the edge, and its layer.
+    fn critical(&self) -> (f64, usize) {
+        let [nx, ny, nz] = self.axes.each_ref().map(Vec::len);
+        let places = (0..nz).flat_map(|k| (0..ny).map(move |j| (j, k)));
+        let outside = places.filter(|&(j, k)| !self.at_edge(j, k));
+        let values = outside.flat_map(|(j, k)| (0..nx).map(move |i| (self.von_mises(i, j, k), k)));
+        values.fold((f64::NEG_INFINITY, 0), |most, v| if v.0 > most.0 { v } else { most })
+    }
+
     /// Von Mises stress in the planes x = 0, y = the roller's end and z = the depth of its largest
     /// value, with the names of their files.
-    fn planes(&self) -> Vec<(&'static str, Plane)> {
+    fn figures(&self) -> [(&'static str, Figure); 3] {
         let [x, y, z] = &self.axes;
         let half = self.case.factors().slenderness;
         let end = y.iter().position(|v| *v == half).unwrap_or(y.len() - 1);
-        let p0 = self.case.hertz().p0_pa;
-        let value = |i: usize, j: usize, k: usize| self.at(i, j, k).von_mises() / p0;
-        let mut critical = (0, f64::NEG_INFINITY);
-        let mut limit = f64::NEG_INFINITY;
-        for k in 0..z.len() {
-            for j in (0..y.len()).filter(|&j| !self.at_edge(j, k)) {
-                for i in 0..x.len() {
-                    let v = value(i, j, k);
-                    limit = limit.max(v);
-                    if v > critical.1 {
-                        critical = (k, v);
-                    }
-                }
-            }
-        }
+        let (largest, critical) = self.critical();
         let shown = |i: usize, j: usize, k: usize| {
-            let v = value(i, j, k);
-            if self.at_edge(j, k) { v.min(limit) } else { v }
+            let v = self.von_mises(i, j, k);
+            if self.at_edge(j, k) { v.min(largest) } else { v }
         };
-        let mut planes = Vec::new();
-        let mut add = |name: &'static str,
-                       place: String,
-                       labels: [&str; 2],
-                       axes: [&Vec<f64>; 2],
-                       down,
-                       values| {
-            let (case, body) = (&self.case.name, self.body.name());
-            let plane = Plane {
-                title: format!("{case}, {body}: von Mises stress at {place}"),
-                labels: labels.map(String::from),
-                value_label: "von Mises / p0".to_string(),
-                axes: axes.map(Clone::clone),
-                down,
-                values,
-            };
-            planes.push((name, plane));
+        let figure = |place: &str,
+                      labels,
+                      axes: [&Vec<f64>; 2],
+                      down,
+                      value: &dyn Fn(usize, usize) -> f64| {
+            let (case, body, n) = (&self.case.name, self.body.name(), axes[0].len());
+            let title = format!("{case}, {body}: von Mises stress at {place}");
+            let values = (0..n * axes[1].len()).map(|i| value(i % n, i / n)).collect();
+            let (label, axes) = ("von Mises / p0".to_string(), axes.map(Clone::clone));
+            Figure::of_map(title, labels, Map { label, axes, down, values })
         };
-        let over = |n: usize, m: usize, f: &dyn Fn(usize, usize) -> f64| -> Vec<f64> {
-            (0..m).flat_map(|b| (0..n).map(move |a| (a, b))).map(|(a, b)| f(a, b)).collect()
-        };
-        let values = over(y.len(), z.len(), &|j, k| shown(0, j, k));
-        add("x0", "x = 0".to_string(), ["y / C", "z / C"], [y, z], true, values);
-        let values = over(x.len(), z.len(), &|i, k| shown(i, end, k));
-        add("end", "y = L1/2 (end)".to_string(), ["x / C", "z / C"], [x, z], true, values);
-        let k = critical.0;
-        let values = over(y.len(), x.len(), &|j, i| shown(i, j, k));
-        let place = format!("z = {:.2} C (critical depth)", z[k]);
-        add("critical-depth", place, ["y / C", "x / C"], [y, x], false, values);
-        planes
+        let depth = format!("z = {:.2} C (critical depth)", z[critical]);
+        [
+            ("x0", figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| shown(0, j, k))),
+            (
+                "end",
+                figure("y = L1/2 (end)", ["x / C", "z / C"], [x, z], true, &|i, k| {
+                    shown(i, end, k)
+                }),
+            ),
+            (
+                "critical-depth",
+                figure(&depth, ["y / C", "x / C"], [y, x], false, &|j, i| shown(i, j, critical)),
+            ),
+        ]
     }
 }
 
@@ -216,7 +211,7 @@ impl<'a> Quarter<'a> {
 /// They are those of `case` by `method`, with `counts` of a quarter's points.
 ///
 /// # Errors
-/// Those of [`solve_on_grid`], and [`Error::Io`] when a picture cannot be encoded.
+/// Those of [`solve_on_grid`].
 pub fn contents(
     case: &Case,
     method: EdgeModel,
@@ -231,28 +226,13 @@ pub fn contents(
         if body == BodyKind::Block {
             put("pressure.vtr".to_string(), quarter.pressure().to_vtr());
         }
-        for (place, plane) in quarter.planes() {
-            put(format!("field-{name}-{place}.svg"), plane.to_svg().into_bytes());
-            let (pixels, size) = plane.to_pixels();
-            let png = png(&pixels, size).map_err(|source| Error::Io {
-                action: "encode",
-                path: format!("field-{name}-{place}.png").into(),
-                source,
-            })?;
-            put(format!("field-{name}-{place}.png"), png);
+        for (place, figure) in quarter.figures() {
+            let picture = figure.draw();
+            put(format!("field-{name}-{place}.svg"), picture.to_svg().into_bytes());
+            put(format!("field-{name}-{place}.png"), picture.to_png());
         }
     }
     Ok(files)
-}
-
-/// Red, green and blue of each picture element as PNG.
-fn png(pixels: &[u8], (width, height): (u32, u32)) -> std::io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    encoder.write_header()?.write_image_data(pixels)?;
-    Ok(bytes)
 }
 
 #[cfg(test)]

@@ -1,8 +1,7 @@
 //! One file per form of output.
 
 pub mod bench;
-pub mod chart;
-pub mod contour;
+pub mod draw;
 pub mod field;
 pub mod gates;
 pub mod page;

@@ -71,7 +71,7 @@ fn made(files: &StudyFiles) -> Result<Vec<(String, Vec<u8>)>> {
 pub fn html(files: &StudyFiles) -> Result<String> {
     // "<" inside the data would let a name end the script element.
     let data = explorer_data(files).to_string().replace('<', "\\u003c");
-    let time_plot = themed(&plots::named(files, "time-error").unwrap_or_default());
+    let time_plot = plots::named(files, "time-error").unwrap_or_default();
     render("page.html", PAGE, files, context! { data, time_plot, css => STYLE, js => SCRIPT })
 }
 
@@ -151,33 +151,6 @@ fn typeset(text: &str) -> String {
 
 fn as_number(value: &minijinja::Value) -> Option<f64> {
     f64::try_from(value.clone()).ok().filter(|v| v.is_finite())
-}
-
-/// A plot in the colours of the page, which follow the reader's scheme.
-fn themed(svg: &str) -> String {
-    let mut text = svg.to_string();
-    for (colour, name) in [
-        ("#1A1A1A", "ink"),
-        ("#FFFFFF", "paper"),
-        ("#DDDDDD", "faint"),
-        ("#D55E00", "c-half-space"),
-        ("#B06095", "c-mirror"),
-        ("#008C67", "c-guilbault"),
-        ("#0072B2", "c-quarter-space"),
-    ] {
-        text = text.replace(&format!("\"{colour}\""), &format!("\"var(--{name})\""));
-    }
-    // A view box lets the page scale it.
-    let attribute = |name: &str| {
-        let rest = text.split_once(&format!(" {name}=\""))?.1;
-        rest.split_once('"').map(|(v, _)| v.to_string())
-    };
-    match (attribute("width"), attribute("height")) {
-        (Some(w), Some(h)) if !text.contains("viewBox") => {
-            text.replacen("<svg ", &format!("<svg viewBox=\"0 0 {w} {h}\" role=\"img\" "), 1)
-        }
-        _ => text,
-    }
 }
 
 /// A cell as a JSON number, or null.
@@ -281,7 +254,6 @@ fn effects(files: &StudyFiles) -> Vec<Value> {
             let plots: Vec<String> = ["half-normal", "pareto", "interactions"]
                 .into_iter()
                 .filter_map(|kind| plots::named(files, &format!("{kind}-{method}")))
-                .map(|svg| themed(&svg))
                 .collect();
             (!words.is_empty()).then(|| json!({ "method": method, "words": words, "plots": plots }))
         })

@@ -1,6 +1,6 @@
 //! The plots of a study, from the files of its run.
 
-use super::chart::{Bar, Figure, Note, Panel, Rule, Series, look};
+use super::draw::{Bar, Figure, Look, Marker, Note, Panel, Rule, Series, Shade, look};
 use super::study_files::StudyFiles;
 use super::table::Table;
 use crate::study::effects::responses;
@@ -22,6 +22,10 @@ pub const SYMBOLS: [(&str, &str); 9] = [
 fn symbol(quantity: &str) -> &'static str {
     SYMBOLS.iter().find(|(name, _)| *name == quantity).map_or("", |(_, s)| s)
 }
+
+/// How much of a surface before the roller's end is shown (C): what happens at the end has no room
+/// on the whole of a long roller.
+const LAST: f64 = 5.0;
 
 /// One case's rows of a table, with its scales.
 struct Case<'a> {
@@ -97,7 +101,7 @@ impl<'a> Case<'a> {
                 let band = fem.then(|| self.band(filter, &coordinate, value, points.len()));
                 let beyond = self.beyond(table, &with_source);
                 (!points.is_empty()).then(|| Series {
-                    name: if fem { "FEM".to_string() } else { source.to_string() },
+                    name: if fem { "FEM (band: its own error)" } else { source }.to_string(),
                     look: look(source),
                     points,
                     line: !fem,
@@ -109,11 +113,27 @@ impl<'a> Case<'a> {
             .collect()
     }
 
+    /// Up to this distance from the roller's edge nothing is compared (C).
+    fn excluded(&self) -> f64 {
+        self.files.summary["range"]["stress_c"].as_f64().unwrap_or(0.0)
+    }
+
+    /// The part of an axis that is not compared; the curve meets the edge at its value `edge`.
+    fn shade(&self, edge: f64) -> Option<Shade> {
+        let (from, to) = (edge - self.excluded(), edge + self.excluded());
+        Some(Shade { from, to, name: "not compared: singular edge".to_string() })
+    }
+
+    /// The last `length` of the y axis (C).
+    fn before_the_end(&self, length: f64) -> Option<(f64, f64)> {
+        Some(((self.half_length - length).max(0.0), self.half_length))
+    }
+
     /// Which points of a curve lie where nothing is compared: values are singular there.
     fn beyond(&self, table: &Table, filter: &[(&str, &str)]) -> Vec<bool> {
         let mut filter = filter.to_vec();
         filter.push(("case", self.name));
-        let excluded = self.files.summary["range"]["stress_c"].as_f64().unwrap_or(0.0);
+        let excluded = self.excluded();
         rows(table, &filter)
             .iter()
             .map(|r| {
@@ -145,16 +165,17 @@ impl<'a> Case<'a> {
             series: self.series(table, &[("line", line)], axis, "p_pa"),
             ..Default::default()
         };
-        let end = Panel {
-            x_range: Some(((self.half_length - 2.0).max(0.0), self.half_length)),
-            ..panel("last 2 C before the roller's end", "along-y", "y")
+        let along = |title: &str, length: f64| Panel {
+            shade: self.shade(self.half_length),
+            x_range: self.before_the_end(length),
+            ..panel(title, "along-y", "y")
         };
         Figure {
             title: format!("{}: contact pressure", self.name),
             columns: 3,
             panels: vec![
-                panel("along the contact line, x = 0", "along-y", "y"),
-                end,
+                along("along the contact line, x = 0", f64::INFINITY),
+                along("last 2 C before the roller's end", 2.0),
                 panel("across the contact, y = 0", "along-x", "x"),
             ],
             panel_size: (380, 330),
@@ -174,13 +195,17 @@ impl<'a> Case<'a> {
     }
 
     fn surface(&self, body: &str) -> Figure {
-        let quantities = ["sigma_xx", "sigma_yy", "sigma_zz", "von_mises", "tau_max"].into_iter();
+        let quantities = ["sigma_xx", "sigma_yy", "sigma_zz", "von_mises", "tau_max"];
+        let panel = |quantity: &str| Panel {
+            shade: self.shade(self.half_length),
+            x_range: self.before_the_end(LAST),
+            ..self.stress(symbol(quantity), body, "surface-along-y", "y", quantity)
+        };
+        let part = if self.half_length > LAST { format!(", last {LAST} C") } else { String::new() };
         Figure {
-            title: format!("{}: surface of the {body} along y (x = 0, z = 0)", self.name),
+            title: format!("{}: surface of the {body} along y{part} (x = 0, z = 0)", self.name),
             columns: 3,
-            panels: quantities
-                .map(|q| self.stress(symbol(q), body, "surface-along-y", "y", q))
-                .collect(),
+            panels: quantities.map(panel).into(),
             panel_size: (380, 300),
         }
     }
@@ -192,8 +217,9 @@ impl<'a> Case<'a> {
             ("depth-end", "y = L1/2 (end)"),
         ];
         let panels = quantities.iter().flat_map(|q| {
-            places.iter().map(move |(curve, place)| {
-                self.stress(&format!("{}, {place}", symbol(q)), body, curve, "z", q)
+            places.iter().map(move |(curve, place)| Panel {
+                shade: if *curve == "depth-end" { self.shade(0.0) } else { None },
+                ..self.stress(&format!("{}, {place}", symbol(q)), body, curve, "z", q)
             })
         });
         Figure {
@@ -213,6 +239,7 @@ fn label(response: &str) -> String {
 
 /// Rows of `effects.csv` of one method and response.
 struct EffectRows<'a> {
+    look: Look,
     table: &'a Table,
     rows: Vec<&'a Vec<String>>,
     unit: &'a str,
@@ -223,7 +250,7 @@ impl<'a> EffectRows<'a> {
         let table = &files.effects;
         let rows = rows(table, &[("method", method), ("response", response)]);
         let unit = table.text(rows.first()?, "unit");
-        Some(Self { table, rows, unit })
+        Some(Self { look: look(method), table, rows, unit })
     }
 
     fn number(&self, row: &[String], name: &str) -> f64 {
@@ -254,7 +281,7 @@ impl<'a> EffectRows<'a> {
             title: label(response),
             x_label: "half-normal quantile".to_string(),
             y_label: format!("|effect| ({})", self.unit),
-            series: vec![Series::marks("", look("quarter-space"), points.clone())],
+            series: vec![Series::marks("", self.look, points.clone())],
             notes: notes.collect(),
             rules: self
                 .limits()
@@ -275,6 +302,7 @@ impl<'a> EffectRows<'a> {
             .map(|r| Bar {
                 name: self.table.text(r, "term").replace(" x ", " × "),
                 value: self.number(r, "effect").abs(),
+                colour: self.look.colour,
                 strong: self.table.text(r, "verdict") == "active",
             })
             .collect();
@@ -294,73 +322,71 @@ impl<'a> EffectRows<'a> {
     }
 }
 
-/// Interaction plots of a response: its mean over the runs at each pair of levels of two factors.
+/// Texts in the order of the numbers that they are, each once.
+fn ascending<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut all: Vec<&str> = texts.collect();
+    let number = |text: &str| text.parse::<f64>().unwrap_or(0.0);
+    all.sort_by(|a, b| number(a).total_cmp(&number(b)));
+    all.dedup();
+    all
+}
+
+/// Interaction plots of a response: its mean over the corners at each pair of levels of two factors, all in the
+/// same limits.
 fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> {
-    let names: Vec<&str> = files.summary["factors"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(|f| f["name"].as_str())
-        .collect();
+    let factors = files.summary["factors"].as_array().into_iter().flatten();
+    let names: Vec<&str> = factors.filter_map(|f| f["name"].as_str()).collect();
     let unit = EffectRows::of(files, method, response).map_or("", |e| e.unit);
-    let study = &files.study;
-    let corners = rows(study, &[("source", method), ("role", "corner")]);
-    let mut panels = Vec::new();
-    for (i, a) in names.iter().enumerate() {
-        for b in &names[i + 1..] {
-            // Texts as keys: the levels of one factor are printed alike in every row.
-            let mut means: BTreeMap<(String, String), (f64, usize)> = BTreeMap::new();
-            for row in &corners {
-                let Some(v) = study.number(row, response) else { continue };
-                let key = (study.text(row, b).to_string(), study.text(row, a).to_string());
-                let slot = means.entry(key).or_default();
-                (slot.0, slot.1) = (slot.0 + v, slot.1 + 1);
-            }
-            let sorted = |texts: Vec<&String>| {
-                let mut all: Vec<String> = texts.into_iter().cloned().collect();
-                all.sort_by(|x, y| {
-                    let number = |t: &String| t.parse::<f64>().unwrap_or(0.0);
-                    number(x).total_cmp(&number(y))
-                });
-                all.dedup();
-                all
-            };
-            let (lines, levels) = (
-                sorted(means.keys().map(|k| &k.0).collect()),
-                sorted(means.keys().map(|k| &k.1).collect()),
-            );
-            let looks = [look("guilbault"), look("quarter-space")];
-            let series: Vec<Series> = lines
-                .iter()
-                .zip(looks)
-                .map(|(line, look)| {
-                    let means = levels.iter().enumerate().filter_map(|(x, level)| {
-                        let (sum, n) = means.get(&(line.clone(), level.clone()))?;
-                        Some((x as f64, sum / *n as f64))
-                    });
-                    Series::curve("", look, means.collect())
-                })
-                .collect();
-            let notes = series
-                .iter()
-                .zip(&lines)
-                .filter_map(|(s, line)| {
-                    let at = *s.points.last()?;
-                    Some(Note { at, text: format!("{b} = {line}") })
-                })
-                .collect();
-            panels.push(Panel {
-                title: format!("{}: {a} × {b}", label(response)),
-                x_label: a.to_string(),
-                y_label: format!("mean of the runs ({unit})"),
-                series,
-                notes,
-                x_names: levels,
-                ..Default::default()
-            });
-        }
+    let pairs =
+        names.iter().enumerate().flat_map(|(i, a)| names[i + 1..].iter().map(move |b| (a, b)));
+    let mut panels: Vec<Panel> = pairs
+        .map(|(a, b)| Panel {
+            y_label: format!("mean of the corners ({unit})"),
+            ..interaction(&files.study, method, response, [a, b])
+        })
+        .collect();
+    let means = panels.iter().flat_map(|p| &p.series).flat_map(|s| &s.points).map(|p| p.1);
+    let range = Panel::limits_of(means);
+    for panel in &mut panels {
+        panel.y_range = Some(range);
     }
     panels
+}
+
+/// Means of a response over the first factor's levels, a line for each level of the second.
+fn interaction(study: &Table, method: &str, response: &str, [a, b]: [&str; 2]) -> Panel {
+    // Texts as keys: the levels of one factor are printed alike in every row.
+    let mut values: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
+    for row in rows(study, &[("source", method), ("role", "corner")]) {
+        if let Some(value) = study.number(row, response) {
+            let key = (study.text(row, b), study.text(row, a));
+            values.entry(key).or_default().push(value);
+        }
+    }
+    let levels = ascending(values.keys().map(|k| k.1));
+    let Look { colour, .. } = look(method);
+    let looks = [
+        Look { colour, dash: Some((6.0, 4.0)), marker: Marker::Square },
+        Look { colour, dash: None, marker: Marker::Circle },
+    ];
+    let (mut series, mut notes) = (Vec::new(), Vec::new());
+    for (line, look) in ascending(values.keys().map(|k| k.0)).into_iter().zip(looks) {
+        let mean = |(x, level): (usize, &&str)| {
+            let all = values.get(&(line, *level))?;
+            Some((x as f64, all.iter().sum::<f64>() / all.len() as f64))
+        };
+        let means: Vec<(f64, f64)> = levels.iter().enumerate().filter_map(mean).collect();
+        notes.extend(means.last().map(|at| Note { at: *at, text: format!("{b} = {line}") }));
+        series.push(Series::curve("", look, means));
+    }
+    Panel {
+        title: format!("{}: {a} × {b}", label(response)),
+        x_label: a.to_string(),
+        series,
+        notes,
+        x_names: levels.into_iter().map(String::from).collect(),
+        ..Default::default()
+    }
 }
 
 /// Run time against error: each method and FEM in each case.
@@ -435,13 +461,16 @@ fn summary_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
 
 /// All plots of a run: names of the files, and SVG.
 pub fn all(files: &StudyFiles) -> Vec<(String, String)> {
-    figures(files).into_iter().map(|(name, f)| (format!("{name}.svg"), f.to_svg())).collect()
+    figures(files).into_iter().map(|(name, f)| (format!("{name}.svg"), f.draw().to_svg())).collect()
 }
 
 /// One of the plots that sum up the whole study (`time-error`, `half-normal-<method>`,
-/// `pareto-<method>`, `interactions-<method>`) as SVG.
+/// `pareto-<method>`, `interactions-<method>`) as SVG in the colours of a page.
 pub fn named(files: &StudyFiles, name: &str) -> Option<String> {
-    summary_figures(files).into_iter().find(|(n, _)| n == name).map(|(_, f)| f.to_svg())
+    summary_figures(files)
+        .into_iter()
+        .find(|(n, _)| n == name)
+        .map(|(_, f)| f.draw().to_themed_svg())
 }
 
 /// Half-normal, Pareto and interaction plots of each method.
