@@ -2,9 +2,10 @@
 # Shows that the tests notice wrong formulas: changes one line of the kernels or the solver at a time,
 # in a copy of the project, and runs the tests that should fail then.
 #
-#   bash tests/mutate.sh
+#   bash tests/mutate.sh [WORD]
 #
-# The copy stands in target/mutants. Exit code 0 if every mutant was caught, 1 if one survived, 2 if a
+# With a word only the mutants whose line below has it: `gates` for the one that the accuracy gates
+# should notice. The copy stands in target/mutants. Exit code 0 if every mutant was caught, 1 if one survived, 2 if a
 # mutant no longer fits its file or does not build, or the tests fail without any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,8 +15,8 @@ mkdir -p "$copy"
 
 solver="--test numerics -- verification fields"
 
-# File, the line's text, what it becomes, and the tests that should notice. A text must stand in its
-# file exactly once.
+# File, the line's text, what it becomes, the tests that should notice and, where that matters, what
+# they should say. A text must stand in its file exactly once.
 mutants=(
     "src/kernels/boussinesq.rs @@ -1.5 / PI * z @@ -1.4 / PI * z @@ --lib kernels::boussinesq"
     "src/kernels/deflection.rs @@ (log(0) + log(1)) + x * difference @@ (log(0) + log(1)) - x * difference @@ --lib kernels::deflection"
@@ -26,12 +27,14 @@ mutants=(
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0, ..*i }) @@ .map(|i| Image { weight: 1.0, ..*i }) @@ $solver"
     "src/contact/solver.rs @@ let load = 0.5 * PI * length; @@ let load = 0.4 * PI * length; @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
+    "src/kernels/strip.rs @@ [fi + hr, fi - hr, -hi] @@ [fi + hr, fi + hr, -hi] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )
-# Runs tests in the copy, quietly.
+
+# Runs tests in a tree, quietly.
 run() {
-    (cd "$copy/tree" && cargo test --quiet --profile fast "$@") >"$copy/log" 2>&1
+    (cd "$1" && shift && cargo test --quiet --profile fast "$@") >"$copy/log" 2>&1
 }
 
 refuse() {
@@ -48,20 +51,22 @@ git ls-files -z --deduplicate | xargs -0 cp --parents --preserve=timestamps --ta
 declare -A known=()
 survived=0
 for mutant in "${mutants[@]}"; do
+    [[ $mutant == *"${1:-}"* ]] || continue
     file=${mutant%% @@ *} rest=${mutant#* @@ }
     from=${rest%% @@ *} rest=${rest#* @@ }
-    to=${rest%% @@ *} tests=${rest#* @@ }
+    to=${rest%% @@ *} rest=${rest#* @@ }
+    tests=${rest%% @@ *} words=${rest#"$tests"}
     read -ra arguments <<<"$tests"
     if [[ -z ${known[$tests]:-} ]]; then
-        run "${arguments[@]}" || refuse "these tests fail without a mutant: $tests"
+        run "$PWD" "${arguments[@]}" || refuse "these tests fail without a mutant: $tests"
         known[$tests]=1
     fi
     count=$(grep -cF -- "$from" "$file" || true)
     [[ $count == 1 ]] || refuse "$file has $count lines with \"$from\": bring tests/mutate.sh up to date"
     FROM=$from TO=$to perl -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$copy/tree/$file"
     read -ra build <<<"${tests%% -- *}"
-    run "${build[@]}" --no-run || refuse "$file does not build with \"$to\""
-    if run "${arguments[@]}"; then
+    run "$copy/tree" "${build[@]}" --no-run || refuse "$file does not build with \"$to\""
+    if run "$copy/tree" "${arguments[@]}" || ! grep -qE -- "${words# @@ }" "$copy/log"; then
         echo "SURVIVED  $file: $from -> $to"
         survived=1
     else
@@ -69,4 +74,5 @@ for mutant in "${mutants[@]}"; do
     fi
     cp "$file" "$copy/tree/$file"
 done
+((${#known[@]})) || refuse "no mutant has \"${1:-}\""
 exit "$survived"

@@ -10,7 +10,7 @@ use edgeline::study::gate::{self, Baseline, Outcome};
 use edgeline::study::{Models, Range, Setup, Solver, StudyRun, reference, run};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Output;
 
 /// One flush case and one on a longer block, by the two models that have something to lose.
 const STUDY: &str = "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
@@ -153,69 +153,12 @@ fn another_psi_fails_the_command_and_names_its_model() {
     assert_eq!(gate(&["--psi", "-1"]).status.code(), Some(2));
 }
 
-/// Copies a file or folder with all that is in it.
-fn copy(from: &Path, to: &Path) {
-    if from.is_dir() {
-        std::fs::create_dir_all(to).unwrap();
-        for entry in std::fs::read_dir(from).unwrap() {
-            let entry = entry.unwrap();
-            copy(&entry.path(), &to.join(entry.file_name()));
-        }
-    } else {
-        std::fs::copy(from, to).unwrap();
-    }
-}
-
-/// Builds the program with one sign of a kernel changed, and runs its gates on everything built in.
+/// On everything built in. `tests/mutate.sh` runs this with a kernel's sign changed.
 #[test]
-#[ignore = "builds the program a second time, which takes minutes"]
-fn a_changed_sign_in_a_kernel_fails_the_command_of_the_program_built_with_it() {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+fn the_gates_hold() {
     let folder = tempfile::tempdir().unwrap();
-    let at = folder.path();
-    let needed = [
-        "Cargo.toml",
-        "Cargo.lock",
-        "build.rs",
-        "src",
-        "benches",
-        "cases",
-        "fem/edgeline_fem",
-        "results",
-    ];
-    for name in needed {
-        std::fs::create_dir_all(at.join(name).parent().unwrap()).unwrap();
-        copy(&root.join(name), &at.join(name));
-    }
-    // zz of a plane contact; the three are xx, zz and xz.
-    let (right, wrong) = ("[fi + hr, fi - hr, -hi]", "[fi + hr, fi + hr, -hi]");
-    let kernel = at.join("src/kernels/strip.rs");
-    let source = std::fs::read_to_string(&kernel).unwrap();
-    assert_eq!(source.matches(right).count(), 1, "the kernel has changed: change this test too");
-    std::fs::write(&kernel, source.replace(right, wrong)).unwrap();
-    let target = Path::new(env!("CARGO_TARGET_TMPDIR")).join("changed-sign");
-    let build = Command::new(env!("CARGO"))
-        .args(["build", "--quiet", "--offline", "--bin", "edgeline", "--profile", "fast"])
-        .arg("--target-dir")
-        .arg(&target)
-        .current_dir(at)
-        .output()
-        .unwrap();
-    assert!(build.status.success(), "{}", said(&build));
-    let program = target.join("fast/edgeline");
-    let gate = Command::new(program).arg("gate").current_dir(at).output().unwrap();
-    assert_eq!(gate.status.code(), Some(1), "{}", said(&gate));
-    let json: serde_json::Value =
-        serde_json::from_str(&std::fs::read_to_string(at.join("out/gates.json")).unwrap()).unwrap();
-    let gates = json["gates"].as_array().unwrap();
-    let failed: Vec<_> =
-        gates.iter().filter(|g| g["method"] == "quarter-space" && g["passed"] == false).collect();
-    let names = |kind: &str, what: &str| {
-        let mut all = failed.iter().filter(|g| g["kind"] == kind);
-        all.any(|g| g["note"].as_str().unwrap().contains(what))
-    };
-    assert!(names("limit", "depth-") && names("limit", "sigma_zz"), "{}", said(&gate));
-    assert!(names("drift", "quarter-space"), "{}", said(&gate));
+    let done = gate(folder.path(), &[]);
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
 }
 
 #[test]
