@@ -26,27 +26,27 @@ impl BodyKind {
     }
 }
 
-/// Something that each of the two bodies has.
+/// A pair of values, one for each body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PerBody<T> {
-    /// The block's.
+    /// The block's value.
     pub block: T,
-    /// The roller's.
+    /// The roller's value.
     pub roller: T,
 }
 
 impl<T> PerBody<T> {
-    /// The one of the block, then that of the roller.
+    /// The block's value, then the roller's.
     pub fn iter(&self) -> impl Iterator<Item = &T> {
         [&self.block, &self.roller].into_iter()
     }
 
-    /// As [`PerBody::iter`], to be changed.
+    /// As [`PerBody::iter`], with mutable values.
     pub fn iter_mut(&mut self) -> impl Iterator<Item = &mut T> {
         [&mut self.block, &mut self.roller].into_iter()
     }
 
-    /// What `of` makes of either.
+    /// `of` applied to both values.
     pub fn map<U>(&self, of: impl Fn(&T) -> U) -> PerBody<U> {
         PerBody { block: of(&self.block), roller: of(&self.roller) }
     }

@@ -1,6 +1,6 @@
 use std::path::PathBuf;
 
-/// What can go wrong, each with what, where and what to do about it.
+/// The errors of the library. Each says what went wrong, where, and what to do.
 #[derive(Debug, thiserror::Error)]
 pub enum Error {
     /// A value outside its legal range.
@@ -15,7 +15,7 @@ pub enum Error {
         /// What to write instead.
         remedy: String,
     },
-    /// A file that does not parse or holds something that must not be there.
+    /// A file that does not parse or has illegal content.
     #[error("{}{}: {message}; {remedy}", path.display(), line.map(|l| format!(":{l}")).unwrap_or_default())]
     File {
         /// The file.
@@ -30,23 +30,23 @@ pub enum Error {
     /// Reading or writing failed.
     #[error("cannot {action} {}: {source}{}", path.display(), remedy(source))]
     Io {
-        /// What was tried, e.g. `read` or `create`.
+        /// The action that failed, e.g. `read` or `create`.
         action: &'static str,
         /// Where.
         path: PathBuf,
-        /// What the system said.
+        /// The system's error.
         source: std::io::Error,
     },
-    /// A request that would take more memory than there is.
+    /// A request that would take more memory than is free.
     #[error("{what} takes about {} GiB of memory, but only {free_gib:.1} GiB are free; {remedy}", gib(*needed_gib))]
     Memory {
-        /// What was asked for.
+        /// The request.
         what: String,
-        /// Estimate of what it takes (GiB).
+        /// Estimated memory (GiB).
         needed_gib: f64,
-        /// What is free (GiB).
+        /// Free memory (GiB).
         free_gib: f64,
-        /// What to ask for instead.
+        /// What to request instead.
         remedy: String,
     },
     /// The contact solver did not converge.
@@ -56,15 +56,15 @@ pub enum Error {
     NotConverged {
         /// Iterations done.
         iterations: usize,
-        /// What is left, in units of p0.
+        /// The remaining edge residual (p0).
         residual: f64,
         /// What to do.
         remedy: String,
     },
-    /// A solution breaks a law that it has to satisfy.
+    /// A solution that violates a law of contact or elasticity.
     #[error("the solution is not sound: {law} is {value:.1e}, more than {limit:.1e}; {remedy}")]
     Unsound {
-        /// What was measured, with its unit.
+        /// The quantity measured, with its unit.
         law: &'static str,
         /// Its value.
         value: f64,
@@ -73,7 +73,7 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
-    /// A child process failed, hung or wrote nonsense.
+    /// A child process that failed, hung or wrote invalid output.
     #[error("{program}: {message}\n{log_tail}\n{remedy}")]
     Child {
         /// The program and its stage.
@@ -85,13 +85,13 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
-    /// The process was asked to stop while a child ran; the child was ended.
-    #[error("stopped by signal {signal}; run again to go on where it was")]
+    /// The process received a signal to stop while a child ran; the child was ended.
+    #[error("stopped by signal {signal}; run again to continue")]
     Interrupted {
         /// The signal, e.g. 2 for Ctrl-C.
         signal: i32,
     },
-    /// A folder that another run is using.
+    /// A folder that is in use by another run.
     #[error("{} is in use by another run{}; wait for it, or give another folder", path.display(), pid.map(|p| format!(" (process {p})")).unwrap_or_default())]
     Busy {
         /// The folder.
@@ -99,7 +99,7 @@ pub enum Error {
         /// The other run's process, where it is known.
         pid: Option<u32>,
     },
-    /// A tool that is not installed.
+    /// A tool that is missing.
     #[error("{tool} was not found ({searched}); {remedy}")]
     Missing {
         /// The tool.
@@ -111,7 +111,7 @@ pub enum Error {
     },
 }
 
-/// What to do about a failure of the system, where the system's own words leave that open.
+/// The remedy for a system error, where the system's own message gives none.
 fn remedy(source: &std::io::Error) -> &'static str {
     use std::io::ErrorKind;
     match source.kind() {
@@ -120,7 +120,7 @@ fn remedy(source: &std::io::Error) -> &'static str {
         }
         ErrorKind::FileTooLarge => "; allow larger files (ulimit -f), then run again",
         ErrorKind::ReadOnlyFilesystem | ErrorKind::PermissionDenied => {
-            "; give another path, or see to the permissions there"
+            "; give another path, or change the permissions there"
         }
         ErrorKind::NotFound => "; check the path, and that nobody removed it meanwhile",
         ErrorKind::IsADirectory => "; give a file, not a folder",
@@ -128,7 +128,7 @@ fn remedy(source: &std::io::Error) -> &'static str {
     }
 }
 
-/// A size in words: a few digits, however large it is.
+/// A size as text, with a few digits whatever its magnitude.
 fn gib(size: f64) -> String {
     if size < 1e4 { format!("{size:.1}") } else { format!("{size:.1e}") }
 }

@@ -6,11 +6,11 @@ use nalgebra::DMatrix;
 /// Columns that are eliminated together.
 const BLOCK: usize = 32;
 
-/// Solves `matrix` X = `right` for all columns of `right`: Gaussian elimination with partial pivoting,
-/// in blocks, so that nearly all work is a product of matrices. The library's own factorisation goes
-/// column by column and takes four times as long at the 150 to 300 unknowns of a contact.
+/// Solves `matrix` X = `right` for all columns of `right` by Gaussian elimination with partial
+/// pivoting, in blocks, so that nearly all work is matrix products. nalgebra's own factorisation
+/// works column by column and takes four times as long for the 150 to 300 unknowns of a contact.
 ///
-/// None where the matrix is singular or holds no numbers.
+/// Returns `None` if the matrix is singular or contains NaN.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 pub fn solve(mut matrix: DMatrix<f64>, mut right: DMatrix<f64>) -> Option<DMatrix<f64>> {
     let n = matrix.nrows();
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn solutions_satisfy_their_equations() {
         for n in [1, 5, 32, 33, 100] {
-            // A matrix without order, whose first pivot is zero.
+            // An irregular matrix whose first pivot is zero.
             let entry = |i: usize, j: usize| ((i * 37 + j * 101 + i * j) as f64).sin();
             let matrix =
                 DMatrix::from_fn(

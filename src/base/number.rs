@@ -2,8 +2,8 @@
 //!
 //! Files that programs read are written elsewhere: a CSV cell by `report::table::number`.
 
-/// At most `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and from
-/// 1e6 on, where plain digits would be hard to count.
+/// At most `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and
+/// from 1e6 on, where plain digits would be hard to count.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value.abs());

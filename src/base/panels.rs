@@ -2,11 +2,11 @@
 
 use super::quadrature::{gauss_legendre, legendre};
 
-/// An axis cut into panels; every panel carries the same number of Gauss-Legendre nodes.
+/// An axis divided into panels with the same number of Gauss-Legendre nodes each.
 ///
-/// A function on the axis is given by its values at the nodes and is the interpolating polynomial
-/// on each panel, with no continuity asked for between panels: so a pressure may jump at the
-/// roller's end, and a steep end costs small panels there and nowhere else.
+/// A function on the axis is given by its values at the nodes. On each panel it is the
+/// interpolating polynomial, without continuity between panels: a pressure may jump at the roller's
+/// end, and a steep end needs small panels only there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panels {
     breaks: Vec<f64>,
@@ -84,12 +84,12 @@ impl Panels {
         self.breaks[self.breaks.len() - 1]
     }
 
-    /// The panel that holds `x`; the nearest one where `x` lies outside the axis.
+    /// The panel that contains `x`, or the nearest one if `x` lies outside the axis.
     pub fn panel_of(&self, x: f64) -> usize {
         self.breaks[1..self.breaks.len() - 1].partition_point(|&b| b <= x)
     }
 
-    /// The interpolation at `x`: the nodes of its panel, each with its weight (an extrapolation where
+    /// The interpolation at `x`: the nodes of its panel, each with its weight (an extrapolation if
     /// `x` lies outside the axis).
     pub fn interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
         let panel = self.panel_of(x);
@@ -131,8 +131,8 @@ impl Panels {
     }
 }
 
-/// Spherical Bessel functions j_0(x) to j_(n-1)(x), x >= 0: the power series for small x, where
-/// the upward recurrence loses digits, else the recurrence.
+/// Spherical Bessel functions j_0(x) to j_(n-1)(x), x >= 0: the power series for small x, where the
+/// upward recurrence loses digits, otherwise the recurrence.
 fn spherical_bessel(n: usize, x: f64) -> Vec<f64> {
     let mut out = vec![0.0; n];
     if x > n as f64 + 1.0 {

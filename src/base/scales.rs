@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
-/// Scales of the Hertz line contact that a case is made dimensionless with
-/// (Johnson, Contact Mechanics, 1985, Eqs. 4.43 to 4.45).
+/// Scales of the Hertz line contact, which make a case dimensionless (Johnson, Contact Mechanics,
+/// 1985, Eqs. 4.43 to 4.45).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct HertzScales {
     /// Contact modulus E* (Pa).

@@ -1,16 +1,16 @@
 use serde::{Deserialize, Serialize};
 use std::ops::{Add, AddAssign, Mul, Sub};
 
-/// A symmetric stress tensor, positive in tension; in whatever unit its owner states.
+/// A symmetric stress tensor, positive in tension, in the unit that its owner states.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct StressTensor {
     /// Normal stress across the contact.
     pub xx: f64,
     /// Normal stress along the contact line.
     pub yy: f64,
-    /// Normal stress along the depth.
+    /// Normal stress in the depth direction.
     pub zz: f64,
-    /// Shear stress in planes of constant depth.
+    /// Shear stress in planes of constant depth z.
     pub xy: f64,
     /// Shear stress in planes across the contact line.
     pub xz: f64,

@@ -3,28 +3,28 @@
 use super::Panels;
 use std::ops::Range;
 
-/// Coarse nodes whose values interpolate to a fine node, a panel's own and its neighbours'.
+/// Number of coarse nodes in the interpolation to a fine node, from its panel and its neighbours.
 const WIDTH: usize = 5;
 
-/// Quadrature over the wavenumbers of a product: one factor varies slowly and is costly, and is
-/// computed at the coarse nodes; the other, the transform of the contact pressure, oscillates with
-/// the contact's width, is cheap, and is asked for at the fine nodes.
+/// Quadrature of a product over the wavenumbers. One factor varies slowly and is costly; it is
+/// computed at the coarse nodes. The other, the transform of the contact pressure, oscillates with
+/// the contact's width and is cheap; it is evaluated at the fine nodes.
 ///
-/// Between the coarse nodes the slow factor is a polynomial in ln k: what loads at a distance d do at a
-/// wavenumber k depends on k d, so it varies alike in every decade, for every d.
+/// Between the coarse nodes the slow factor is a polynomial in ln k: the effect of a load at a
+/// distance d depends on k d, so it varies at the same rate in every decade, for every d.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Wavenumbers {
     coarse: Panels,
     fine: Panels,
-    /// Of each fine node: the first coarse node that it is interpolated from, and where in `basis` the
-    /// weights of it and of those that follow are.
+    /// For each fine node: the first coarse node of its interpolation, and the position in `basis`
+    /// of the weights of this node and those that follow.
     shares: Vec<(usize, Range<usize>)>,
     basis: Vec<f64>,
 }
 
 impl Wavenumbers {
-    /// Nodes of `coarse`, whose panels are cut for the fine nodes into equal parts no wider than
-    /// `widest`. A panel that needs no cut has the same nodes on both levels.
+    /// Nodes of `coarse`. For the fine nodes its panels are divided into equal parts no wider than
+    /// `widest`; an undivided panel has the same nodes on both levels.
     pub fn new(coarse: Panels, widest: f64) -> Self {
         let order = coarse.order();
         let mut breaks = vec![coarse.breaks()[0]];
@@ -43,7 +43,7 @@ impl Wavenumbers {
         let mut basis = Vec::with_capacity(width * fine.len());
         for (&k, panel) in fine.nodes().iter().zip(panels) {
             let start = basis.len();
-            // Towards k = 0 there is nothing to lean on, and what is asked for stays finite.
+            // Towards k = 0 there are no further coarse nodes, and the slow factor stays finite.
             let first = if panel == 0 {
                 basis.extend(coarse.polynomials(panel, k));
                 0
@@ -58,7 +58,8 @@ impl Wavenumbers {
         Self { coarse, fine, shares, basis }
     }
 
-    /// The same coarse nodes, with fine ones for an `oscillation` cos(k x) up to that x besides.
+    /// The same coarse nodes, with fine nodes that also resolve an `oscillation` cos(k x) up to
+    /// that x.
     pub fn resolving(&self, oscillation: f64) -> Self {
         let widest = (0..self.fine.panel_count())
             .map(|i| self.fine.panel(i)[1] - self.fine.panel(i)[0])
@@ -68,27 +69,27 @@ impl Wavenumbers {
         Self::new(self.coarse.clone(), widest.min(wanted))
     }
 
-    /// The nodes of what varies slowly.
+    /// The nodes of the slow factor.
     pub fn coarse(&self) -> &Panels {
         &self.coarse
     }
 
-    /// The nodes of what oscillates.
+    /// The nodes of the oscillating factor.
     pub fn fine(&self) -> &Panels {
         &self.fine
     }
 
-    /// What interpolates from the coarse nodes to a fine node: the first coarse node, and a weight
-    /// for it and each of those that follow.
+    /// The interpolation from the coarse nodes to a fine node: the first coarse node, and the
+    /// weights of this node and those that follow.
     pub fn interpolation(&self, fine: usize) -> (usize, &[f64]) {
         let (first, basis) = &self.shares[fine];
         (*first, &self.basis[basis.clone()])
     }
 
-    /// The integrals of the coarse nodes' weights in the interpolation times an oscillating function: `values` holds
-    /// at `columns` places each the function at the fine nodes, one fine node after the other; the result
-    /// the same at the coarse nodes. The integral of the product with a slow factor is the sum over
-    /// the coarse nodes of the factor times these.
+    /// Integrals of the interpolation weights of the coarse nodes times an oscillating function.
+    /// `values` holds the function at `columns` places for each fine node, one fine node after the
+    /// other; the result has the same form for the coarse nodes. The integral of the product with a
+    /// slow factor is the sum over the coarse nodes of the factor times these.
     pub fn moments(&self, values: &[f64], columns: usize) -> Vec<f64> {
         let mut moments = vec![0.0; self.coarse.len() * columns];
         for (node, (from, weight)) in
@@ -104,8 +105,8 @@ impl Wavenumbers {
     }
 }
 
-/// The first of `width` consecutive `places`, which ascend, with as many to either side of `place`; the odd
-/// one is on the side of the nearest.
+/// The first of `width` consecutive ones of the ascending `places`, with equally many on either
+/// side of `place`; an odd one is on the nearer side.
 fn around(places: &[f64], place: f64, width: usize) -> usize {
     let above = places.partition_point(|p| *p <= place);
     let nearer = |&p: &f64| above == 0 || p - place < place - places[above - 1];

@@ -6,20 +6,22 @@ use crate::base::Panels;
 use nalgebra::{DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
 
-/// Wavenumber (1/C) below which a displacement at a depth counts as its difference to the surface's.
+/// Wavenumber (1/C) below which a displacement at a depth is computed as its difference from that
+/// of the surface.
 const LONG: f64 = 0.6;
 
 /// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
-/// the kernel e^(-k depth) the displacement's logarithmic growth with the extent of the bodies
-/// drops out of the difference to the approach.
+/// the kernel e^(-k depth) the logarithmic growth of the displacement with the extent of the bodies
+/// cancels in the difference from the approach.
 ///
-/// So does what the contact's few nodes make of displacements like 1/k and ln k: below a wavenumber
-/// the sum over the same nodes is taken, less the integral of what fades on the way down.
+/// The error of the contact's few nodes for displacements like 1/k and ln k cancels too: below a
+/// wavenumber the sum over the same nodes is taken, less the integral of the part that decays with
+/// depth.
 pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
     let wavenumbers = compliance.wavenumbers;
     let fine = wavenumbers.fine();
     let numbers = fine.nodes();
-    // Interpolated is what the plane, screened part leaves, as in the contact itself.
+    // The remainder beyond the plane, screened part is interpolated, as in the contact itself.
     let rests: Vec<DVector<f64>> = wavenumbers
         .coarse()
         .nodes()
@@ -70,8 +72,8 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
     (long - faded + short) / (PI * PI)
 }
 
-/// Panels that resolve e^(-k `depth`) and the fall of the mean up to the wavenumber `top`, with a break at
-/// `first`.
+/// Panels that resolve e^(-k `depth`) and the decay of the mean up to the wavenumber `top`, with a
+/// break at `first`.
 fn fading_panels(depth: f64, first: f64, top: f64) -> Panels {
     let smallest = (1e-3 / depth).min(first);
     let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;

@@ -1,4 +1,4 @@
-//! What a solved contact has to satisfy, evaluated away from the points where it was solved.
+//! The laws of contact, checked between the collocation points.
 
 use super::gap::Gap;
 use super::operator::{Compliance, LineOperator, Operator};
@@ -6,20 +6,20 @@ use super::solution::ContactSolution;
 use crate::base::{Error, Panels, Result};
 use crate::kernels::strip;
 
-/// Places of the check across the contact, in half-widths of each node: none of them is a
-/// collocation point.
+/// Positions of the check across the contact, in half-widths of each node; none is a collocation
+/// point.
 const PLACES: [f64; 6] = [0.31, 0.73, 0.97, 1.05, 1.3, 2.2];
 
-/// Distance from the line's end (C) within which half-widths that follow their neighbours leave gaps
-/// that say nothing about the rest.
+/// Distance from the line's end (C) within which interpolated half-widths leave gaps that say
+/// nothing about the rest.
 const END: f64 = 0.2;
 
-/// Refuses a solution that breaks a law of contact by more than `tolerance`: the bodies touch where
-/// they press and do not penetrate elsewhere (in units of C^2 / (2 R)), and the pressure does not pull
-/// (p0).
+/// Refuses a solution that violates a law of contact by more than `tolerance`: there is no gap
+/// under pressure and no penetration elsewhere (in units of C^2 / (2 R)), and the pressure is not
+/// tensile (p0).
 ///
 /// # Errors
-/// [`Error::Unsound`] with the law that is broken worst.
+/// [`Error::Unsound`] with the law that is violated most.
 pub(super) fn check(
     operator: &LineOperator,
     gap: &dyn Gap,
@@ -35,7 +35,7 @@ pub(super) fn check(
     let counted = axis.nodes().partition_point(|y| *y <= axis.end() - END).max(1);
     for (t, gaps) in PLACES.iter().zip(gaps_of(operator, gap, solution, &PLACES)) {
         for (gap, coefficients) in gaps[..counted].iter().zip(&solution.coefficients) {
-            // A number that is none must not pass as small.
+            // NaN must not pass as small.
             let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
             broken[0].0 = worse(broken[0].0, -gap);
             if *t < 1.0 && !coefficients.is_empty() {
@@ -56,9 +56,9 @@ pub(super) fn check(
     })
 }
 
-/// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places` from
-/// x = 0 in half-widths of each node: a row of all nodes for each place. Where a node carries no
-/// pressure its half-width is the one that its neighbours led to.
+/// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places`
+/// from x = 0 in half-widths of each node: a row of all nodes for each place. A node without
+/// pressure has the half-width interpolated from its neighbours.
 pub fn gaps(
     compliance: &Compliance,
     axis: &Panels,
@@ -69,7 +69,7 @@ pub fn gaps(
     gaps_of(&LineOperator::new(compliance, axis, 0.0), gap, solution, places)
 }
 
-/// [`gaps`] with the operator at hand.
+/// [`gaps`] for a given operator.
 fn gaps_of(
     operator: &LineOperator,
     gap: &dyn Gap,
@@ -94,7 +94,7 @@ mod tests {
     use nalgebra::DMatrix;
     use std::f64::consts::PI;
 
-    /// Endless bodies: C(k) = 2 pi / k.
+    /// Bodies without ends: C(k) = 2 pi / k.
     fn compliance(numbers: &Wavenumbers, n: usize) -> Vec<DMatrix<f64>> {
         let one = |k: &f64| DMatrix::identity(n, n) * (2.0 * PI / k);
         numbers.coarse().nodes().iter().map(one).collect()

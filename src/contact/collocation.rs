@@ -1,4 +1,4 @@
-//! The linear problem of a contact whose half-widths are held.
+//! The linear problem of a contact with fixed half-widths.
 
 use super::gap::Gap;
 use super::layout::Layout;
@@ -14,7 +14,8 @@ use std::ops::Range;
 const TILE: usize = 4;
 type Tile = [f64; TILE];
 
-/// The linear problem for held half-widths: the unknowns of each node, then the approach.
+/// The linear problem for fixed half-widths. The unknowns are those of each node, then the
+/// approach.
 pub(super) struct Linear<'a> {
     pub operator: &'a LineOperator<'a>,
     pub gap: &'a dyn Gap,
@@ -45,7 +46,7 @@ impl Linear<'_> {
         self.operator.compliance.wavenumbers.fine().len()
     }
 
-    /// Adds what the remainders of the compliance displace.
+    /// Adds the displacements from the remainders of the compliance.
     fn add_waves(&self, matrix: &mut DMatrix<f64>) {
         let (layout, all) = (self.layout, self.wavenumbers());
         let nodes = 0..self.operator.axis.len();
@@ -73,23 +74,24 @@ impl Linear<'_> {
         }
     }
 
-    /// Cosines at the points of node `i`: tile by tile at all wavenumbers, zeros where none is felt.
+    /// Cosines at the points of node `i`, tile by tile at all wavenumbers; zero where a wavenumber
+    /// is negligible.
     fn cosines(&self, i: usize) -> Vec<Tile> {
         let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
         let count =
             (0..self.operator.axis.len()).map(|j| self.operator.count(i, j)).max().unwrap_or(0);
         let mut tiles = vec![[0.0; TILE]; self.layout.unknowns(i).len().div_ceil(TILE) * all];
         for (point, t) in self.layout.points(i).enumerate() {
-            let felt = tiles[point / TILE * all..].iter_mut().zip(&fine.nodes()[..count]);
-            for (tile, k) in felt {
+            let relevant = tiles[point / TILE * all..].iter_mut().zip(&fine.nodes()[..count]);
+            for (tile, k) in relevant {
                 tile[point % TILE] = (k * self.half_widths[i] * t).cos();
             }
         }
         tiles
     }
 
-    /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights: as
-    /// [`Linear::cosines`] has them.
+    /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights, in
+    /// the form of [`Linear::cosines`].
     fn transforms(&self, j: usize) -> Vec<Tile> {
         let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
         let count =
@@ -105,7 +107,7 @@ impl Linear<'_> {
         tiles
     }
 
-    /// Adds the plane, screened part, the approach, the gap and the load's equation.
+    /// Adds the plane, screened part, the approach, the gap and the equation of the load.
     fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
         let (layout, last) = (self.layout, self.layout.size() - 1);
         let most = layout.counts.iter().copied().max().unwrap_or(0);
@@ -145,8 +147,8 @@ impl Linear<'_> {
     }
 }
 
-/// Adds the sums of a tile's modes, whose `columns` have these factors, at its points, whose equations are
-/// `rows`.
+/// Adds the sums of a tile's modes, with these `columns` and factors, to the equations `rows` of
+/// its points.
 fn add_tile(
     matrix: &mut DMatrix<f64>,
     rows: Range<usize>,
@@ -162,8 +164,8 @@ fn add_tile(
     }
 }
 
-/// For each transform of a tile and each of its cosines the sum over wavenumbers of their products with the
-/// `entries`, compiled for the processor's vector units too.
+/// Sums over wavenumbers of transform times cosine times entry, for each transform and each cosine
+/// of a tile; compiled for the processor's vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn sum_waves(entries: &[f64], transforms: &[Tile], cosines: &[Tile]) -> [Tile; TILE] {
     let times = |a: f64, b: f64, c: f64| -> f64 {

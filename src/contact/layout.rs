@@ -1,4 +1,4 @@
-//! Which unknowns the nodes along the line have.
+//! The unknowns of the nodes along the line.
 
 use super::settings::ContactSettings;
 use crate::base::Panels;
@@ -11,26 +11,28 @@ use std::ops::Range;
 const DISTURBED: f64 = 1.0;
 const INNER_MODES: usize = 3;
 
-/// Points across the contact at which a pressure's sign is looked at.
+/// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
-/// Largest ratio of a node's edge slope to a free node's that its singular amplitude follows.
+/// Limit of the ratio of a node's edge slope to that of a free node, with which its singular
+/// amplitude scales.
 const STEEPEST: f64 = 10.0;
 
-/// Which unknowns each node has. Free nodes have all modes and the singular one, whose amplitude
-/// says how their half-width has to move. Next to the end of the line nodes stand closer than the
-/// shortest wave: half-widths of their own would be noise there, so they follow linearly from those
-/// of the free nodes, at least `spacing` apart. A node behind the last free one whose pressure would
-/// pull loses modes, the higher ones first; with none left it carries no pressure.
+/// The unknowns of each node. Free nodes have all modes and the singular one, whose amplitude
+/// determines the change of their half-width. Next to the end of the line the nodes are closer than
+/// the shortest wave, and independent half-widths would be noise. They are interpolated linearly
+/// from those of the free nodes, at least `spacing` apart. A node beyond the last free one whose
+/// pressure would be tensile loses modes, the higher ones first; with none left it carries no
+/// pressure.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     /// The free nodes, ascending.
     pub free: Vec<usize>,
-    /// The half-width of each node in those of the free ones: positions in `free`, and shares.
+    /// The half-width of each node from those of the free nodes: positions in `free`, and shares.
     pub shares: Vec<[(usize, f64); 2]>,
     /// Modes of each node.
     pub counts: Vec<usize>,
-    /// The first unknown of each node, and one more for the end.
+    /// The first unknown of each node, and the end.
     starts: Vec<usize>,
 }
 
@@ -85,7 +87,8 @@ impl Layout {
         self.free.binary_search(&j).is_ok()
     }
 
-    /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is free.
+    /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is
+    /// free.
     pub fn unknowns(&self, j: usize) -> Range<usize> {
         self.starts[j]..self.starts[j + 1]
     }
@@ -105,8 +108,9 @@ impl Layout {
         self.starts[self.counts.len()] + 1
     }
 
-    /// The amplitude of node `j`'s singular mode in those of the free nodes: columns and factors.
-    /// Moving the boundary by a part moves amplitudes in proportion to the edge slopes.
+    /// The amplitude of node `j`'s singular mode in terms of those of the free nodes: columns and
+    /// factors. A relative change of the half-width changes the amplitudes in proportion to the
+    /// edge slopes.
     pub fn singular_parts(&self, j: usize, slopes: &[f64]) -> impl Iterator<Item = (usize, f64)> {
         let own = slopes[j];
         self.shares[j]
@@ -119,8 +123,8 @@ impl Layout {
             .filter(|(_, factor)| *factor != 0.0)
     }
 
-    /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode, else
-    /// those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
+    /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode,
+    /// otherwise those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
     pub fn points(&self, j: usize) -> impl Iterator<Item = f64> {
         let count = self.unknowns(j).len();
         let free = self.is_free(j);
@@ -134,15 +138,15 @@ impl Layout {
         })
     }
 
-    /// Takes modes from the nodes that are not free and whose pressure is negative somewhere across the
-    /// contact: the higher ones where the shape is to blame, all where the mean is; whether there was
-    /// one.
+    /// Removes modes from nodes that are not free and whose pressure is tensile somewhere across
+    /// the contact: all of them if the mean is tensile, otherwise the higher ones. Returns whether
+    /// there was such a node.
     pub fn release(&mut self, unknowns: &DVector<f64>) -> bool {
         let mut released = false;
         let last = *self.free.last().expect("at least one");
         for j in last + 1..self.counts.len() {
             let c = &unknowns.as_slice()[self.modes(j)];
-            let pulls = |modes: &[f64]| {
+            let is_tensile = |modes: &[f64]| {
                 (0..=SHAPE_POINTS).any(|i| {
                     // Just inside the edge the sign is that of the slope.
                     let t = 0.999 * f64::from(i) / f64::from(SHAPE_POINTS);
@@ -152,7 +156,7 @@ impl Layout {
             let left = match c.len() {
                 0 => continue,
                 _ if c[0] < 0.0 => 0,
-                _ if !pulls(c) => continue,
+                _ if !is_tensile(c) => continue,
                 1 | 2 => 1,
                 _ => 2,
             };

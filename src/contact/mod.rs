@@ -1,14 +1,17 @@
 //! Load-controlled contact of two bodies.
 //!
-//! Conventions: lengths in units of C, pressures in units of p0. Along y the unknowns live at the
-//! nodes of an axis on [0, S_l]; across the contact the pressure at node j is
-//! p_j(x) = sum_m c_jm sqrt(1 - t^2) U_2m(t), t = x / a_j, with the half-width a_j an unknown too.
-//! The condition inside the contact is u(x, y) + gap(x, y) = D, with
+//! Conventions: lengths in units of C, pressures in units of p0. Along y the unknowns are at the
+//! nodes of an axis on [0, S_l]. Across the contact the pressure at node j is
+//!
+//! p_j(x) = sum_m c_jm sqrt(1 - t^2) U_2m(t), t = x / a_j,
+//!
+//! with the half-width a_j also unknown. Inside the contact u(x, y) + gap(x, y) = D, with
 //!
 //! u_i(x) = (1 / pi^2) int_0^inf cos(k x) sum_j C_ij(k) p_j^(k) dk,
 //!
-//! C the compliance of both bodies together (sum of e_b times each body's f; a half-space's f is
-//! 2 K0(k|y|), whose row sums are 2 pi / k) and p^ the Fourier transform int p cos(k x) dx.
+//! where C is the compliance of both bodies together (the sum of e_b times each body's f; a
+//! half-space's f is 2 K0(k|y|), whose row sums are 2 pi / k) and p^ is the Fourier transform
+//! int p cos(k x) dx.
 
 mod approach;
 mod check;

@@ -1,4 +1,4 @@
-//! The compliance as an operator: what a pressure displaces.
+//! The compliance as an operator, from pressure to displacement.
 
 use super::solution::ContactSolution;
 use crate::base::{Panels, Wavenumbers};
@@ -9,11 +9,12 @@ use std::sync::LazyLock;
 
 /// The elastic response of both bodies together.
 pub trait Operator {
-    /// A contact pressure, in the form that the operator takes.
+    /// The representation of the contact pressure.
     type Pressure;
 
-    /// Surface displacements of both bodies together (C^2 / (2 R)) that `pressure` causes at the nodes
-    /// along the line, a row for each of `places`: distances from x = 0 in half-widths of each node.
+    /// Surface displacements of both bodies together (C^2 / (2 R)) caused by `pressure` at the
+    /// nodes along the line: a row for each of `places`, which are distances from x = 0 in
+    /// half-widths of each node.
     fn displacements(&self, pressure: &Self::Pressure, places: &[f64]) -> Vec<Vec<f64>>;
 }
 
@@ -22,13 +23,13 @@ pub trait Operator {
 pub struct Compliance<'a> {
     /// Wavenumbers > 0 and their quadrature over (0, infinity).
     pub wavenumbers: &'a Wavenumbers,
-    /// C(k) at the coarse wavenumbers: displacement at the axis's nodes per pressure at the nodes; it
-    /// tends to 2 pi / k times the identity for large k.
+    /// C(k) at the coarse wavenumbers: displacement at the axis's nodes per pressure at the nodes;
+    /// it tends to 2 pi / k times the identity for large k.
     pub matrices: &'a [DMatrix<f64>],
 }
 
-/// [`Compliance`] at the nodes of an axis, split for the contact: the plane, screened part in closed form, and
-/// the rest at all fine wavenumbers.
+/// [`Compliance`] at the nodes of an axis, split into the plane, screened part in closed form and
+/// the remainder at all fine wavenumbers.
 pub struct LineOperator<'a> {
     /// The compliance.
     pub compliance: &'a Compliance<'a>,
@@ -37,8 +38,8 @@ pub struct LineOperator<'a> {
     remainders: Remainders,
 }
 
-/// Distance at which the closed logarithmic kernel of the local, plane part is screened, so that
-/// what is left for the quadrature over wavenumbers is finite at k = 0 and fades quickly.
+/// Distance at which the logarithmic kernel of the local, plane part is screened, so that the
+/// remainder for the quadrature over wavenumbers is finite at k = 0 and decays quickly.
 const SCREEN: f64 = 2.0;
 
 /// Points of the Gauss-Chebyshev rule for the screened part, smooth over the contact.
@@ -50,8 +51,8 @@ pub(super) fn plane(k: f64) -> f64 {
 }
 
 impl<'a> LineOperator<'a> {
-    /// The operator on the nodes of `axis`; `negligible` is the displacement that one entry may leave out
-    /// of a sum over [`LineOperator::count`] wavenumbers.
+    /// The operator on the nodes of `axis`; `negligible` is the largest displacement that one entry
+    /// neglects in a sum over [`LineOperator::count`] wavenumbers.
     pub fn new(compliance: &'a Compliance<'a>, axis: &'a Panels, negligible: f64) -> Self {
         Self { compliance, axis, remainders: Remainders::new(compliance, axis.len(), negligible) }
     }
@@ -62,8 +63,8 @@ impl<'a> LineOperator<'a> {
         &self.remainders.entries[at * all..(at + 1) * all]
     }
 
-    /// How many wavenumbers of [`LineOperator::entries`] are not negligible, the first ones: short waves are
-    /// felt at their own node only, and near the line's end.
+    /// Number of leading wavenumbers of [`LineOperator::entries`] that are not negligible: short
+    /// waves act only at their own node and near the line's end.
     pub(super) fn count(&self, i: usize, j: usize) -> usize {
         self.remainders.counts[j * self.axis.len() + i]
     }
@@ -72,7 +73,7 @@ impl<'a> LineOperator<'a> {
 impl Operator for LineOperator<'_> {
     type Pressure = ContactSolution;
 
-    /// All wavenumbers are summed: what the solver neglects is to be checked, too.
+    /// Sums all wavenumbers, because the check includes what the solver neglects.
     fn displacements(&self, pressure: &ContactSolution, places: &[f64]) -> Vec<Vec<f64>> {
         let nodes = self.axis.len();
         let mut rows = vec![vec![0.0; nodes]; places.len()];
@@ -105,16 +106,16 @@ impl Operator for LineOperator<'_> {
 
 /// C(k) at the fine wavenumbers, less its [`plane`] part.
 struct Remainders {
-    /// For each column, each row of it, all wavenumbers.
+    /// All wavenumbers, for each row of each column.
     entries: Vec<f64>,
     wavenumbers: usize,
-    /// For each column and row how many wavenumbers are not negligible.
+    /// Number of wavenumbers that are not negligible, for each row of each column.
     counts: Vec<usize>,
 }
 
 impl Remainders {
-    /// Those that are interpolated from the coarse wavenumbers; `negligible` is the displacement that one
-    /// entry may leave out.
+    /// Interpolates the remainders from the coarse wavenumbers; `negligible` is the largest
+    /// displacement that one entry neglects.
     fn new(compliance: &Compliance, nodes: usize, negligible: f64) -> Self {
         let numbers = compliance.wavenumbers;
         let coarse: Vec<_> = numbers
@@ -126,7 +127,7 @@ impl Remainders {
             .collect();
         let fine = numbers.fine();
         let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
-        // The singular mode's transform, pi J0(k), falls least.
+        // The singular mode's transform, pi J0(k), decays most slowly.
         let limits = fine.nodes().iter().zip(fine.weights());
         let limits: Vec<f64> =
             limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
@@ -158,8 +159,8 @@ static SCREEN_RULE: LazyLock<[ScreenPoint; SCREEN_POINTS]> = LazyLock::new(|| {
     })
 });
 
-/// What screens the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x') dx', by
-/// Gauss-Chebyshev: points of x' / `half_width`, and weights of p sin(f) there.
+/// The screening of the plane part at x = `t` `half_width`, (1 / pi) int ln((x - x')^2 + d^2) p(x')
+/// dx', by Gauss-Chebyshev: points of x' / `half_width`, and weights of p sin(f) there.
 pub(super) fn screened(half_width: f64, t: f64) -> impl Iterator<Item = (ScreenPoint, f64)> {
     SCREEN_RULE.iter().map(move |point| {
         let offset = half_width * (t - point[0]);

@@ -5,14 +5,14 @@
 pub struct ContactSettings {
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// Smallest distance along the line, of each other and from its end, of nodes whose half-width is
-    /// an unknown of its own.
+    /// Smallest distance of nodes with an independent half-width, from each other along the line
+    /// and from its end.
     pub spacing: f64,
-    /// Largest amplitude of the pressure's edge singularity that counts as none (p0).
+    /// Largest negligible amplitude of the pressure's edge singularity (p0).
     pub tolerance: f64,
-    /// Iterations after which it gives up.
+    /// Largest number of iterations.
     pub max_iterations: usize,
-    /// How far a solution may break the laws of contact: penetration and gap under the pressure
-    /// (C^2 / (2 R)), and pull (p0).
+    /// Largest violation of the laws of contact: penetration and gap under the pressure (C^2 / (2
+    /// R)), and tensile pressure (p0).
     pub soundness: f64,
 }

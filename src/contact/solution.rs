@@ -1,4 +1,4 @@
-//! What the contact solve finds.
+//! The solution of the contact.
 
 use crate::kernels::strip;
 use nalgebra::DVector;
@@ -10,14 +10,14 @@ pub struct ContactSolution {
     pub half_widths: Vec<f64>,
     /// Coefficients of the modes at each node.
     pub coefficients: Vec<Vec<f64>>,
-    /// Approach in units of C^2 / (2 R), relative to points at a distance that the smallest
-    /// wavenumber sets: subtract [`super::reference`] for a depth of one's own.
+    /// Approach in units of C^2 / (2 R), relative to points at a distance set by the smallest
+    /// wavenumber; subtract [`super::reference`] for a given depth.
     pub approach: f64,
-    /// Iterations done.
+    /// Number of iterations.
     pub iterations: usize,
     /// [`ContactSettings::spacing`] with which it converged.
     pub spacing: f64,
-    /// Amplitude of the edge singularity that was left (p0).
+    /// Remaining amplitude of the edge singularity (p0).
     pub residual: f64,
     /// |load - prescribed| / prescribed.
     pub load_error: f64,

@@ -1,4 +1,4 @@
-//! The iteration for the contact's boundary.
+//! The Newton iteration for the contact's boundary.
 
 use super::check::check;
 use super::collocation::Linear;
@@ -12,27 +12,27 @@ use crate::kernels::strip;
 use nalgebra::DVector;
 use std::f64::consts::PI;
 
-/// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance of
-/// the singularity.
+/// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance
+/// of the singularity.
 const NEGLIGIBLE: f64 = 0.1;
 
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
-/// Smallest half-width (C) that the iteration tries.
+/// Smallest half-width in the iteration (C).
 const NARROWEST: f64 = 0.05;
 
 /// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
 ///
-/// For half-widths that are held the problem is linear: at every node the modes are found by
-/// collocation, with the approach from the load. Nodes whose half-width is an unknown also have the
-/// amplitude b of the singular mode 1/sqrt(1 - t^2); a boundary that lies right leaves b = 0. To
-/// first order b / sqrt(1 - t^2) is what moving the boundary of S sqrt(1 - t^2) to
-/// a sqrt(1 + 2 b / S) does, so the update is Newton's and converges quadratically.
+/// For fixed half-widths the problem is linear: collocation determines the modes at every node, and
+/// the load determines the approach. Nodes whose half-width is unknown also have the amplitude b of
+/// the singular mode 1/sqrt(1 - t^2); at the correct boundary b = 0. To first order b / sqrt(1 -
+/// t^2) is the effect of moving the boundary of S sqrt(1 - t^2) to a sqrt(1 + 2 b / S), so this
+/// update is Newton's and converges quadratically.
 ///
 /// # Errors
-/// [`Error::NotConverged`] when the boundary does not settle, [`Error::Unsound`] when the solution breaks a
-/// law of contact.
+/// [`Error::NotConverged`] if the boundary does not converge, [`Error::Unsound`] if the solution
+/// violates a law of contact.
 pub fn solve(
     compliance: &Compliance,
     axis: &Panels,
@@ -40,7 +40,8 @@ pub fn solve(
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
     let operator = LineOperator::new(compliance, axis, NEGLIGIBLE * settings.tolerance);
-    // A pressure that is singular at the end (a half-space's) may want fewer unknown half-widths.
+    // A pressure that is singular at the end, as a half-space's, may need fewer unknown
+    // half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
     let checked = |attempt: &ContactSettings| {
@@ -59,7 +60,7 @@ pub fn solve(
     checked(&attempt)
 }
 
-/// [`solve`] with the spacing as it is given.
+/// [`solve`] with the given spacing.
 fn solve_once(
     operator: &LineOperator,
     gap: &dyn Gap,
@@ -89,7 +90,7 @@ fn solve_once(
             .map(|&j| {
                 let singular = unknowns[layout.singular(j)];
                 worst = worst.max(singular.abs());
-                // A step beyond a factor of two would leave the region where the linearisation holds.
+                // Beyond a factor of two the linearisation does not hold.
                 let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
                 half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
             })
@@ -119,8 +120,8 @@ fn solve_once(
     })
 }
 
-/// The solution whose `unknowns` are given, with what the singular modes carry, below the tolerance, handed
-/// to the others so that they carry `load`.
+/// The solution from the `unknowns`. The share of the load in the singular modes, which is below
+/// the tolerance, is redistributed so that the regular modes carry `load`.
 fn carrying(
     load: f64,
     axis: &Panels,

@@ -258,7 +258,7 @@ fn read_only_folders_are_refused_before_anything_is_computed() {
     ] {
         let said = refused(&mut command);
         assert!(said.contains("Read-only file system (os error 30)"), "{said}");
-        assert!(said.contains("give another path, or see to the permissions there"), "{said}");
+        assert!(said.contains("give another path, or change the permissions there"), "{said}");
     }
     assert_eq!(bench.notes(), [""; 0]);
 }
@@ -553,7 +553,7 @@ fn a_study_that_is_asked_to_stop_stops() {
     let done = study.wait_with_output().unwrap();
     let said = String::from_utf8(done.stderr).unwrap();
     assert_eq!(done.status.code(), Some(2), "{said}");
-    assert!(said.contains("stopped by signal 15; run again to go on where it was"), "{said}");
+    assert!(said.contains("stopped by signal 15; run again to continue"), "{said}");
     assert!(!bench.out().join("summary.json").exists());
     bench.assert_no_process_is_left();
 }
