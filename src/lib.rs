@@ -57,9 +57,7 @@ pub mod fem;
 #[cfg(feature = "cli")]
 pub mod study;
 
-// The charts are being drawn anew.
 #[cfg(feature = "cli")]
-#[allow(missing_docs)]
 pub mod report;
 
 #[cfg(feature = "cli")]

@@ -4,12 +4,17 @@
 //! all else that draws.
 
 use super::letters;
-use super::picture::{Colour, INK, Picture, Point, Shape, Style, Text};
+use super::picture::{Anchor, Colour, HALF_HEIGHT, INK, Picture, Point, Shape, Style, Text};
 use ab_glyph_rasterizer::{Rasterizer, point};
 
-/// The picture as PNG, three bytes a pixel.
-pub fn encode(picture: &Picture) -> Vec<u8> {
-    let pixels = Pixels::of(picture);
+impl Picture {
+    /// The picture as PNG, three bytes a pixel.
+    pub fn to_png(&self) -> Vec<u8> {
+        encode(&Pixels::of(self))
+    }
+}
+
+fn encode(pixels: &Pixels) -> Vec<u8> {
     let (width, height) = (pixels.width as u32, pixels.height as u32);
     // Eight bits a channel, red green blue, the only compression, filter and order there are.
     let header: Vec<u8> = [width.to_be_bytes(), height.to_be_bytes()]
@@ -94,7 +99,7 @@ impl Pixels {
     }
 
     fn text(&mut self, text: &Text) {
-        let (x, y) = text.start();
+        let (x, y) = start(text);
         let place = |(a, b): Point| if text.upright { (x + b, y - a) } else { (x + a, y + b) };
         let rings = letters::outline(&text.text, text.size).into_iter();
         let rings: Vec<_> = rings.map(|ring| ring.into_iter().map(place).collect()).collect();
@@ -138,6 +143,18 @@ impl Pixels {
             }
         });
     }
+}
+
+/// Where the base line of a text begins.
+fn start(text: &Text) -> Point {
+    let width = letters::width(&text.text, text.size);
+    let back = match text.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => 0.5 * width,
+        Anchor::End => width,
+    };
+    let ((x, y), down) = (text.at, HALF_HEIGHT * text.size);
+    if text.upright { (x + down, y + back) } else { (x - back, y + down) }
 }
 
 /// A regular polygon, run through as [`outline`] does its pieces.
@@ -204,7 +221,6 @@ fn dashes(line: &[Point], (dash, gap): (f64, f64)) -> Vec<Vec<Point>> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::picture::Anchor;
     use super::*;
 
     const RED: Colour = Colour { name: "", rgb: [200, 0, 0] };
@@ -255,7 +271,7 @@ mod tests {
     #[test]
     fn the_checksum_is_the_specifications() {
         assert_eq!(crc32(b"IEND"), 0xae42_6082);
-        let file = encode(&Picture::new((3.0, 2.0), ""));
+        let file = Picture::new((3.0, 2.0), "").to_png();
         assert_eq!(file[16..29], [0, 0, 0, 3, 0, 0, 0, 2, 8, 2, 0, 0, 0]);
         assert_eq!(file[file.len() - 12..], *b"\0\0\0\0IEND\xae\x42\x60\x82");
     }

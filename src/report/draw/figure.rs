@@ -1,0 +1,155 @@
+//! A figure: panels in a grid with a title and one legend for all.
+
+use super::contour::Map;
+use super::letters;
+use super::panel::{Panel, Series};
+use super::picture::{Anchor, Picture, Point, TEXT, Text};
+use super::plot::{GAP, Plot, draw_marker, room_on_the_left, shade};
+
+/// A figure: a title and panels in a grid, with one legend for all.
+#[derive(Debug, Clone, Default)]
+pub struct Figure {
+    /// Title above all.
+    pub title: String,
+    /// Number of panels beside each other.
+    pub columns: usize,
+    /// The panels, row by row.
+    pub panels: Vec<Panel>,
+    /// Size of a panel (px).
+    pub panel_size: (u32, u32),
+}
+
+const TITLE_HEIGHT: f64 = 34.0;
+/// Where the legend begins, and the height of a row of it.
+const LEGEND_LEFT: f64 = 16.0;
+const LEGEND_TOP: f64 = TITLE_HEIGHT + 10.0;
+const LEGEND_ROW: f64 = 26.0;
+/// Length of a legend's sample, and the room between two entries.
+const SAMPLE: f64 = 34.0;
+const BETWEEN: f64 = 26.0;
+
+impl Figure {
+    /// A figure of one map, with the labels of its axes.
+    pub fn of_map(title: String, [x_label, y_label]: [&str; 2], map: Map) -> Self {
+        let (x_label, y_label) = (x_label.to_string(), y_label.to_string());
+        let panel = Panel { x_label, y_label, map: Some(map), ..Panel::default() };
+        Self { title, columns: 1, panels: vec![panel], panel_size: (820, 430) }
+    }
+
+    /// The figure as shapes.
+    pub fn draw(&self) -> Picture {
+        let columns = self.columns.max(1);
+        let (width, height) = (f64::from(self.panel_size.0), f64::from(self.panel_size.1));
+        let legend = self.legend(width * columns as f64);
+        let top =
+            TITLE_HEIGHT + legend.last().map_or(0.0, |(.., at)| at.1 - LEGEND_TOP + LEGEND_ROW);
+        let rows = self.panels.len().div_ceil(columns);
+        let size = (width * columns as f64, top + height * rows as f64 + 6.0);
+        let mut picture = Picture::new(size, &*self.title);
+        let title = Text::new(&*self.title, (14.0, 18.0), Anchor::Start);
+        picture.text(Text { size: 15.0, bold: true, ..title });
+        for (name, sample, (x, y)) in legend {
+            sample.draw(&mut picture, (x, y));
+            picture.text(Text::new(name, (x + SAMPLE + GAP, y), Anchor::Start));
+        }
+        // The same room on the left for all: axes stand above each other.
+        let left = self.panels.iter().map(|p| room_on_the_left(p, height)).fold(0.0, f64::max);
+        for (i, panel) in self.panels.iter().enumerate() {
+            let place = (width * (i % columns) as f64, top + height * (i / columns) as f64);
+            Plot::of(panel, place, (width, height), left).draw(&mut picture);
+        }
+        picture
+    }
+
+    /// The names in the legend, what they stand for, and where each entry begins; entries that leave
+    /// no place for another one in `width` are followed by a new row.
+    fn legend(&self, width: f64) -> Vec<(&str, Sample<'_>, Point)> {
+        let series = self.panels.iter().flat_map(|p| &p.series);
+        let series = series.map(|s| (s.name.as_str(), Sample::Series(s)));
+        let shades = self.panels.iter().filter_map(|p| p.shade.as_ref());
+        let shades = shades.map(|s| (s.name.as_str(), Sample::Shade));
+        let mut all: Vec<(&str, Sample, Point)> = Vec::new();
+        let (mut x, mut y) = (LEGEND_LEFT, LEGEND_TOP);
+        for (name, sample) in series.chain(shades) {
+            if name.is_empty() || all.iter().any(|(other, ..)| *other == name) {
+                continue;
+            }
+            let entry = SAMPLE + GAP + letters::width(name, TEXT);
+            if x > LEGEND_LEFT && x + entry > width {
+                (x, y) = (LEGEND_LEFT, y + LEGEND_ROW);
+            }
+            all.push((name, sample, (x, y)));
+            x += entry + BETWEEN;
+        }
+        all
+    }
+}
+
+/// What stands before a name of the legend.
+enum Sample<'a> {
+    Series(&'a Series),
+    Shade,
+}
+
+impl Sample<'_> {
+    fn draw(&self, picture: &mut Picture, (x, y): Point) {
+        match self {
+            Sample::Series(series) => {
+                if series.line {
+                    picture.line(vec![(x, y), (x + SAMPLE, y)], series.look.line());
+                }
+                if series.markers {
+                    draw_marker(picture, (x + 0.5 * SAMPLE, y), series.look);
+                }
+            }
+            Sample::Shade => picture.rectangle((x, y - 7.0), (x + SAMPLE, y + 7.0), shade()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::panel::look;
+    use super::*;
+
+    #[test]
+    fn a_legend_goes_on_in_a_new_row_before_it_is_cut() {
+        let series = ["one", "a name of some length", "another name of some length"]
+            .map(|name| Series::curve(name, look("fem"), vec![(0.0, 1.0), (1.0, 2.0)]));
+        let panel = Panel { series: series.to_vec(), ..Default::default() };
+        let figure = Figure { columns: 1, panels: vec![panel], ..Default::default() };
+        let places = |width| figure.legend(width).iter().map(|(.., p)| *p).collect::<Vec<_>>();
+        assert!(places(1000.0).iter().all(|(_, y)| *y == LEGEND_TOP));
+        let [first, second, third] = places(400.0)[..] else { panic!("three names") };
+        assert!(first.1 == second.1 && second.0 > first.0);
+        assert_eq!(third, (LEGEND_LEFT, LEGEND_TOP + LEGEND_ROW));
+    }
+
+    #[test]
+    fn a_map_has_axes_colours_and_its_maximum() {
+        let axis: Vec<f64> = (0..=10).map(|i| 0.2 * f64::from(i)).collect();
+        let values = axis.iter().flat_map(|z| axis.iter().map(move |y| (y - z * z).exp()));
+        let (values, axes) = (values.collect(), [axis.clone(), axis.clone()]);
+        let map = Map { label: "height (m)".into(), axes, down: true, values };
+        let (x_label, y_label) = ("y / C".to_string(), "z / C".to_string());
+        let panel = Panel { map: Some(map), x_label, y_label, ..Default::default() };
+        let figure = Figure {
+            columns: 1,
+            panels: vec![panel],
+            panel_size: (400, 300),
+            ..Default::default()
+        };
+        let svg = figure.draw().to_svg();
+        for word in ["max 7.39", "y / C", "z / C", "height (m)", ">2.0<"] {
+            assert!(svg.contains(word), "{word}");
+        }
+        assert!(!svg.contains("NaN") && svg.len() < 20_000, "{}", svg.len());
+        // Depth points down: the maximum, at z = 0, is marked at the top.
+        let height = |text: &str| {
+            let before = svg.split(text).next().unwrap();
+            let y = before.rsplit(" y=\"").next().unwrap().split('"').next().unwrap();
+            y.parse::<f64>().unwrap()
+        };
+        assert!(height(">max 7.39") < height(">y / C") - 50.0);
+    }
+}
