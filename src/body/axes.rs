@@ -4,26 +4,27 @@ use super::end::End;
 use crate::base::{Panels, Wavenumbers};
 use serde::Serialize;
 
-/// Wavenumber below which nothing varies with the contact's width.
+/// Wavenumber below which the contact's width has no effect.
 const SLOW: f64 = 0.5;
 
 /// Widest panel of wavenumbers along an end face: it resolves depths of some ten C.
 const WIDEST: f64 = 1.0;
 
-/// Wavenumber times half-thickness beyond which the plate is two half-spaces: its remainder has faded.
+/// Wavenumber times half-thickness beyond which the plate acts as two half-spaces: its remainder is
+/// negligible.
 pub(super) const PLATE_FADES: f64 = 8.0;
 
-/// Exponent of the pressure at its end (0.23 for equal materials) from which smaller panels there take the
-/// contact's iteration to the edge of what it manages, on blocks much softer than the roller.
+/// Exponent of the pressure at its end (0.23 for equal materials) from which the contact's
+/// iteration barely converges with smaller panels there, on blocks much softer than the roller.
 const STEEP: f64 = 0.3;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
 
-/// How finely everything is resolved; all lengths are in units of C.
+/// The resolution of a solution; all lengths are in units of C.
 ///
 /// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
-/// every extent, which is how convergence is shown.
+/// every extent, to show convergence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Resolution {
     /// Gauss nodes per panel along y and along the end faces' depth.
@@ -34,8 +35,8 @@ pub struct Resolution {
     pub ratio: f64,
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// Smallest distance along the line of half-widths that are unknowns of their own, and of the last
-    /// one from the end.
+    /// Smallest distance along the line between independent half-widths, and of the last one from
+    /// the end.
     pub spacing: f64,
     /// Largest wavenumber.
     pub k_max: f64,
@@ -48,11 +49,11 @@ pub struct Resolution {
     /// Largest end of the first wavenumber panel.
     pub k_min: f64,
     /// Images of the corrected pressure in the end faces on either side, in lengths of the body;
-    /// beyond them its mean is carried by uniform strips.
+    /// beyond them uniform strips carry its mean.
     pub images: usize,
-    /// How many decay lengths 1/k an end face's axis reaches.
+    /// Length of an end face's axis, in decay lengths 1/k.
     pub face_reach: f64,
-    /// How many decay lengths 1/k away a load is felt.
+    /// Distance beyond which a load is negligible, in decay lengths 1/k.
     pub reach: f64,
 }
 
@@ -124,11 +125,11 @@ impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
     pub const FINEST: f64 = 1e-4;
 
-    /// Tolerance from which on a resolution counts as coarse.
+    /// Smallest tolerance with a coarse resolution.
     pub const COARSE: f64 = 5e-3;
 
-    /// The resolution of a body whose faces do what `end` says, under a pressure that is singular at the
-    /// contact's end with the exponent `corner`, if it is: see [`Resolution::for_tolerance`].
+    /// The resolution of a body with end faces `end`, under a pressure that is singular at the
+    /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
     pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
         if end.image_weight.is_none() {
             Self::for_half_space(tolerance)
@@ -140,8 +141,8 @@ impl Resolution {
     }
 
     /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
-    /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. How far each of them keeps to its
-    /// tolerance is measured by its own refinement.
+    /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. The error of each
+    /// level is measured by its own refinement.
     pub fn for_tolerance(tolerance: f64) -> Self {
         if tolerance >= 1e-2 {
             LEVELS[0]
@@ -154,16 +155,16 @@ impl Resolution {
         }
     }
 
-    /// [`Resolution::for_tolerance`] where the pressure grows without bound at a free end: the coarse levels
-    /// want smaller panels there, to keep to their tolerance from 0.1 C on.
+    /// [`Resolution::for_tolerance`] where the pressure grows without bound at a free end: the
+    /// coarse levels need smaller panels there to be within their tolerance beyond 0.1 C.
     pub fn for_singular_end(tolerance: f64) -> Self {
         let usual = Self::for_tolerance(tolerance);
         let factor = if tolerance >= Self::COARSE { 0.5 } else { 1.0 };
         Self { corner: factor * usual.corner, ..usual }
     }
 
-    /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is steepest, and more nodes to
-    /// a panel, and more wavenumbers, cost little where there are no end faces.
+    /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is the steepest, and
+    /// more nodes per panel and more wavenumbers cost little without end faces.
     pub fn for_half_space(tolerance: f64) -> Self {
         let mut usual = Self::for_tolerance(tolerance);
         usual.k_ratio = usual.k_ratio.min(2.6);
@@ -192,11 +193,12 @@ impl Resolution {
         }
     }
 
-    /// Distances from a corner: 0, `first`, and on by the ratio up to `length` (the last).
+    /// Distances from a corner: 0, `first`, and so on with the growth ratio up to `length`, the
+    /// last.
     fn graded(&self, first: f64, length: f64) -> Vec<f64> {
         let mut s = vec![0.0];
         let mut next = first;
-        // A last panel much shorter than its neighbour would be waste.
+        // Avoids a last panel that is much shorter than its neighbour.
         while next * self.ratio.sqrt() < length {
             s.push(next);
             next *= self.ratio;
@@ -212,19 +214,20 @@ impl Resolution {
     }
 
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
-    /// wants the finest panels, one that is farther away sees fields that vary over its distance.
+    /// needs the finest panels; at a corner farther from the load the fields vary over that
+    /// distance.
     fn end_panel(&self, ledge: f64) -> f64 {
         if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
     }
 
-    /// [`Resolution::contact_axis`] and panels on to a body's end face at `half`, graded towards the
-    /// face.
+    /// [`Resolution::contact_axis`], continued by panels up to a body's end face at `half`, graded
+    /// towards the face.
     pub fn body_axis(&self, half_length: f64, half: f64) -> Panels {
         let mut breaks = self.contact_axis(half_length).breaks().to_vec();
         let ledge = half - half_length;
         if ledge > 0.0 {
-            // What the end face sends to the surface is smooth at the contact's end: only the
-            // face itself asks for grading.
+            // The effect of the end face on the surface is smooth at the contact's end: only the
+            // face itself needs grading.
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
             breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
         }
@@ -236,7 +239,7 @@ impl Resolution {
     pub fn face_axis(&self, ledge: f64, half: f64) -> Panels {
         let deepest = self.face_reach / self.smallest_wavenumber(half);
         let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
-        // Where the load only fades, panels may grow faster.
+        // Panels may grow faster where the load only decays.
         let mut next = FACE_TAIL * self.ratio * self.ratio;
         while next * self.ratio < deepest {
             s.push(next);
@@ -258,21 +261,21 @@ impl Resolution {
                 (1..=count).map(|i| from * (to / from).powf(f64::from(i) / f64::from(count))),
             );
         };
-        // One panel does for bodies that are not much longer than the contact is wide.
+        // One panel suffices for bodies that are not much longer than the contact is wide.
         equal(smallest, SLOW, if SLOW <= 20.0 * smallest { 20.0 } else { 10.0 });
         equal(SLOW, self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }
 
-    /// End of the first panel of wavenumbers: waves longer than the body and than the contact's
-    /// width see little more than the load's total.
+    /// End of the first panel of wavenumbers: waves longer than the body and the contact's width
+    /// depend on little more than the total load.
     fn smallest_wavenumber(&self, half: f64) -> f64 {
         self.k_min.min(1.0 / half)
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
-    /// fades beyond [`PLATE_FADES`] / `half`, and varies over the wavenumber across the contact, hence panels
-    /// that grow from `k_min`.
+    /// is negligible beyond [`PLATE_FADES`] / `half` and varies on the scale of the wavenumber
+    /// across the contact, hence panels that grow from `k_min`.
     pub fn face_wavenumbers(&self, half: f64) -> Panels {
         let top = PLATE_FADES / half;
         let mut breaks = vec![0.0];

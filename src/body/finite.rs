@@ -1,4 +1,4 @@
-//! A body that ends at y = -H and y = +H, as a stack of layers, one per wavenumber across the
+//! A body that ends at y = -H and y = +H, as a set of layers, one per wavenumber across the
 //! contact.
 //!
 //! Symmetry: pressures are even in x and in y, so only y >= 0 is stored; the loads q on the two end
@@ -17,36 +17,37 @@ use nalgebra::{DMatrix, DMatrixView};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// A finite body and everything about it that does not depend on the wavenumber.
+/// A finite body: everything that does not depend on the wavenumber.
 #[derive(Debug, Clone)]
 pub struct Body {
     /// Half-length along y.
     pub half: f64,
     /// Poisson's ratio.
     pub nu: f64,
-    /// What its end faces do.
+    /// The treatment of its end faces.
     pub end: End,
-    /// Axis of the surface pressure P that acts on the half-space: the contact, and for the
-    /// complete model the surface on to the end face.
+    /// Axis of the surface pressure P that acts on the half-space: the contact and, for freed end
+    /// faces, the surface up to the end face.
     pub surface: Sources,
     /// Axis of the depth along an end face.
     pub face: Sources,
     /// Stresses of line loads in this body's material.
     pub kernel: Arc<WaveTable>,
-    /// Images of the surface axis, itself and its mirror in y = 0 included, as they act on the
-    /// displacement.
+    /// Images of the surface axis for the displacement, including itself and its mirror image in y
+    /// = 0.
     images: Vec<Image>,
-    /// The same as they act on the stresses: an image that psi weighs has its full weight here.
+    /// The same for the stresses: an image weighted by psi has its full weight here.
     stress_images: Vec<Image>,
     /// Nodes of `surface` that belong to the contact; they come first.
     contact: usize,
-    /// Uniform strips beyond the images that carry the mean of P: |y| and weight of quadrature points.
+    /// Uniform strips beyond the images, which carry the mean of P: |y| and weight of quadrature
+    /// points.
     strips: Vec<(f64, f64)>,
     face_wavenumbers: Panels,
     resolution: Resolution,
     compliance_stencils: Vec<Stencil>,
     to_face: Vec<(Stencil, WwPlaces)>,
-    /// The strips behind y = 0 as the face's nodes feel them.
+    /// The strips behind y = 0, seen from the face's nodes.
     strips_to_face: Vec<WwPlaces>,
     from_faces: Vec<[(Stencil, WwPlaces); 2]>,
     reach: f64,
@@ -60,12 +61,13 @@ pub struct Body {
 pub struct Layer {
     /// Surface displacement f at the contact nodes per contact pressure at the contact nodes.
     pub compliance: DMatrix<f64>,
-    /// P at the surface nodes per contact pressure (identity-like for models without q).
+    /// P at the surface nodes per contact pressure; none for models without q, where P is the
+    /// contact pressure.
     pub surface: Option<DMatrix<f64>>,
-    /// q at the face nodes per P at the surface nodes; none where the end is not felt.
+    /// q at the face nodes per contact pressure; none if the effect of the end is negligible.
     pub face: Option<DMatrix<f64>>,
-    /// Condition number of the system that `surface` solves, in the column-sum norm over the contact's
-    /// columns; 1 without one, infinite where it could not be solved.
+    /// Condition number of the system solved for `surface`, in the column-sum norm over the
+    /// contact's columns; 1 without a system, infinite if it could not be solved.
     pub condition: f64,
 }
 
@@ -74,14 +76,14 @@ pub struct Layer {
 pub struct Shape {
     /// Half-length of the contact (C).
     pub contact: f64,
-    /// Half-length of the body (C), not less.
+    /// Half-length of the body (C), at least `contact`.
     pub half: f64,
     /// Poisson's ratio.
     pub nu: f64,
 }
 
 impl Body {
-    /// A body of this `shape` whose faces do what `end` says.
+    /// A body of this `shape` with end faces `end`.
     pub fn new(shape: Shape, end: End, resolution: &Resolution) -> Self {
         let Shape { contact: half_length, half, nu } = shape;
         let contact_axis = resolution.contact_axis(half_length);
@@ -155,20 +157,25 @@ impl Body {
         }
         let strip = Panels::new(breaks, self.resolution.order);
         self.strips = strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
-        // Everything is even about the face: what lies behind it doubles what lies before it.
+        // Everything is even about the face: the images behind it double those before it.
         let before: Vec<Image> = self
             .images
             .iter()
             .filter(|i| i.shift <= 0.0)
             .map(|i| Image { weight: 2.0, ..*i })
             .collect();
-        let seen = |from: &Sources, images: &[Image], along: f64, depth: f64| {
+        let with_places = |from: &Sources, images: &[Image], along: f64, depth: f64| {
             let stencil = Stencil::new(from, images, along, depth, 0.0, Peak::Kink);
             let places = WwPlaces::new(stencil.offsets(), depth);
             (stencil, places)
         };
-        self.to_face =
-            self.face.axis.nodes().iter().map(|&z| seen(&self.surface, &before, half, z)).collect();
+        self.to_face = self
+            .face
+            .axis
+            .nodes()
+            .iter()
+            .map(|&z| with_places(&self.surface, &before, half, z))
+            .collect();
         let offsets: Vec<f64> = self.strips.iter().map(|(s, _)| half + s).collect();
         self.strips_to_face =
             self.face.axis.nodes().iter().map(|&z| WwPlaces::new(&offsets, z)).collect();
@@ -178,7 +185,7 @@ impl Body {
             .axis
             .nodes()
             .iter()
-            .map(|&y| [half - y, half + y].map(|d| seen(&self.face, &both, 0.0, d)))
+            .map(|&y| [half - y, half + y].map(|d| with_places(&self.face, &both, 0.0, d)))
             .collect();
         let (face, axis) = (&self.face.axis, &self.face_wavenumbers);
         let order = face.order();
@@ -197,19 +204,19 @@ impl Body {
     /// Stencils from the loads of the faces at +H and -H, both even in z, to the point (`y`, `z`).
     pub fn face_stencils(&self, y: f64, z: f64) -> [Stencil; 2] {
         let image = |sign, weight| Image { sign, shift: 0.0, weight };
-        // In z = 0 both halves of the even load look alike.
+        // At z = 0 both halves of the even load have the same effect.
         let (one, both) = ([image(1.0, 2.0)], [image(1.0, 1.0), image(-1.0, 1.0)]);
         let images: &[Image] = if z == 0.0 { &one } else { &both };
         [self.half - y, self.half + y]
             .map(|depth| self.stress_stencil(&self.face, images, z, depth))
     }
 
-    /// The stencil of the surface's load to the point (`y`, `z`), for stresses.
+    /// Stencil from the load on the surface to the point (`y`, `z`), for stresses.
     pub fn surface_stencil(&self, y: f64, z: f64) -> Stencil {
         self.stress_stencil(&self.surface, &self.stress_images, y, z)
     }
 
-    /// On a loaded surface itself the stresses' kernels vary over 1/k only.
+    /// On a loaded surface itself the stress kernels vary only over lengths of 1/k.
     fn stress_stencil(&self, from: &Sources, images: &[Image], along: f64, depth: f64) -> Stencil {
         Stencil::new(from, images, along, depth, 2.0 / self.resolution.k_max, Peak::Kink)
     }
@@ -219,7 +226,7 @@ impl Body {
         self.contact
     }
 
-    /// Face nodes that a wavenumber reaches.
+    /// Number of face nodes within the reach of a wavenumber.
     pub fn face_len(&self, k: f64) -> usize {
         let deepest = self.resolution.face_reach / k;
         let face = &self.face.axis;
@@ -232,13 +239,13 @@ impl Body {
         k * self.half < PLATE_FADES
     }
 
-    /// Offset beyond which loads of wavenumber `k` are not felt.
+    /// Distance beyond which loads of wavenumber `k` are negligible.
     pub fn reach(&self, k: f64) -> f64 {
         self.reach / k
     }
 
-    /// Calls `act(offset, weight)` for the quadrature points of the uniform strips that (`y`,
-    /// `depth`) feels at wavenumber `k`.
+    /// Calls `act(offset, weight)` for the quadrature points of the uniform strips that reach (`y`,
+    /// `depth`) at wavenumber `k`.
     pub fn for_strips(&self, k: f64, y: f64, depth: f64, mut act: impl FnMut(f64, f64)) {
         let reach = self.reach(k);
         for &(s, w) in &self.strips {
@@ -254,7 +261,7 @@ impl Body {
         }
     }
 
-    /// Most points that [`Body::for_strips`] calls for.
+    /// Largest number of calls by [`Body::for_strips`].
     pub fn most_strips(&self) -> usize {
         2 * self.strips.len()
     }
@@ -277,7 +284,7 @@ impl Body {
         }
         // f = 2 K0.
         let displacement = 2.0 * displacement.finish();
-        // An end face that is too far from the contact for this wavenumber carries nothing.
+        // An end face beyond the reach of this wavenumber carries no load.
         if !self.end.freed || self.ledge > self.reach(k) {
             let compliance = displacement.columns(0, self.contact).into_owned();
             return Layer { compliance, surface: None, face: None, condition: 1.0 };
@@ -302,7 +309,8 @@ impl Body {
         }
     }
 
-    /// Adds what strips of unit pressure do to a row over the surface's nodes: they carry the mean.
+    /// Adds the effect of strips of unit pressure to a row over the surface's nodes; they carry the
+    /// mean.
     fn add_mean(&self, strips: f64, row: &mut [f64]) {
         if strips != 0.0 {
             for (r, w) in row.iter_mut().zip(self.surface.axis.weights()) {
@@ -370,7 +378,7 @@ impl Body {
         matrix
     }
 
-    /// The plate's remainder at its wavenumbers; none where it does not matter.
+    /// The plate's remainder at its wavenumbers; empty if it is negligible.
     pub fn plate_waves(&self, k: f64) -> Vec<plate::Remainder> {
         if !self.plate_matters(k) {
             return Vec::new();
@@ -379,7 +387,7 @@ impl Body {
         self.face_wavenumbers.nodes().iter().map(wave).collect()
     }
 
-    /// What the plate's remainder does at `y` per unit of each entry of [`Body::plate_transform`], in the
+    /// The plate's remainder at `y` per unit of each entry of [`Body::plate_transform`], in the
     /// components of [`plate::Remainder::at`], from its [`Body::plate_waves`].
     pub fn plate_kernel(&self, waves: &[plate::Remainder], y: f64) -> Vec<[f64; 6]> {
         let terms = waves.iter().zip(self.face_wavenumbers.weights());
@@ -391,8 +399,8 @@ impl Body {
         self.face_wavenumbers.nodes().iter().map(|l| (l * z).sin_cos()).collect()
     }
 
-    /// Amplitudes of the plate's remainder, from [`Body::plate_kernel`], [`Body::plate_transform`] and
-    /// [`Body::plate_phases`].
+    /// Amplitudes of the plate's remainder, from [`Body::plate_kernel`], [`Body::plate_transform`]
+    /// and [`Body::plate_phases`].
     pub fn plate_stress(kernel: &[[f64; 6]], transform: &[f64], phases: &[(f64, f64)]) -> [f64; 6] {
         let mut sum = [0.0; 6];
         for ((s, q), (sin, cos)) in kernel.iter().zip(transform).zip(phases) {
@@ -403,8 +411,8 @@ impl Body {
         sum
     }
 
-    /// Cosine transform in z of the face load, at the plate's wavenumbers; empty where the
-    /// plate's remainder does not matter.
+    /// Cosine transform in z of the face load, at the plate's wavenumbers; empty if the plate's
+    /// remainder is negligible.
     pub fn plate_transform(&self, k: f64, q: &[f64]) -> Vec<f64> {
         if !self.plate_matters(k) {
             return Vec::new();
@@ -414,7 +422,7 @@ impl Body {
     }
 }
 
-/// The largest sum of the magnitudes in a column.
+/// The largest column sum of magnitudes.
 fn column_sum(matrix: &DMatrix<f64>) -> f64 {
     matrix.column_iter().map(|c| c.iter().map(|v| v.abs()).sum()).fold(0.0, f64::max)
 }
@@ -433,7 +441,7 @@ impl<'a> Rows<'a> {
         Self { sources, columns, charges: Vec::new(), nodes: Vec::new() }
     }
 
-    /// Appends a row that `fill` writes over the charges and over the nodes, both zero at first.
+    /// Appends a row that `fill` writes over the charges and over the nodes, both initially zero.
     fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
         let (charge, node) = (self.charges.len(), self.nodes.len());
         self.charges.resize(charge + self.sources.charge_count(), 0.0);

@@ -1,4 +1,4 @@
-//! `half-space`: no correction. The body goes on behind its end face, and the face is not seen.
+//! `half-space`: no correction. The body continues beyond its end face, which has no effect.
 
 use super::end::End;
 

@@ -1,5 +1,5 @@
-//! `mirror`: the pressure is mirrored once in both end faces. No shear is left on the faces, and twice
-//! the normal stress.
+//! `mirror`: the pressure is mirrored once in both end faces. The shear stress on the faces
+//! vanishes, and the normal stress doubles.
 
 use super::end::End;
 

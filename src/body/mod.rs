@@ -1,5 +1,5 @@
-//! A finite body's compliance per wavenumber; the four edge models, one file each, differ only in how
-//! they fill it.
+//! A finite body's compliance per wavenumber; the four edge models, one file each, differ only in
+//! their [`End`].
 
 pub mod axes;
 mod corner;

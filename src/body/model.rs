@@ -12,7 +12,7 @@ pub enum EdgeModel {
     Mirror,
     /// Mirrored pressures weighted with Guilbault's factor psi, and a stress correction.
     Guilbault,
-    /// The complete solution: both end faces free of traction.
+    /// Both end faces free of traction.
     QuarterSpace,
 }
 
@@ -31,8 +31,8 @@ impl EdgeModel {
         }
     }
 
-    /// What it does at the end face of a body of Poisson's ratio `nu`; `psi` replaces the weight of an
-    /// image in a model that has a factor for it.
+    /// The treatment of the end faces of a body of Poisson's ratio `nu`; `psi` replaces the image
+    /// weight of a model that has such a factor.
     pub fn end(self, nu: f64, psi: Option<f64>) -> End {
         match self {
             EdgeModel::HalfSpace => half_space::end(),

@@ -1,32 +1,32 @@
-//! From values at an axis's nodes to an integral against a kernel that peaks at a target.
+//! Quadrature of values at an axis's nodes against a kernel that peaks at a target.
 
 use crate::base::{Panels, gauss_legendre};
 use crate::kernels::wave::WAVES;
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DMatrixView, Dyn};
 
-/// A copy of the axis: the point s of the axis acts at `sign` s + `shift`, `weight` times.
+/// A copy of the axis: the point s of the axis acts at `sign` s + `shift` with the factor `weight`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Image {
     /// 1, or -1 for a mirror image.
     pub sign: f64,
-    /// Where the axis's origin goes.
+    /// Position of the axis's origin.
     pub shift: f64,
-    /// How often it acts.
+    /// Factor of its effect.
     pub weight: f64,
 }
 
-/// An axis as sources: its panels, and clusters of neighbouring panels that stand for them where
-/// the target is far.
+/// An axis as sources: its panels, and clusters of neighbouring panels that replace them for a far
+/// target.
 ///
-/// A smooth kernel over a cluster is its interpolant through the cluster's few Gauss nodes, so the
-/// panels act like charges at those nodes: far fine panels cost as little as one coarse panel.
+/// A smooth kernel is interpolated over a cluster through its few Gauss nodes, so the panels act
+/// like charges at those nodes: distant fine panels cost no more than one coarse panel.
 #[derive(Debug, Clone)]
 pub struct Sources {
     /// The axis.
     pub axis: Panels,
     clusters: Vec<Cluster>,
-    /// Places of the charges, `order` a cluster.
+    /// Positions of the charges, `order` per cluster.
     places: Vec<f64>,
     /// Charges per value at the axis's nodes: quadrature weights times the clusters' polynomials.
     charges: DMatrix<f64>,
@@ -50,14 +50,15 @@ struct Cluster {
 /// Gauss's rule to about r^-2n (Trefethen, Approximation Theory and Approximation Practice, 2013,
 /// theorems 8.2 and 19.3).
 ///
-/// A cluster of several panels stands for them from here on, r = 6.5.
+/// A cluster replaces its panels from this distance, r = 6.5.
 const CLUSTER_DISTANCE: f64 = 3.3;
 
-/// A panel's own Gauss nodes serve from here on, r = 3.3.
+/// A panel's own Gauss nodes are used from this distance, r = 3.3.
 const PANEL_DISTANCE: f64 = 1.8;
 
-/// The four Gauss nodes or more of a piece of a panel, r = 2.6. Panels that double have their middle
-/// nodes at a distance of 1.5 from their neighbours, and rounding would decide.
+/// The Gauss nodes of a piece of a panel, at least four, are used from this distance, r = 2.6.
+/// Panels that double have their middle nodes at a distance of exactly 1.5 from their neighbours,
+/// and rounding would decide.
 const PIECE_DISTANCE: f64 = 1.49;
 
 impl Sources {
@@ -104,7 +105,7 @@ impl Sources {
         Self { axis, clusters, places, charges, piece_rule, steep_rule }
     }
 
-    /// Charges of functions whose `values` at the axis's nodes stand in rows; likewise in rows.
+    /// Charges of functions from their `values` at the axis's nodes, one function per row in both.
     pub fn charges(&self, values: &DMatrix<f64>) -> DMatrix<f64> {
         values * self.charges.transpose()
     }
@@ -121,49 +122,49 @@ impl Sources {
 }
 
 /// Quadrature of sum over images of int kernel(target - s', depth) f(s) ds, with f given at the
-/// nodes of an axis. Panels that the target is near are cut into pieces about as long as their
-/// distance from it, with f interpolated: the kernels' peaks (ln r, or a spread of the width of the
-/// depth) are then resolved, wherever the target lies. Panels far away act as clusters.
+/// nodes of an axis. Panels near the target are divided into pieces about as long as their distance
+/// from it, with f interpolated. The kernels' peaks (ln r, or a peak as wide as the depth) are then
+/// resolved for any target. Distant panels act as clusters.
 #[derive(Debug, Clone, Default)]
 pub struct Stencil {
-    /// Offsets target - source: of the charges that are far enough, then of points inside near panels.
+    /// Offsets target - source: of the far charges, then of points inside near panels.
     offsets: Vec<f64>,
     /// The charges: index, weight.
     far: Vec<(u32, f64)>,
     /// The near points: the panel's first node.
     near: Vec<u32>,
-    /// Weights of the near points on their panel's nodes, `order` a point.
+    /// Weights of the near points on their panel's nodes, `order` per point.
     near_weights: Vec<f64>,
     order: usize,
 }
 
-/// What a kernel does at a target on the axis's line itself.
+/// The singularity of a kernel at a target on the axis's line itself.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Peak {
     /// It grows like ln r.
     Logarithm,
-    /// It has a kink at most.
+    /// It has at most a kink.
     Kink,
 }
 
-/// Where a [`Stencil`]'s target is, and what a kernel does there; see [`Stencil::new`].
+/// Position of a [`Stencil`]'s target, and the kernel's singularity there; see [`Stencil::new`].
 struct TargetLine {
     depth: f64,
     shortest: f64,
     peak: Peak,
 }
 
-/// Places that differ by less than this part of a panel are the same.
+/// Positions that differ by less than this fraction of a panel are equal.
 const SAME: f64 = 1e-9;
 
-/// Power t^n of the map that puts Gauss nodes towards a logarithm, and the nodes besides the panel's
-/// order: t^(n-1) ln t is integrated to 1e-5 or better.
+/// Power n of the map t^n that concentrates Gauss nodes at a logarithm, and the number of nodes
+/// beyond the panel's order: t^(n-1) ln t is integrated to 1e-5 or better.
 const POWER: i32 = 3;
 const MORE_NODES: usize = 5;
 
 impl Stencil {
-    /// Stencil for a `target` coordinate on the axis's line, at `depth` >= 0 from it. On the line itself
-    /// the kernel has a `peak`, and otherwise does not vary over lengths below `shortest`.
+    /// Stencil for a `target` coordinate on the axis's line, at `depth` >= 0 from it. On the line
+    /// itself the kernel has a `peak` and otherwise does not vary over lengths below `shortest`.
     pub fn new(
         sources: &Sources,
         images: &[Image],
@@ -189,8 +190,8 @@ impl Stencil {
         stencil
     }
 
-    /// Adds the clusters of panels that are far enough from the target to act like charges; returns the
-    /// others: image, the target seen from the axis's own coordinate, and panel.
+    /// Adds the clusters of panels that are far enough from the target to act like charges. Returns
+    /// the other panels: image, the target in the axis's own coordinate, and panel.
     fn add_far<'a>(
         &mut self,
         sources: &Sources,
@@ -225,8 +226,8 @@ impl Stencil {
         near
     }
 
-    /// Adds the points of a `panel` that the target is near, at `own` in the axis's coordinate. `pieces` is for
-    /// scratch.
+    /// Adds the points of a `panel` near the target, which is at `own` in the axis's coordinate.
+    /// `pieces` is scratch space.
     fn add_near(
         &mut self,
         sources: &Sources,
@@ -244,7 +245,7 @@ impl Stencil {
             let weight = image.weight * weight;
             self.near_weights.extend(axis.polynomials(panel, s).map(|b| weight * b));
         };
-        // Cut at the target first, so that pieces end there.
+        // Divided at the target first, so that pieces end there.
         if a < own && own < b {
             pieces.extend([[a, own], [own, b]]);
         } else {
@@ -252,7 +253,7 @@ impl Stencil {
         }
         while let Some([c, d]) = pieces.pop() {
             let length = d - c;
-            // Images of an end of a panel miss it by rounding.
+            // Images of a panel's end differ from it by rounding.
             let touches = |end: f64| (end - own).abs() < SAME * (b - a);
             let steep = line.peak == Peak::Logarithm && (touches(c) || touches(d));
             let flat = steep || line.peak == Peak::Kink;
@@ -275,18 +276,18 @@ impl Stencil {
         }
     }
 
-    /// Offsets target - source of its source points.
+    /// Offsets target - source of the source points.
     pub fn offsets(&self) -> &[f64] {
         &self.offsets
     }
 
-    /// Takes [`Stencil::offsets`] away, which nothing else here needs.
+    /// Moves [`Stencil::offsets`] out; no other method uses them.
     pub fn take_offsets(&mut self) -> Vec<f64> {
         std::mem::take(&mut self.offsets)
     }
 
-    /// Adds the kernel's `values` at the source points times the weights to a row over the charges and
-    /// one over the first nodes.
+    /// Adds the kernel's `values` at the source points times the weights to a row over the charges
+    /// and one over the first nodes.
     pub fn add_row(&self, values: &[f64], charges: &mut [f64], nodes: &mut [f64]) {
         let (far, near) = values.split_at(self.far.len());
         for (value, &(charge, w)) in far.iter().zip(&self.far) {
@@ -303,8 +304,8 @@ impl Stencil {
         }
     }
 
-    /// The loads of the source points into `loads`, of those whose `distances`, of any sign, are below
-    /// `limit`, from functions whose `values` at the axis's nodes and whose `charges` are given.
+    /// Writes to `loads` the loads of the source points whose `distances`, of either sign, are
+    /// below `limit`, from the `values` of functions at the axis's nodes and their `charges`.
     pub fn gather(
         &self,
         values: &[[f32; WAVES]],
@@ -317,7 +318,7 @@ impl Stencil {
     }
 }
 
-/// [`Stencil::gather`], compiled for the processor's vector units too.
+/// [`Stencil::gather`], compiled for the processor's vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn gather(
     stencil: &Stencil,
@@ -382,7 +383,7 @@ mod tests {
                 sources.scatter(charge_row.as_view(), &mut row);
                 let got = row.sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
-                // What stood there before, and what is too far away, stays.
+                // Loads beyond the limit keep their previous values.
                 let mut loads = vec![[9.0; WAVES]; kernel.len()];
                 let mut distances = vec![0.0; kernel.len()];
                 distances[0] = 1.0;

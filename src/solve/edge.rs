@@ -1,17 +1,17 @@
 //! Strength of the contact pressure at the contact's end.
 //!
-//! [`crate::body::corner_exponent`] has the law of the corner.
+//! [`crate::body::corner_exponent`] gives the law of the corner.
 
 use super::scene::SolvedScene;
 use crate::base::BodyKind;
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::Serialize;
 
-/// Distances from the end (C) between which a pressure that grows without bound is fitted: farther
-/// in it is not a power of the distance any more, and nearer to the end it is not resolved.
+/// Range of distances from the end (C) for the fit of an unbounded pressure: farther away it is not
+/// a power of the distance, and nearer it is not resolved.
 pub const SINGULAR_RANGE: [f64; 2] = [0.02, 0.1];
 
-/// The same for a pressure that stays finite.
+/// The range for a finite pressure.
 pub const FINITE_RANGE: [f64; 2] = [0.02, 0.15];
 
 /// Points of a fit, equally spaced in the logarithm of the distance.
@@ -50,8 +50,8 @@ pub enum EdgeStrength {
     },
 }
 
-/// The strength of the end of a solved scene; none where the model has no law of either kind:
-/// images that psi > 1 weighs, in both bodies, let the pressure at flush ends oscillate in ln s.
+/// The strength of the end of a solved scene; none if the model follows neither law: with images
+/// weighted by psi > 1 in both bodies, the pressure at flush ends oscillates in ln s.
 pub fn edge_strength(solved: &SolvedScene) -> Option<EdgeStrength> {
     let scene = &solved.scene;
     let oscillates = |kind| scene.end(kind).image_weight.is_some_and(|psi| psi > 1.0);
@@ -62,7 +62,7 @@ pub fn edge_strength(solved: &SolvedScene) -> Option<EdgeStrength> {
     }
 }
 
-/// Distances of a fit and the pressure at them.
+/// Distances of a fit, and the pressures there.
 fn samples(solved: &SolvedScene, [low, high]: [f64; 2]) -> Vec<(f64, f64)> {
     let half_length = solved.scene.half_length;
     (0..POINTS)
@@ -73,7 +73,7 @@ fn samples(solved: &SolvedScene, [low, high]: [f64; 2]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Least squares of `values` in the functions whose values are the rows of `basis`.
+/// Least-squares fit of `values` by the functions whose values are the rows of `basis`.
 fn least_squares<const N: usize>(basis: &[[f64; N]], values: &[f64]) -> [f64; N] {
     let matrix = DMatrix::from_fn(basis.len(), N, |i, j| basis[i][j]);
     let right = DVector::from_column_slice(values);
@@ -81,7 +81,7 @@ fn least_squares<const N: usize>(basis: &[[f64; N]], values: &[f64]) -> [f64; N]
     std::array::from_fn(|i| solution[i])
 }
 
-/// Fits K s^-m on a range of s (C); `corner_exponent` is only passed on.
+/// Fits K s^-m on a range of s (C); `corner_exponent` is passed through.
 pub fn singular(solved: &SolvedScene, corner_exponent: f64, range_c: [f64; 2]) -> EdgeStrength {
     let samples = samples(solved, range_c);
     let basis: Vec<_> = samples.iter().map(|(s, _)| [1.0, -s.ln()]).collect();

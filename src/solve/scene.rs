@@ -1,4 +1,4 @@
-//! A contact in units of C and p0: what is left of a case when its scales are taken out.
+//! A contact in units of C and p0: a case without its scales.
 
 use crate::base::{Error, Material, PerBody, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
@@ -9,12 +9,12 @@ use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::time::Instant;
 
-/// How many tolerances a solution may break the laws of contact by. Answers over the whole range of
-/// scenes stay within 2 (docs/robustness.md), errors of the solver exceed it by far.
+/// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
+/// scenes stay within 2 (docs/robustness.md); errors of the solver exceed it by far.
 const SOUNDNESS: f64 = 5.0;
 
-/// Condition number of a body's equations up to which rounding does not matter: it costs this many
-/// units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
+/// Largest condition number of a body's equations for which rounding is negligible: it costs this
+/// many units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
 /// (docs/robustness.md).
 const WORST_CONDITION: f64 = 1e7;
 
@@ -77,8 +77,8 @@ impl Scene {
     }
 
     /// What tells whether one solution serves two scenes: all that a scene has, its numbers to
-    /// twelve digits. Numbers that agree to more may still fall on two sides of a rounding, and make
-    /// two keys; that costs a solve and is no error.
+    /// twelve digits. Numbers that agree to more may still fall on two sides of a rounding, and
+    /// make two keys; that costs a solve and is no error.
     pub fn key(&self) -> SceneKey {
         let Self { half_length, bodies, model, psi, tolerance } = self;
         // 0.0 and -0.0 are one number.
@@ -124,7 +124,7 @@ fn rounded(v: f64) -> f64 {
     format!("{v:.12e}").parse().expect("a formatted number")
 }
 
-/// Seconds of each stage.
+/// Run time of each stage (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
 pub struct Seconds {
     /// Axes and compliance.
@@ -133,24 +133,25 @@ pub struct Seconds {
     pub contact: f64,
     /// Stresses.
     pub stress: f64,
-    /// All of it.
+    /// Total.
     pub total: f64,
 }
 
-/// A solved scene, ready to give pressures and stresses anywhere.
+/// A solved scene, which gives pressures and stresses anywhere.
 #[derive(Debug)]
 pub struct SolvedScene {
     /// The scene.
     pub scene: Scene,
-    /// How it was resolved.
+    /// Its resolution.
     pub resolution: Resolution,
     /// Wavenumbers across the contact.
     pub wavenumbers: Wavenumbers,
     /// The contact pressure.
     pub pressure: Pressure,
-    /// What the contact solve said; its approach lacks the reference (see [`SolvedScene::approach`]).
+    /// The solution of the contact; its approach lacks the reference (see
+    /// [`SolvedScene::approach`]).
     pub contact: ContactSolution,
-    /// Seconds of set-up and contact.
+    /// Run times of set-up and contact.
     pub seconds: Seconds,
     /// The largest condition number of the bodies' equations, see [`Layer::condition`].
     pub condition: f64,
@@ -161,11 +162,11 @@ pub struct SolvedScene {
 }
 
 impl SolvedScene {
-    /// Solves a scene at the resolution that its tolerance asks for.
+    /// Solves a scene at the resolution for its tolerance.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
-    /// breaks a law of contact or the equations are ill-conditioned.
+    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
+    /// violates a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
         let end = scene.end(BodyKind::Block);
         let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
@@ -175,8 +176,8 @@ impl SolvedScene {
     /// Solves a scene at a given resolution.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] when the contact does not settle, [`Error::Unsound`] when what comes out
-    /// breaks a law of contact or the equations are ill-conditioned.
+    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
+    /// violates a law of contact or the equations are ill-conditioned.
     pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
         let start = Instant::now();
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
@@ -184,7 +185,7 @@ impl SolvedScene {
         let coarse = wavenumbers.coarse();
         let axis = resolution.contact_axis(scene.half_length);
         let PerBody { block, roller } = scene.bodies;
-        // Bodies that end alike, of the same Poisson's ratio, are one.
+        // Bodies with the same ends and Poisson's ratio share one computation.
         let alike = block.half == roller.half && block.nu == roller.nu;
         let distinct = if alike { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
         let bodies: Vec<(Body, Vec<Layer>)> = distinct
@@ -232,7 +233,7 @@ impl SolvedScene {
         })
     }
 
-    /// The body and its layers; bodies that are alike share them.
+    /// The body and its layers, shared by identical bodies.
     fn body(&self, kind: BodyKind) -> &(Body, Vec<Layer>) {
         let index = match kind {
             BodyKind::Block => 0,
@@ -246,13 +247,13 @@ impl SolvedScene {
         self.bodies.len() == 1
     }
 
-    /// The stress field of a body, without what only the roller's own shape adds.
+    /// The stress field of a body, without the contribution of the roller's round shape.
     pub fn field(&self, kind: BodyKind) -> Field<'_> {
         self.field_with(kind, self.body(kind).0.end.gamma, self.scene.tolerance)
     }
 
-    /// [`SolvedScene::field`] with another transition factor than the edge model's, and what adds less
-    /// than `tolerance` (p0) left out.
+    /// [`SolvedScene::field`] with a transition factor other than the edge model's, and with
+    /// contributions below `tolerance` (p0) neglected.
     pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
         let (body, layers) = self.body(kind);
         let (numbers, moments) = (&self.wavenumbers, &self.moments);
@@ -264,8 +265,8 @@ impl SolvedScene {
         Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances }
     }
 
-    /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of `places`,
-    /// distances from x = 0 in half-widths of each node.
+    /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of
+    /// `places`, which are distances from x = 0 in half-widths of each node.
     pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
         contact::gaps(
             &self.compliance(),
@@ -282,7 +283,8 @@ impl SolvedScene {
     }
 }
 
-/// The largest condition number of the bodies' equations, refused where rounding would matter.
+/// The largest condition number of the bodies' equations, refused if rounding would not be
+/// negligible.
 fn checked_condition(bodies: &[(Body, Vec<Layer>)]) -> Result<f64> {
     let condition = bodies
         .iter()

@@ -1,4 +1,4 @@
-//! The standard curves: the places at which every method and FEM are compared.
+//! The standard curves: the points at which all models and FEM are compared.
 //!
 //! All coordinates here are in units of C; `half_length` is S_l = L1 / (2 C).
 
@@ -35,7 +35,8 @@ const END_DISTANCES: [f64; 22] = [
 /// How far beyond the roller's end curves of a longer block go (units of C).
 const OUTWARD: f64 = 3.0;
 
-/// Lengths that differ by less than this part are the same: they have been to SI units and back.
+/// Lengths within this relative difference are equal: they may have been converted to SI units and
+/// back.
 const SAME: f64 = 1e-9;
 
 /// Distances from the roller's end, ascending, up to `half_length` (which is the last).
@@ -46,7 +47,7 @@ fn end_distances(half_length: f64) -> Vec<f64> {
     'grow: loop {
         for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
             let next = 10.0 * decade * step;
-            // Nothing is below a length that is no number.
+            // No number is below NaN.
             if next < below {
                 s.push(next);
             } else {

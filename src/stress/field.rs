@@ -1,11 +1,11 @@
-//! Stresses of one body from the pressures that act on it.
+//! Stresses of one body from the pressures on it.
 //!
-//! Conventions: lengths in units of C, stresses in units of p0. A stress is
-//! (1/pi) int_0^inf A(k) cos(k x) dk, or sin(k x) for the shears xy and xz, with the amplitude A
-//! the sum over the loads of the kernels of [`crate::kernels::wave`]. What an endless contact of
-//! the local pressure would do is subtracted from A and added in closed form
-//! ([`crate::kernels::strip`]): what is left fades with k, so the pressure's steep edge across the
-//! contact costs no wavenumbers.
+//! Conventions: lengths in units of C, stresses in units of p0. A stress is (1/pi) int_0^inf A(k)
+//! cos(k x) dk, or sin(k x) for the shears xy and xz, with the amplitude A the sum over the loads
+//! of the kernels of [`crate::kernels::wave`]. The stress under an endless contact with the local
+//! pressure is subtracted from A and added in closed form ([`crate::kernels::strip`]). The
+//! remainder decays with k, so the steep edge of the pressure across the contact needs no
+//! additional wavenumbers.
 
 use super::pressure::Pressure;
 use super::round::RoundStress;
@@ -20,17 +20,17 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Arc, Mutex};
 
-/// Kernel evaluations for stresses: those done, and those that a sum of all sources over all
-/// wavenumbers would have taken besides.
+/// Kernel evaluations for stresses: those done, and those saved compared with a sum of all sources
+/// over all wavenumbers.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct Work {
-    /// Evaluations that stresses were summed from.
+    /// Evaluations done.
     pub done: u64,
-    /// Spared: sources farther away than a wave reaches.
+    /// Saved: sources beyond the reach of a wave.
     pub beyond_reach: u64,
-    /// Spared: end faces that a wavenumber does not reach from the contact.
+    /// Saved: end faces beyond the reach of a wavenumber from the contact.
     pub ends: u64,
-    /// Spared: wavenumbers behind those that add nothing any more.
+    /// Saved: wavenumbers after a run of negligible ones.
     pub faded: u64,
 }
 
@@ -45,7 +45,7 @@ impl std::iter::Sum for Work {
     }
 }
 
-/// [`Work`] that several threads add to.
+/// [`Work`] shared by several threads.
 #[derive(Debug, Default)]
 struct Counters {
     done: AtomicU64,
@@ -63,21 +63,22 @@ impl Counters {
     }
 }
 
-/// Depth (C) from which [`Field::down`] interpolates: nearer to the surface a coarse answer has
-/// errors next to the corner that a polynomial would carry away from there.
+/// Depth (C) from which [`Field::down`] interpolates: nearer to the surface a coarse solution has
+/// errors next to the corner that a polynomial would spread.
 const SMOOTH_DEPTH: f64 = 0.14;
 
-/// Distance (C) from the contact's end from which [`Field::along`] interpolates on the surface, where the
-/// pressure's panels are the coarser the farther they are from the end.
+/// Distance (C) from the contact's end from which [`Field::along`] interpolates on the surface,
+/// where the pressure's panels grow with the distance from the end.
 const SMOOTH_DISTANCE: f64 = 1.0;
 
-/// What interpolation along a line may leave out, in tolerances.
+/// Largest error of the interpolation along a line, in tolerances.
 const INTERPOLATION: f64 = 0.02;
 
-/// A wavenumber's share of a stress that is negligible, in tolerances: some twenty of them may be left out.
+/// Negligible contribution of one wavenumber to a stress, in tolerances; some twenty may be
+/// neglected.
 const NEGLIGIBLE: f64 = 0.005;
 
-/// Points nearer to a surface than this (C, or in body half-lengths) lie on it.
+/// Points closer to a surface than this (C, or in body half-lengths) count as on it.
 const ON_SURFACE: f64 = 1e-9;
 
 /// Step of the difference quotient along x (C).
@@ -90,36 +91,38 @@ pub struct Field<'a> {
     pressure: &'a Pressure,
     wavenumbers: &'a Wavenumbers,
     layers: &'a [Layer],
-    /// What acts on the plane x = 0, where every wave is at its crest: the coarse wavenumbers, with the
-    /// quadrature over the fine ones in their loads.
+    /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
+    /// with the quadrature over the fine ones in their loads.
     central: Arc<Waves>,
-    /// What acts elsewhere, the fine wavenumbers, made when it is asked for: with the exponent of two
-    /// of the distance from that plane up to which it serves.
+    /// The loads for other points, at the fine wavenumbers, computed on demand: each with the
+    /// binary exponent of the largest distance from that plane for which it is valid.
     all: Mutex<Vec<(i32, Arc<Waves>)>>,
-    /// Transition factor of the stress correction, if there is one.
+    /// Transition factor of the stress correction, if any.
     gamma: Option<f64>,
     /// Requested accuracy (p0).
     tolerance: f64,
-    /// A wavenumber's share of a stress that is negligible (p0).
+    /// Negligible contribution of one wavenumber to a stress (p0).
     negligible: f64,
     counters: Counters,
-    /// [`Body::plate_kernel`] of the waves of `central`, for the latest y.
+    /// [`Body::plate_kernel`] of the waves of `central`, for the most recent y.
     plates: Mutex<Vec<(f64, Plates)>>,
 }
 
-/// What a plate's remainder does, for each item of a list.
+/// The kernels of a plate's remainder, for each wavenumber.
 type Plates = Arc<Vec<Vec<[f64; 6]>>>;
 
-/// Curves share so many places along y at most that are worth keeping.
+/// Largest number of positions y whose plate kernels are kept for other points.
 const KEPT_PLATES: usize = 128;
 
-/// After so many negligible fine wavenumbers in a row, more than a period of the oscillation that the
-/// contact's width gives the amplitudes, the rest is left out; of the coarse ones, after a panel.
+/// Number of consecutive negligible fine wavenumbers after which the sum ends: more than a period
+/// of the oscillation of the amplitudes with the contact's width. The sum over coarse wavenumbers
+/// ends after a panel.
 const FADED: usize = 8;
 
 impl<'a> Field<'a> {
-    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure`, which has these
-    /// [`Pressure::moments`], with wavenumbers left out that change no stress by more than about a tenth of `tolerance` (p0).
+    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure` with its
+    /// [`Pressure::moments`]. Wavenumbers that change no stress by more than about a tenth of
+    /// `tolerance` (p0) are neglected.
     pub fn new(
         body: &'a Body,
         wavenumbers: &'a Wavenumbers,
@@ -158,7 +161,7 @@ impl<'a> Field<'a> {
         Work { done, beyond_reach, ends, faded }
     }
 
-    /// The plate's kernels in the plane x = 0 at `y`; points below each other share them.
+    /// The plate's kernels in the plane x = 0 at `y`, shared by all points with that y.
     fn plates(&self, y: f64) -> Plates {
         let kept = |plates: &[(f64, Plates)]| {
             plates.iter().find(|(at, _)| *at == y).map(|(_, plates)| plates.clone())
@@ -166,22 +169,22 @@ impl<'a> Field<'a> {
         if let Some(plates) = kept(&self.plates.lock().unwrap_or_else(|e| e.into_inner())) {
             return plates;
         }
-        let made: Plates = Arc::new(
+        let kernels: Plates = Arc::new(
             self.central.plate_waves.iter().map(|w| self.body.plate_kernel(w, y)).collect(),
         );
         let mut plates = self.plates.lock().unwrap_or_else(|e| e.into_inner());
         if plates.len() >= KEPT_PLATES {
             plates.clear();
         }
-        plates.push((y, made.clone()));
-        made
+        plates.push((y, kernels.clone()));
+        kernels
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
     fn all(&self, farthest: f64) -> Arc<Waves> {
         let level = farthest.max(1.0).log2().ceil() as i32;
-        let mut made = self.all.lock().unwrap_or_else(|e| e.into_inner());
-        if let Some((_, waves)) = made.iter().find(|(l, _)| *l == level) {
+        let mut known = self.all.lock().unwrap_or_else(|e| e.into_inner());
+        if let Some((_, waves)) = known.iter().find(|(l, _)| *l == level) {
             return waves.clone();
         }
         let numbers = self.wavenumbers.resolving(2f64.powi(level));
@@ -190,7 +193,7 @@ impl<'a> Field<'a> {
         let weights = Some(numbers.fine().weights());
         let shares = |i: usize| numbers.interpolation(i);
         let waves = Arc::new(Waves::new(self.body, k, weights, transforms, self.layers, shares));
-        made.push((level, waves.clone()));
+        known.push((level, waves.clone()));
         waves
     }
 
@@ -203,23 +206,24 @@ impl<'a> Field<'a> {
         xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
     }
 
-    /// [`Field::at`], with what a round surface adds per C / R.
+    /// [`Field::at`], with the contribution of a round surface per C / R.
     pub fn round_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<RoundStress> {
         rounded(xs, &[z], |all| vec![self.at(y, z, all)]).swap_remove(0)
     }
 
-    /// [`Field::down`], with what a round surface adds per C / R.
+    /// [`Field::down`], with the contribution of a round surface per C / R.
     pub fn round_down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<RoundStress>> {
         rounded(xs, zs, |all| self.down(all, y, zs))
     }
 
-    /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in their
-    /// order. They are what [`Field::at`] gives, with the smooth part interpolated where points lie
-    /// closer than it varies.
+    /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in
+    /// their order. They equal [`Field::at`], with the smooth part interpolated if the points are
+    /// closer together than its length of variation.
     ///
-    /// Under a load at the distance u along the surface the field's poles are at z = +-i u, of which
-    /// those count where the load is not smooth: with the nearest one's u in asinh(z / u), all of them are
-    /// at imaginary parts of +-pi/2. Below such a place this is ln z, and serves in some depth.
+    /// A load at the distance u along the surface gives the field poles at z = +-i u, which matter
+    /// only where the load is not smooth. In the variable asinh(z / u), with the u of the nearest
+    /// such place, all of them have imaginary parts of +-pi/2. Directly below such a place the
+    /// variable is ln z, which is used from some depth.
     pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<StressTensor>> {
         let near =
             xs.iter().fold(f64::INFINITY, |near: f64, &x| near.min(self.smooth_within(x, y)));
@@ -244,9 +248,9 @@ impl<'a> Field<'a> {
         zs.iter().map(|&z| if z >= least { smooth(z) } else { self.at(y, z, xs) }).collect()
     }
 
-    /// Distance along the surface from (`x`, `y`) to where its load is not smooth: the contact's edges and
-    /// ends, and the body's. Zero where stresses are corrected by a [`transition`], which is singular on
-    /// the surface itself.
+    /// Distance along the surface from (`x`, `y`) to the nearest place where the load is not
+    /// smooth: the edges and ends of the contact, and the ends of the body. Zero if a
+    /// [`transition`] corrects the stresses, because it is singular on the surface itself.
     fn smooth_within(&self, x: f64, y: f64) -> f64 {
         if self.gamma.is_some() {
             return 0.0;
@@ -256,21 +260,23 @@ impl<'a> Field<'a> {
         ends[0].min(ends[1]).min((1.0 - x.abs()).abs())
     }
 
-    /// [`Field::along`] in the plane x = 0, with what a round surface adds per C / R.
+    /// [`Field::along`] in the plane x = 0, with the contribution of a round surface per C / R.
     pub fn round_along(&self, z: f64, ys: &[f64]) -> Vec<RoundStress> {
         let flat = self.along(0.0, z, ys);
         flat.into_iter().map(|s| RoundStress::new(0.0, z, s, &StressTensor::default())).collect()
     }
 
-    /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order: what
-    /// [`Field::at`] gives, interpolated where points lie closer than the field varies.
+    /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order. They equal
+    /// [`Field::at`], interpolated if the points are closer together than the field's length of
+    /// variation.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
         let end = self.pressure.axis().end();
         if z > ON_SURFACE {
             return self.along_below(x, z, ys, end);
         }
-        // On the surface the smooth part varies over the distances from the two ends of the contact:
-        // it is even in y, and analytic in ln((end - y) (end + y)) within imaginary parts of pi.
+        // On the surface the smooth part varies over the distances from the two ends of the
+        // contact: it is even in y, and analytic in ln((end - y) (end + y)) within imaginary parts
+        // of pi.
         let place = |y: f64| ((end - y) * (end + y)).ln();
         let inner = ys.iter().filter(|y| **y <= end - SMOOTH_DISTANCE).map(|y| place(*y));
         let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), PI)];
@@ -290,10 +296,10 @@ impl<'a> Field<'a> {
             .collect()
     }
 
-    /// [`Field::along`] below the surface. At a depth below a corner, the contact's at y = `end` or the
-    /// body's, the field's poles are at that distance from the corner, to either side of the line:
-    /// y = end + z sinh t puts the points where it varies, and the poles of the contact's end at
-    /// t = +-i pi/2.
+    /// [`Field::along`] below the surface. At a depth z below a corner, of the contact at y = `end`
+    /// or of the body, the field has poles at the distances +-i z from the corner. With y = end + z
+    /// sinh t the points are dense where the field varies, and the poles of the contact's end are
+    /// at t = +-i pi/2.
     fn along_below(&self, x: f64, z: f64, ys: &[f64], end: f64) -> Vec<StressTensor> {
         let corner = Complex::new((self.body.half - end) / z, 1.0).asinh();
         let place = |y: f64| ((y - end) / z).asinh();
@@ -306,9 +312,9 @@ impl<'a> Field<'a> {
         ys.iter().map(|y| interpolated(&axis, &nodes, place(*y))).collect()
     }
 
-    /// The nodes through which to interpolate to `places`, [`INTERPOLATION`] exactly, with
-    /// functions that have `poles` (places, and distances from the axis) between the outermost two;
-    /// none if they were no fewer than the places.
+    /// The nodes for the interpolation to `places` within [`INTERPOLATION`], of functions that have
+    /// `poles` (position, and distance from the axis) between the outermost two places. None if
+    /// there would be no fewer nodes than places.
     ///
     /// Interpolation through n Gauss nodes errs by about r^-n, with r the parameter of Bernstein's
     /// ellipse through the pole, see [`crate::body::stencil`].
@@ -338,7 +344,7 @@ impl<'a> Field<'a> {
         self.body.half - y.abs() < ON_SURFACE * self.body.half
     }
 
-    /// The stress whose part beyond the endless contact of the local pressure is `remainder`.
+    /// The stress of the endless contact with the local pressure plus `remainder`.
     fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
         for (j, weight) in self.pressure.neighbours(y.abs()).into_iter().flatten() {
@@ -379,7 +385,7 @@ impl<'a> Field<'a> {
             }
             let amplitudes = target.amplitudes(i);
             let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
-            // Only once oscillations across the contact are resolved does a small amplitude last.
+            // A small amplitude stays small only if oscillations across the contact are resolved.
             let small = k > 1.0 && weight * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
@@ -394,46 +400,46 @@ impl<'a> Field<'a> {
     }
 }
 
-/// A place (y, z) and what it feels of all loads.
+/// A point (y, z) and the influence of all loads on it.
 struct Target<'a> {
     body: &'a Body,
     waves: &'a Waves,
     y: f64,
     z: f64,
     surface: Influence,
-    /// The loads on the end faces at +H and -H, if there are any.
+    /// The loads on the end faces at +H and -H, if any.
     faces: Option<[Influence; 2]>,
-    /// The surface's loads as the end face feels them, and the share of its normal stress that the
-    /// stress correction takes away here.
+    /// The influence of the surface's loads on the end face, and the share of its normal stress
+    /// that the stress correction subtracts at the point.
     correction: Option<(Influence, f64)>,
-    /// The contact's nodes whose pressures make up the local one, and their shares.
+    /// The contact's nodes that interpolate the local pressure, and their shares.
     local: Vec<(usize, f64)>,
     plate: Option<PlateAt>,
-    /// What the latest [`WAVES`] wavenumbers do.
-    felt: BlockStress,
+    /// The stresses of the most recent [`WAVES`] wavenumbers.
+    stresses: BlockStress,
     work: Work,
-    /// Scratch.
+    /// Scratch space.
     loads: Vec<[f32; WAVES]>,
 }
 
-/// The plate's remainder at a place: its kernels, where they are kept, and its phases.
+/// The plate's remainder at a point: its kernels, if they are kept, and its phases.
 struct PlateAt {
     kernels: Option<Plates>,
     phases: Vec<(f64, f64)>,
 }
 
-/// What a target feels of some wavenumbers: stresses, and the numbers of loads that they are from.
+/// The stresses of some wavenumbers at a target, each with its number of loads.
 #[derive(Default)]
 struct BlockStress {
     surface: [(WaveStress, usize); WAVES],
-    /// Of the surface's loads, at the end face.
+    /// From the surface's loads, at the end face.
     end: [(WaveStress, usize); WAVES],
-    /// Of the loads on either end face.
+    /// From the loads on either end face.
     faces: [[(WaveStress, usize); WAVES]; 2],
 }
 
 impl<'a> Target<'a> {
-    /// The place (`y` >= 0, `z`) of `field` under the loads of `waves`.
+    /// The point (`y` >= 0, `z`) of `field` under the loads of `waves`.
     fn new(field: &'a Field, waves: &'a Waves, y: f64, z: f64) -> Self {
         let body = field.body;
         let faces = body.end.freed.then(|| {
@@ -458,7 +464,7 @@ impl<'a> Target<'a> {
             correction,
             local: field.pressure.neighbours(y).into_iter().flatten().collect(),
             plate,
-            felt: BlockStress::default(),
+            stresses: BlockStress::default(),
             work: Work::default(),
             loads: Vec::new(),
         }
@@ -476,35 +482,36 @@ impl<'a> Target<'a> {
     }
 
     /// Sums the loads of the [`WAVES`] wavenumbers from number `first` on.
-    fn feel(&mut self, first: usize) {
+    fn sum_block(&mut self, first: usize) {
         let (body, block, loads) = (self.body, &self.waves.blocks[first / WAVES], &mut self.loads);
-        self.felt.surface = self.surface.stresses(body, block, loads);
+        self.stresses.surface = self.surface.stresses(body, block, loads);
         if let Some((end, _)) = &self.correction {
-            self.felt.end = end.stresses(body, block, loads);
+            self.stresses.end = end.stresses(body, block, loads);
         }
         if let Some(faces) = self.faces.as_ref().filter(|_| first < self.waves.ends) {
-            self.felt.faces = faces.each_ref().map(|f| f.stresses(body, block, loads));
+            self.stresses.faces = faces.each_ref().map(|f| f.stresses(body, block, loads));
         }
     }
 
-    /// Amplitudes of the six components at wavenumber number `i`; all that come before have been asked for.
+    /// Amplitudes of the six components at wavenumber number `i`; wavenumbers must be evaluated in
+    /// order.
     fn amplitudes(&mut self, i: usize) -> [f64; 6] {
         let wave = i % WAVES;
         if wave == 0 {
-            self.feel(i);
+            self.sum_block(i);
         }
-        let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = self.felt.surface[wave];
+        let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = self.stresses.surface[wave];
         let mut amplitudes = [xx, ww, dd, xw, xd, wd];
         if let Some((_, share)) = &self.correction {
-            let (on_end, count) = self.felt.end[wave];
+            let (on_end, count) = self.stresses.end[wave];
             amplitudes[1] -= on_end.ww * share;
             done += count;
         }
-        let felt = self.body.end.freed && i < self.waves.ends;
-        if felt {
+        let loaded_ends = self.body.end.freed && i < self.waves.ends;
+        if loaded_ends {
             done += self.add_faces(i, &mut amplitudes);
         }
-        let ends = if felt { 0 } else { self.on_faces() };
+        let ends = if loaded_ends { 0 } else { self.on_faces() };
         self.work.done += done as u64;
         self.work.ends += ends as u64;
         self.work.beyond_reach += (self.loads() - ends - done) as u64;
@@ -512,10 +519,11 @@ impl<'a> Target<'a> {
         amplitudes
     }
 
-    /// Adds what the loads on the end faces and the plate's remainder do; the number of loads that reach here.
+    /// Adds the effect of the loads on the end faces and of the plate's remainder; returns the
+    /// number of loads within reach.
     fn add_faces(&self, i: usize, amplitudes: &mut [f64; 6]) -> usize {
         let mut done = 0;
-        for (face, into) in self.felt.faces.iter().zip([-1.0, 1.0]) {
+        for (face, into) in self.stresses.faces.iter().zip([-1.0, 1.0]) {
             let (s, count) = face[i % WAVES];
             let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
             amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
@@ -535,7 +543,7 @@ impl<'a> Target<'a> {
         done
     }
 
-    /// Takes off what an endless contact of the local pressure does.
+    /// Subtracts the effect of an endless contact with the local pressure.
     fn take_endless_contact(&self, i: usize, amplitudes: &mut [f64; 6]) {
         let (k, z) = (self.waves.k[i], self.z);
         let p: f64 = self.local.iter().map(|(j, w)| w * self.waves.contact[(i, *j)]).sum();
@@ -552,15 +560,15 @@ fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTen
     axis.interpolation(place).map(|(node, weight)| values[node] * weight).sum()
 }
 
-/// For each of `zs` and of `xs` the stress of a body with a round surface, from `flat`, which gives the
-/// flat body's at each of `zs` for a list of x. The slopes along x are difference quotients: the points of
-/// one share all that is summed.
+/// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
+/// gives those of the flat body at each of `zs` for a list of x. The slopes along x are difference
+/// quotients, whose points share all sums.
 fn rounded(
     xs: &[f64],
     zs: &[f64],
     flat: impl Fn(&[f64]) -> Vec<Vec<StressTensor>>,
 ) -> Vec<Vec<RoundStress>> {
-    // Nothing moves along x at x = 0, nor on the surface.
+    // Points at x = 0 and on the surface are not shifted along x.
     let sloped = |x: f64| x != 0.0 && zs.iter().any(|z| *z > 0.0);
     let all: Vec<f64> = xs
         .iter()

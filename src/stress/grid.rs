@@ -1,4 +1,4 @@
-//! Stresses on a rectangular grid of points, for volume plots and for whatever wants a field.
+//! Stresses on a rectangular grid of points, for example for volume plots.
 
 use super::field::Field;
 use crate::base::StressTensor;
@@ -76,9 +76,9 @@ impl GridStress {
     }
 }
 
-/// Coordinates of which those that differ in sign only are the same.
+/// Coordinates grouped by magnitude.
 struct Mirrored {
-    /// The different magnitudes, in the order of their first appearance.
+    /// The distinct magnitudes, in the order of their first appearance.
     distinct: Vec<f64>,
     /// For each coordinate its magnitude's index, and whether it is negative.
     of: Vec<(usize, bool)>,
@@ -88,14 +88,14 @@ struct Mirrored {
 
 impl Mirrored {
     fn new(coordinates: &[f64]) -> Self {
-        let mut seen = std::collections::HashMap::new();
+        let mut indices = std::collections::HashMap::new();
         let (mut distinct, mut first) = (Vec::new(), Vec::new());
         let of = coordinates
             .iter()
             .enumerate()
             .map(|(i, &v)| {
                 let magnitude = v.abs();
-                let index = *seen.entry(magnitude.to_bits()).or_insert_with(|| {
+                let index = *indices.entry(magnitude.to_bits()).or_insert_with(|| {
                     distinct.push(magnitude);
                     first.push(i);
                     distinct.len() - 1
@@ -107,13 +107,13 @@ impl Mirrored {
     }
 }
 
-/// Stresses of `field` on `grid`, in units of p0, of a body whose C / R is `curvature` (none for a flat
-/// one), computed on all threads of the current pool.
+/// Stresses of `field` on `grid`, in units of p0, of a body with C / R = `curvature` (none for a
+/// flat body), computed on all threads of the current pool.
 ///
-/// A line of points along x costs little more than one of its points, since [`Field::at`] shares
+/// A line of points along x costs little more than one of its points, because [`Field::at`] shares
 /// the kernels over x; lines are computed in parallel. The contact is even in x and in y, so points
-/// that are mirror images of others of the grid, to the last bit of their coordinates, are copied. The memory
-/// is that of the result, 48 bytes a point, and one line for each thread.
+/// that are exact mirror images of other points of the grid are copied. The memory is that of the
+/// result, 48 bytes per point, and one line for each thread.
 pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress {
     let (points, nx) = (grid.len(), grid.x.len());
     let mut values = vec![0.0; 6 * points];

@@ -1,4 +1,4 @@
-//! Stresses at points, standard curves, critical points.
+//! Stresses at points, on standard curves and at critical points.
 
 pub mod curves;
 pub mod field;

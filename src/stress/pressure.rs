@@ -1,10 +1,10 @@
-//! The contact pressure as a function of place.
+//! The contact pressure as a function of position.
 
 use crate::base::{Panels, Wavenumbers};
 use crate::kernels::strip;
 use nalgebra::DMatrix;
 
-/// The contact pressure as a function of place.
+/// The contact pressure as a function of position.
 #[derive(Debug, Clone)]
 pub struct Pressure {
     axis: Panels,
@@ -13,8 +13,8 @@ pub struct Pressure {
 }
 
 impl Pressure {
-    /// The pressure whose half-width and coefficients of the modes are given at the nodes of `axis`;
-    /// modes that a node lacks are zero there.
+    /// The pressure from the half-widths and the coefficients of the modes at the nodes of `axis`;
+    /// missing modes of a node are zero.
     pub fn new(axis: Panels, half_widths: Vec<f64>, mut coefficients: Vec<Vec<f64>>) -> Self {
         let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
@@ -59,8 +59,8 @@ impl Pressure {
         })
     }
 
-    /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for each of
-    /// the coarse ones, over the nodes.
+    /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for
+    /// each of the coarse ones, over the nodes.
     pub fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {
         let n = self.axis.len();
         let transforms = self.transforms(wavenumbers.fine().nodes());

@@ -1,34 +1,35 @@
-//! What a body's round shape adds to the stresses of a flat body, to first order in C / R.
+//! The contribution of a body's round shape to the stresses of a flat body, to first order in C /
+//! R.
 //!
-//! A disc loaded normally on its circumference carries, exactly, the radial fields of half-planes
-//! that every element of the load would cause behind its own tangent, and a uniform tension that takes
-//! the normal traction off the circumference (Timoshenko and Goodier, Theory of Elasticity, 1970,
-//! article 41). Near one of two opposite contacts this is, to first order in C / R and in the
-//! frame of the surface above the point, the flat half-plane's field, an even sigma_xx of
-//! w' / (pi R), w' the load per length, and for each load p ds at the distance u along the surface
-//! and the depth z, r^2 = u^2 + z^2,
+//! The stress in a disc loaded normally on its circumference is exactly the sum of the radial
+//! half-plane fields of all elements of the load, each behind its own tangent, and of a uniform
+//! tension that frees the circumference of normal traction (Timoshenko and Goodier, Theory of
+//! Elasticity, 1970, article 41). Near one of two opposite contacts this is, to first order in C /
+//! R and in the frame of the surface above the point, the flat half-plane's field, a uniform
+//! sigma_xx of w' / (pi R), with w' the load per length, and for each load p ds at the distance u
+//! along the surface and the depth z, r^2 = u^2 + z^2,
 //!
 //! - xx: -(p ds / (pi R)) (u^4 / r^4 + 4 u^4 z^2 / r^6),
 //! - zz: (p ds / (pi R)) (u^2 z^2 / r^4 - 4 u^2 z^4 / r^6),
 //! - xz: -(p ds / (pi R)) 4 u^3 z^3 / r^6,
 //!
-//! from the load's tilt u / R and from the surface's fall u^2 / (2 R). So on the surface itself the
-//! even tension is gone, and some C below it is all that is left. These terms are taken alike all
-//! along the line, under the Hertz pressure: near an end the loads of about a C on either side of a
-//! point make them up, and p varies there by what the second order is worth. No stress along y goes
-//! with them; of plane strain that would leave out some 0.1 C / R.
+//! from the load's tilt u / R and from the drop u^2 / (2 R) of the surface. The uniform tension
+//! thus vanishes on the surface itself, and some C below it alone remains. These terms are the same
+//! all along the line, under the Hertz pressure: near an end they depend on the loads within about
+//! C of a point, where the variation of p is an effect of second order. No stress along y belongs
+//! to them; under plane strain this neglects some 0.1 C / R.
 //!
-//! The frame of the surface above the point is turned by x / R, and a point at the vertical depth z
-//! stands x z / R farther out along the surface than x. Both are taken from the whole flat field,
-//! its free ends included.
+//! The frame of the surface above the point is rotated by x / R, and a point at the vertical depth
+//! z lies x z / R farther out along the surface than x. Rotation and shift apply to the whole flat
+//! field, including its free ends.
 
 use crate::base::StressTensor;
 use multiversion::multiversion;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
 
-/// Points of Gauss's rule for the weight sqrt(1 - t^2) across the contact, in groups that are summed side by
-/// side.
+/// Points of Gauss's rule for the weight sqrt(1 - t^2) across the contact, in groups that are
+/// summed together.
 const POINTS: usize = GROUPS * LANES;
 const GROUPS: usize = 5;
 const LANES: usize = 8;
@@ -44,8 +45,8 @@ static RULE: LazyLock<Rule> = LazyLock::new(|| {
     })
 });
 
-/// The even sigma_xx of a disc squeezed across its diameter, w' / (pi R) with the mean line load, per
-/// C / R (p0).
+/// The uniform sigma_xx of a disc compressed across its diameter, w' / (pi R) with the mean line
+/// load, per C / R (p0).
 pub const DIAMETRAL_TENSION: f64 = 0.5;
 
 /// A stress of a body whose surface may be round, in units of p0.
@@ -53,13 +54,13 @@ pub const DIAMETRAL_TENSION: f64 = 0.5;
 pub struct RoundStress {
     /// The flat body's stress.
     pub flat: StressTensor,
-    /// What the round shape adds per C / R.
+    /// The contribution of the round shape per C / R.
     pub round: StressTensor,
 }
 
 impl RoundStress {
     /// The stress at x and the depth `z` below the surface (C), where the flat body has the stress
-    /// `flat`, which grows by `slope` a C along x.
+    /// `flat` with the derivative `slope` along x, per C.
     pub fn new(x: f64, z: f64, flat: StressTensor, slope: &StressTensor) -> Self {
         let [xx, zz, xz] = tilted(&RULE, x, z).map(|sum| sum / PI);
         let turned = StressTensor {
@@ -75,20 +76,20 @@ impl RoundStress {
         round.zz += zz;
         round.xz += xz;
         if z == 0.0 {
-            // The tractions are known there.
+            // The tractions on the surface are known.
             (round.zz, round.xz, round.yz) = (0.0, 0.0, 0.0);
         }
         Self { flat, round }
     }
 
-    /// The stress (p0) where C / R, positive for a convex body, is `curvature`.
+    /// The stress (p0) for C / R = `curvature`, positive for a convex body.
     pub fn at(&self, curvature: f64) -> StressTensor {
         self.flat + self.round * curvature
     }
 }
 
-/// Sums over the rule's loads of what their tilt and the surface's fall add to xx, zz and xz at (`x`, `z`), compiled
-/// for the processor's vector units too.
+/// Sums over the rule's loads of the contributions of their tilt and of the surface's drop to xx,
+/// zz and xz at (`x`, `z`); compiled for the processor's vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn tilted(rule: &Rule, x: f64, z: f64) -> [f64; 3] {
     let mut sums = [[0.0; LANES]; 3];
@@ -96,7 +97,7 @@ fn tilted(rule: &Rule, x: f64, z: f64) -> [f64; 3] {
         for lane in 0..LANES {
             let (u, w) = (x - nodes[lane], weights[lane]);
             let square = u * u + z * z;
-            // A load at the place itself adds nothing.
+            // A load at the point itself contributes nothing.
             let inverse = if square > 0.0 { 1.0 / square } else { 0.0 };
             let (along, down) = (u * u * inverse, z * z * inverse);
             sums[0][lane] -= w * along * along * (1.0 + 4.0 * down);
@@ -159,7 +160,7 @@ mod tests {
             }
             worst
         };
-        // What is left is of second order.
+        // The remainder is of second order.
         let (near, far) = (off(40.0), off(80.0));
         assert!(near < 3e-3 && far < 0.3 * near, "{near} {far}");
     }

@@ -1,4 +1,4 @@
-//! The loads of all wavenumbers on the superposed bodies, and what a target feels of them.
+//! The loads of all wavenumbers on the superposed bodies, and their influence on a target.
 
 use crate::base::Panels;
 use crate::body::stencil::Stencil;
@@ -15,18 +15,18 @@ use std::ops::AddAssign;
 pub(super) struct Waves {
     /// The wavenumbers, ascending.
     pub k: Vec<f64>,
-    /// Factors of what they cause: the quadrature's weights, if the loads lack them, over pi.
+    /// Factors of their stresses: the quadrature's weights, unless the loads include them, over pi.
     pub weights: Vec<f64>,
-    /// For how many wavenumbers, the first ones, the end faces carry anything.
+    /// Number of leading wavenumbers for which the end faces carry loads.
     pub ends: usize,
-    /// What stresses are summed from, [`WAVES`] wavenumbers after [`WAVES`].
+    /// The loads in blocks of [`WAVES`] wavenumbers.
     pub blocks: Vec<Block>,
     /// Contact pressure at the contact's nodes, a row for each wavenumber.
     pub contact: DMatrix<f64>,
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
-    /// Whether they serve the plane x = 0 only, where shears that are odd in x vanish.
+    /// Whether they are valid for the plane x = 0 only, where shears that are odd in x vanish.
     pub central: bool,
 }
 
@@ -42,7 +42,7 @@ pub(super) struct Block {
 /// The loads of a [`Block`] on a surface or on the end faces.
 #[derive(Debug, Clone)]
 struct Loads {
-    /// The wavenumbers; infinite, so felt nowhere, behind the last that carries something.
+    /// The wavenumbers; infinite, and so without effect, beyond the last with a load.
     k: [f64; WAVES],
     /// Loads at the axis's nodes, and their charges.
     values: Vec<[f32; WAVES]>,
@@ -50,8 +50,8 @@ struct Loads {
 }
 
 impl Loads {
-    /// Those of the wavenumbers from number `first` on, of which the first ones, `k`, carry something;
-    /// `values` and `charges` have a row for each of all wavenumbers.
+    /// The loads of the wavenumbers from number `first`; only the wavenumbers `k` have loads.
+    /// `values` and `charges` have a row for each wavenumber.
     fn new(first: usize, k: &[f64], values: &DMatrix<f64>, charges: &DMatrix<f64>) -> Self {
         let rows = |matrix: &DMatrix<f64>| {
             let columns = matrix.column_iter();
@@ -66,15 +66,16 @@ impl Loads {
     }
 }
 
-/// Those of `all` from number `first` on, and zeros behind the last.
+/// The elements of `all` from number `first`, filled with zeros.
 fn block(first: usize, all: &[f64]) -> [f64; WAVES] {
     std::array::from_fn(|wave| all.get(first + wave).copied().unwrap_or(0.0))
 }
 
 impl Waves {
-    /// The loads at the wavenumbers `k` that go with the transforms `contact` of the contact pressure.
-    /// `shares` gives for each of them the first of the `layers` that it is interpolated from, and their
-    /// shares. Without `weights` the quadrature is in `contact`, and the loads serve the plane x = 0.
+    /// The loads at the wavenumbers `k` for the transforms `contact` of the contact pressure.
+    /// `shares` gives for each of them the first of the `layers` in its interpolation, and the
+    /// shares. Without `weights` the quadrature is in `contact`, and the loads are valid for the
+    /// plane x = 0.
     pub fn new<S: AsRef<[f64]>>(
         body: &Body,
         k: Vec<f64>,
@@ -85,7 +86,8 @@ impl Waves {
     ) -> Self {
         let shares: Vec<_> = (0..k.len()).map(shares).collect();
         let (surface, face) = nodal_loads(body, &contact, layers, &shares);
-        // The layers that feel their ends are the first ones, and so are the wavenumbers between them.
+        // The layers with loads on their end faces come first, and so do the wavenumbers between
+        // them.
         let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
         let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
         for (k, q) in k.iter().zip(face.column_iter()).take(ends) {
@@ -118,8 +120,8 @@ impl Waves {
     }
 }
 
-/// The loads at the nodes of the surface and of the end faces, a column for each wavenumber, under the
-/// transforms `contact` of the pressure; see [`Waves::new`].
+/// The loads at the nodes of the surface and of the end faces, a column for each wavenumber, under
+/// the transforms `contact` of the pressure; see [`Waves::new`].
 fn nodal_loads<S: AsRef<[f64]>>(
     body: &Body,
     contact: &DMatrix<f64>,
@@ -129,7 +131,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
     let mut face = DMatrix::zeros(body.face.axis.len(), shares.len());
     for (at, layer) in layers.iter().enumerate() {
-        // The wavenumbers that a layer leads to follow each other.
+        // The wavenumbers interpolated from a layer are consecutive.
         let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
         let start = shares.partition_point(|s| end(s) <= at);
         let waves = start..shares.partition_point(|s| s.0 <= at);
@@ -137,7 +139,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
             let (first, shares) = &shares[start + i];
             shares.as_ref()[at - first] * contact[(start + i, node)]
         });
-        // Short waves leave an end face's deep nodes without load.
+        // For short waves the deep nodes of an end face carry no load.
         let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
             into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
         };
@@ -152,17 +154,17 @@ fn nodal_loads<S: AsRef<[f64]>>(
     (surface, face)
 }
 
-/// The loads on one surface of a body, or on an end face, as a target feels them.
+/// The influence of the loads on a body's surface or end face on a target.
 #[derive(Debug, Clone)]
 pub(super) struct Influence {
     side: Side,
     stencil: Stencil,
-    /// Weights of the mean load on strips, whose places come last.
+    /// Weights of the mean load on strips, which come last.
     strips: Vec<f32>,
     target: Target,
 }
 
-/// What is loaded.
+/// The loaded side.
 #[derive(Debug, Clone, Copy)]
 enum Side {
     /// The surface z = 0.
@@ -171,12 +173,13 @@ enum Side {
     Face,
 }
 
-/// Where the target is.
+/// The position of the target.
 #[derive(Debug, Clone)]
 enum Target {
-    /// Within the body, with the loads at these places.
+    /// Within the body, with the loads at these positions.
     Within(Places),
-    /// On the loaded surface itself: the loads' offsets, and shares of the axis's nodes in the target.
+    /// On the loaded surface itself: the loads' offsets, and the shares of the axis's nodes at the
+    /// target.
     Upon(Vec<f32>, Vec<(usize, f64)>),
 }
 
@@ -197,8 +200,8 @@ impl Influence {
         })
     }
 
-    /// The loads on `side` that `stencil` and `strips` (offset, weight) place, from the coordinate `along`
-    /// their `axis` and a `depth`.
+    /// The loads on `side` from `stencil` and `strips` (offset, weight), for a target at the
+    /// coordinate `along` their `axis` and a `depth`.
     fn new(
         side: Side,
         mut stencil: Stencil,
@@ -228,9 +231,9 @@ impl Influence {
         }
     }
 
-    /// The stresses of each wavenumber of `block`, in the frame of the loaded surface, and the number of
-    /// loads that it reaches from; no shears across the plane x = 0 where only that is served. `loads` is
-    /// for scratch.
+    /// The stresses of each wavenumber of `block`, in the frame of the loaded surface, and the
+    /// number of loads within its reach. Shears across the plane x = 0 are omitted if the loads are
+    /// valid only there. `loads` is scratch space.
     pub fn stresses(
         &self,
         body: &Body,
@@ -241,8 +244,8 @@ impl Influence {
             Side::Surface => &block.surface,
             Side::Face => &block.face,
         };
-        // In units of 1/k all wavenumbers reach equally far; the first one is the smallest. Rounding must
-        // not leave out what is felt.
+        // In units of 1/k all wavenumbers have the same reach; the first one is the smallest. The
+        // margin covers rounding.
         let reach = body.reach(1.0);
         let limit = (1.0001 * reach / own.k[0]) as f32;
         loads.resize(self.len(), [0.0; WAVES]);
@@ -264,9 +267,9 @@ impl Influence {
     }
 }
 
-/// On the loaded surface: under a pressure p(u) the stresses are xx = -2 nu p - (1 - 2 nu) s,
-/// ww = -p + (1 - 2 nu) s, dd = -p and xw = (1 - 2 nu) t, with s and t those of
-/// [`add_surface_spread`]; `shares` of the nodes make p at the target.
+/// On the loaded surface: under a pressure p(u) the stresses are xx = -2 nu p - (1 - 2 nu) s, ww =
+/// -p + (1 - 2 nu) s, dd = -p and xw = (1 - 2 nu) t, with s and t from [`add_surface_spread`];
+/// `shares` of the nodes give p at the target.
 fn upon(
     nu: f64,
     own: &Loads,
@@ -301,8 +304,9 @@ mod tests {
     use crate::body::{EdgeModel, Resolution, Shape};
 
     #[test]
-    fn a_block_feels_what_each_wavenumber_does_by_itself() {
-        // The last wavenumbers lie between layers of which some feel their ends, then none does.
+    fn a_block_sums_its_wavenumbers_independently() {
+        // The last wavenumbers lie between layers of which first some, then none have loads on
+        // their ends.
         for (ledge, everywhere) in [(1.2, true), (6.0, false)] {
             compare(ledge, everywhere);
         }
@@ -332,11 +336,11 @@ mod tests {
         assert!(layers[layers.len() - 1].face.is_none());
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
-            let sights = |waves: &Waves| {
+            let influences = |waves: &Waves| {
                 let faces = Influence::of_faces(&body, waves, y, z, [body.half - y, body.half + y]);
                 [vec![Influence::of_surface(&body, waves, y, z)], faces.into()].concat()
             };
-            let own = sights(&all);
+            let own = influences(&all);
             for (i, &k) in k.iter().enumerate() {
                 let one = Waves::new(
                     &body,
@@ -346,8 +350,8 @@ mod tests {
                     &layers,
                     |_| numbers.interpolation(i),
                 );
-                for (sight, alone) in own.iter().zip(sights(&one)) {
-                    let together = sight.stresses(&body, &all.blocks[i / WAVES], &mut scratch);
+                for (influence, alone) in own.iter().zip(influences(&one)) {
+                    let together = influence.stresses(&body, &all.blocks[i / WAVES], &mut scratch);
                     let (got, count) = together[i % WAVES];
                     let (want, alone) = alone.stresses(&body, &one.blocks[0], &mut scratch)[0];
                     let values = |s: WaveStress| [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
