@@ -1,9 +1,9 @@
-//! One case on one mesh by gmsh and FEniCSx, as child processes.
+//! One case on one mesh with gmsh and FEniCSx, as child processes.
 //!
-//! A run has a folder of its own. In it, `work/` holds what the children need and write; the
-//! results are put beside it, `fem.json` last, when they have been checked. A run that is stopped
-//! goes on at the stage where it was: each stage writes its JSON file last, and `work/request.key`
-//! tells whether what is there belongs to the same request.
+//! Each run has its own folder. The subfolder `work/` holds the input and output of the child
+//! processes. When the results have been checked they are moved beside it, `fem.json` last. A run
+//! that was stopped continues at its unfinished stage: each stage writes its JSON file last, and
+//! `work/request.key` tells whether the files belong to the same request.
 
 use super::jit_cache;
 use super::request::Request;
@@ -20,10 +20,10 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
 
-/// The sources of the finite-element side: name and text.
+/// The sources of the finite-element program: name and text.
 const SOURCES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/fem_sources.rs"));
 
-/// The linear solver of the finite-element side.
+/// The linear solver of the finite-element program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Linear {
     /// Sparse Cholesky factors, once per body.
@@ -44,7 +44,7 @@ impl Linear {
         }
     }
 
-    /// Memory that solving for `unknowns` takes (bytes): the growth that was measured, docs/fem.md.
+    /// Memory for the solution of `unknowns` (bytes), from the measured growth in docs/fem.md.
     fn bytes(self, unknowns: f64) -> f64 {
         match self {
             Linear::Direct => 3.0 * GIB * (unknowns / 250e3).powf(1.3),
@@ -53,12 +53,12 @@ impl Linear {
     }
 }
 
-/// Unknowns on a mesh of relative size 1, at least; they grow as size^-2.7.
+/// Smallest number of unknowns on a mesh of relative size 1; it grows as size^-2.7.
 const UNKNOWNS_OF_SIZE_1: f64 = 200e3;
 
 const GIB: f64 = (1u64 << 30) as f64;
 
-/// How finite-element runs are done.
+/// Settings of finite-element runs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
     /// Relative element size, 1 is the production mesh; see [`Settings::SIZE_RANGE`].
@@ -67,15 +67,15 @@ pub struct Settings {
     pub linear: Linear,
     /// Number of MPI ranks, at least 1.
     pub ranks: usize,
-    /// The interpreter, where it is not to be looked for.
+    /// The interpreter; searched for if none.
     pub python: Option<PathBuf>,
     /// The gmsh program.
     pub gmsh: PathBuf,
-    /// How long making the meshes may take.
+    /// Time limit of the mesh stage.
     pub mesh_timeout: Duration,
-    /// How long the calculation may take.
+    /// Time limit of the solve stage.
     pub solve_timeout: Duration,
-    /// How large the folder of a run may become (bytes).
+    /// Largest size of the folder of a run (bytes).
     pub max_bytes: u64,
     /// Whether meshes and requests are kept after success.
     pub keep: bool,
@@ -102,7 +102,7 @@ impl Default for Settings {
     }
 }
 
-/// Finite-element runs with the tools that they need, which were found and tried.
+/// Runs finite-element models with tools that were found and tested.
 pub struct Driver {
     settings: Settings,
     interpreter: Interpreter,
@@ -112,8 +112,8 @@ impl Driver {
     /// Finds the tools.
     ///
     /// # Errors
-    /// [`Error::Missing`] when gmsh, a fitting interpreter or, for several ranks, mpirun is not
-    /// there; [`Error::Value`] when a setting is not legal.
+    /// [`Error::Missing`] if gmsh, a suitable interpreter or, for several ranks, mpirun is missing;
+    /// [`Error::Value`] if a setting is not legal.
     pub fn new(settings: Settings) -> Result<Self> {
         let (low, high) = Settings::SIZE_RANGE;
         let refuse = |key: &str, value: String, reason: String, remedy: &str| {
@@ -126,7 +126,7 @@ impl Driver {
         if settings.ranks == 0 {
             return refuse("ranks", "0".into(), "at least one process has to run".into(), "give 1");
         }
-        // A mesh that cannot be solved on any machine like this one is not even made.
+        // Refuses a mesh that is too large for this machine before it is made.
         check_memory(
             &format!("a mesh of size {}", settings.size),
             settings.linear.bytes(UNKNOWNS_OF_SIZE_1 * settings.size.powf(-2.7)),
@@ -153,11 +153,11 @@ impl Driver {
         &self.interpreter
     }
 
-    /// Solves `case` in `folder`, or takes the result from there if it has been solved with the
-    /// same request before. `progress` is told, in words, what goes on.
+    /// Solves `case` in `folder`, or takes the result from there if the same request has been
+    /// solved before. `progress` receives messages on the state of the run.
     ///
     /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `fem.json` and the log of each stage. On
-    /// failure nothing is taken away that helps to find out why.
+    /// failure all files that help to find the cause are kept.
     ///
     /// # Errors
     /// [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
@@ -165,14 +165,15 @@ impl Driver {
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         prepare_folder(folder)?;
-        // The mark of the processes has to be the same, however the folder is named.
+        // The mark of the processes must not depend on how the folder is named.
         let folder = &folder.canonicalize().map_err(|source| Error::Io {
             action: "find",
             path: folder.to_path_buf(),
             source,
         })?;
         let lock = Lock::claim(folder)?;
-        // Whoever was here before is dead; so are its children, unless the kernel cannot tell.
+        // The process of an earlier run is dead; so are its children, unless the kernel cannot
+        // tell.
         kill_marked(folder);
 
         let (settings, linear) = (&self.settings, self.settings.linear.name());
@@ -186,7 +187,7 @@ impl Driver {
             progress("done already");
             return Ok(result);
         }
-        // In this order, so that a run that is killed here does not pass for a finished one.
+        // In this order, so that a run killed here does not look finished.
         for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
             remove_if_there(&folder.join(name))?;
         }
@@ -208,7 +209,7 @@ impl Driver {
         Ok(result)
     }
 
-    /// What tells whether files belong to a request: all that the result depends on.
+    /// The key that ties files to a request: everything that the result depends on.
     fn key(&self, request: &str) -> String {
         let mut text = request.to_string();
         text += &format!("{:?} {}", self.interpreter, self.settings.ranks);
@@ -220,17 +221,17 @@ impl Driver {
     }
 }
 
-/// One run under way.
+/// One run in progress.
 struct Run<'a> {
     driver: &'a Driver,
     case: &'a Case,
     folder: &'a Path,
-    /// Where the children work.
+    /// The working folder of the child processes.
     work: PathBuf,
 }
 
 impl Run<'_> {
-    /// Lays out the folder of work, keeping what belongs to the same request.
+    /// Prepares the working folder and keeps the files of the same request.
     fn prepare(&self, request: &str, key: &str) -> Result<()> {
         if read(&self.work.join("request.key")).ok().as_deref() != Some(key) {
             remove_if_there(&self.work)?;
@@ -240,7 +241,7 @@ impl Run<'_> {
         for (name, source) in SOURCES {
             write_whole(&package.join(name), source)?;
         }
-        // What an earlier run did not finish compiling must not be waited for.
+        // Incomplete entries of an earlier run would block the compilation.
         remove_if_there(&self.work.join("cache"))?;
         jit_cache::seed(&self.cache());
         write_whole(&self.work.join("request.json"), request)?;
@@ -265,7 +266,7 @@ impl Run<'_> {
         self.check_memory(read()?)
     }
 
-    /// Refuses meshes whose equations would not fit into memory.
+    /// Refuses meshes whose equations do not fit into memory.
     fn check_memory(&self, meshes: MeshSummary) -> Result<()> {
         let unknowns = meshes.unknowns as f64;
         check_memory(
@@ -297,14 +298,14 @@ impl Run<'_> {
                 mpirun.env(variable, "1");
             }
             mpirun.env("OMPI_MCA_rmaps_base_oversubscribe", "1");
-            // Ranks that wait would otherwise keep others from the cores that they share.
+            // Waiting ranks would otherwise block the cores that they share with others.
             mpirun.env("OMPI_MCA_mpi_yield_when_idle", "1");
             mpirun
         };
         self.stage("solve", command, settings.solve_timeout, "--solve-timeout")
     }
 
-    /// Runs a stage of the finite-element side.
+    /// Runs a stage of the finite-element program.
     fn stage(
         &self,
         stage: &str,
@@ -354,10 +355,10 @@ impl Run<'_> {
     }
 }
 
-/// No file of a child that did its work comes near this size (bytes).
+/// Size limit of a file from a child (bytes), far above that of any correct one.
 const MAX_RESULT_BYTES: u64 = 256 << 20;
 
-/// Reads a text that a child wrote.
+/// Reads a text file written by a child.
 fn read(path: &Path) -> Result<String> {
     read_text(
         path,

@@ -1,9 +1,9 @@
-//! Compiled forms, kept apart from run to run.
+//! A separate cache of compiled forms for each run.
 //!
 //! FEniCSx compiles each form once and keeps it in a cache. A process that is killed while it
-//! compiles leaves an entry there that the next one waits for in vain and then fails on. So each
-//! run has a cache of its own, which starts with the complete entries of earlier runs, and
-//! complete new entries are added to those at its end.
+//! compiles leaves an incomplete entry there, on which the next process waits and then fails. Each
+//! run therefore has its own cache. It starts with the complete entries of earlier runs, and its
+//! new complete entries are added to them at the end.
 
 use crate::host::write_whole;
 use std::ffi::OsString;
@@ -22,21 +22,21 @@ fn stores() -> Option<[PathBuf; 2]> {
     Some([home.join("edgeline/fenics"), home.join("fenics")])
 }
 
-/// Fills the cache of a run; what cannot be copied will be compiled again.
+/// Fills the cache of a run; entries that cannot be copied are compiled again.
 pub(super) fn seed(folder: &Path) {
     for store in stores().into_iter().flatten() {
         copy_complete(&store, folder);
     }
 }
 
-/// Adds the entries of a run to those of the user; what cannot be kept will be compiled again.
+/// Adds the entries of a run to the user's cache; entries that cannot be copied are compiled again.
 pub(super) fn keep(folder: &Path) {
     if let Some([own, _]) = stores() {
         copy_complete(folder, &own);
     }
 }
 
-/// Copies the complete entries that `to` does not have, each one's READY file last.
+/// Copies the complete entries that `to` lacks, the READY file of each last.
 fn copy_complete(from: &Path, to: &Path) {
     if fs::create_dir_all(to).is_err() {
         return;

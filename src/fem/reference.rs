@@ -21,14 +21,14 @@ const FILES: [&str; 3] = ["record.json", "curves.csv", "pressure.csv"];
 /// The checksums of these files, as `sha256sum` writes and checks them.
 const SUMS: &str = "SHA256SUMS";
 
-/// No file of a record comes near this size (bytes).
+/// Size limit of a file of a record (bytes), far above that of any correct one.
 const MAX_FILE_BYTES: u64 = 256 << 20;
 
-/// What to do about a file that is not the one that was recorded.
+/// The remedy for a file that differs from the recorded one.
 const RESTORE: &str = "restore the folder from version control, or remove it and record it anew: \
                        python3 -m edgeline_fem record (docs/fem.md)";
 
-/// Refuses the text of the file `name` unless its checksum stands in `sums`.
+/// Refuses the text of the file `name` unless its checksum is in `sums`.
 fn check_sum(text: &str, name: &str, sums: &str, folder: &Path) -> Result<()> {
     let refuse = |name: &str, message: String| Error::File {
         path: folder.join(name),
@@ -48,8 +48,8 @@ fn check_sum(text: &str, name: &str, sums: &str, folder: &Path) -> Result<()> {
     Err(refuse(name, format!("was changed or is damaged: its SHA-256 is {found}, not {wanted}")))
 }
 
-/// How far one component of one curve is from the exact solution of its model, as its meshes tell.
-/// The immediate neighbourhood of the roller's end is left out of curves on the surface.
+/// The estimated error of one component of one curve, from its meshes. Curves on the surface
+/// exclude the immediate neighbourhood of the roller's end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
     /// `block`, `roller`, or `contact` for the pressure lines.
@@ -64,9 +64,9 @@ pub struct ErrorEstimate {
     pub difference_max: f64,
     /// Root mean square of that difference (p0).
     pub difference_rms: f64,
-    /// Observed order of convergence over the three finest meshes, where one is observed.
+    /// Observed order of convergence over the three finest meshes, if any.
     pub order: Option<f64>,
-    /// What a point's difference has to be multiplied with to give the finest mesh's error.
+    /// Factor from a point's difference to the finest mesh's error.
     pub factor: Option<f64>,
     /// `factor` times `difference_max` (p0).
     pub error_max: Option<f64>,
@@ -74,7 +74,7 @@ pub struct ErrorEstimate {
     pub error_rms: Option<f64>,
 }
 
-/// Finite-element results of one case on one mesh or several.
+/// Finite-element results of one case on one or more meshes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reference {
     /// The problem that was solved (its tolerance means nothing here).
@@ -121,7 +121,7 @@ impl Reference {
     /// # Errors
     /// As [`Reference::embedded`].
     pub fn embedded_of(case: &Case) -> Result<Option<Reference>> {
-        // The record of the same name first: it nearly always is the one.
+        // The record of the same name first, because it nearly always matches.
         let same_name = Self::embedded_names().filter(|name| *name == case.name);
         let others = Self::embedded_names().filter(|name| *name != case.name);
         for name in same_name.chain(others) {
@@ -167,12 +167,12 @@ impl Reference {
         folders.iter().map(|folder| Self::read(folder)).collect()
     }
 
-    /// Reads the texts of `record.json`, `curves.csv` and `pressure.csv`; `folder`, where they stand, is
-    /// only named in errors.
+    /// Reads the texts of `record.json`, `curves.csv` and `pressure.csv`; `folder`, which contains
+    /// them, is only named in errors.
     ///
     /// # Errors
-    /// [`Error::File`] when one is damaged or of another version, when its case is not legal, when a run
-    /// did not carry its load, or when the points are not the standard curves'.
+    /// [`Error::File`] when one is damaged or of another version, when its case is not legal, when
+    /// a run did not carry its load, or when the points are not the standard curves'.
     pub fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
         let path = folder.join(FILES[0]);
         let record: Record = serde_json::from_str(record)

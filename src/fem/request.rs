@@ -1,4 +1,4 @@
-//! What the finite-element side is asked to do: the content of `request.json`, which
+//! The request to the finite-element program: the content of `request.json`, which
 //! `fem/edgeline_fem/request.py` reads.
 
 use super::result::{wanted_curves, wanted_lines};
@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The form of a case in requests and records. It leaves out the accuracy, which is the models' own.
+/// The form of a case in requests and records. It leaves out the accuracy, which is the models'
+/// own.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Case")]
 pub(super) struct Problem {
@@ -21,7 +22,7 @@ pub(super) struct Problem {
     accuracy: Accuracy,
 }
 
-/// A request to the finite-element side.
+/// A request to the finite-element program.
 #[derive(Serialize)]
 pub(super) struct Request<'a> {
     schema: u32,

@@ -1,4 +1,4 @@
-//! What the finite-element side writes: `fem.json`, `curves.csv`, `pressure.csv`.
+//! The output of the finite-element program: `fem.json`, `curves.csv`, `pressure.csv`.
 
 use crate::base::{Error, Result, StressTensor};
 use crate::case::Case;
@@ -13,7 +13,7 @@ use std::path::Path;
 /// Names of the pressure lines: x = 0, and y = 0.
 pub const LINE_NAMES: [&str; 2] = ["along-y", "along-x"];
 
-/// Points that differ by less than this part of the half-width C are the same: files hold nine
+/// Points that differ by less than this fraction of the half-width C are equal: files have nine
 /// digits.
 const SAME_POINT: f64 = 1e-6;
 
@@ -30,7 +30,7 @@ pub struct FemSummary {
     pub load_error_rel: f64,
     /// Error of the supports' reaction relative to the load, the larger of both bodies.
     pub equilibrium_residual: f64,
-    /// What is left of complementarity, relative.
+    /// Residual of complementarity, relative.
     pub complementarity_residual: f64,
     /// Approach (m).
     pub approach_m: f64,
@@ -42,7 +42,7 @@ pub struct FemSummary {
     pub seconds: BTreeMap<String, f64>,
     /// Largest resident memory, summed over the ranks (MiB).
     pub peak_memory_mib: f64,
-    /// Everything else that the run states (mesh, solver, boundary conditions, ...).
+    /// All other data of the run (mesh, solver, boundary conditions, ...).
     #[serde(flatten)]
     pub more: serde_json::Map<String, serde_json::Value>,
 }
@@ -88,7 +88,7 @@ impl FemSummary {
 pub struct MeshResult {
     /// Relative element size; 1 is the production mesh, smaller is finer.
     pub size: f64,
-    /// How it was computed.
+    /// The summary of its run.
     pub summary: FemSummary,
     /// Stresses on the standard curves of both bodies, in the order of
     /// [`standard_curves`], the block first.
@@ -109,12 +109,12 @@ pub struct ResultTexts<'t> {
 }
 
 impl MeshResult {
-    /// Reads the result of `case` on the mesh of relative `size` by `ranks` processes; `folder`, where
-    /// the files stand, is only named in errors.
+    /// Reads the result of `case` on the mesh of relative `size` by `ranks` processes; `folder`,
+    /// where the files stand, is only named in errors.
     ///
     /// # Errors
-    /// [`Error::File`] when a file is damaged, belongs to another case or another number of processes,
-    /// or states that the run did not carry its load.
+    /// [`Error::File`] when a file is damaged, belongs to another case or another number of
+    /// processes, or states that the run did not carry its load.
     pub fn parse(
         case: &Case,
         size: f64,

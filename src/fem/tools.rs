@@ -1,4 +1,4 @@
-//! The tools from outside: an interpreter that imports dolfinx, gmsh, and mpirun.
+//! The external tools: a Python interpreter with dolfinx, gmsh, and mpirun.
 
 use crate::base::{Error, Result};
 use crate::host::{capture, check_interrupt};
@@ -10,11 +10,11 @@ use std::time::Duration;
 /// The environment variable that names the interpreter.
 pub const PYTHON_VARIABLE: &str = "EDGELINE_PYTHON";
 
-/// What to install, on the system that this was developed on.
+/// What to install, on Debian or Ubuntu.
 pub const INSTALL: &str =
     "install it, on Debian or Ubuntu: apt-get install gmsh python3-dolfinx libopenblas0-serial";
 
-/// Imports what the finite-element side needs and prints the versions.
+/// Imports the modules of the finite-element program and prints their versions.
 const PROBE: &str = "\
 import json, sys
 import dolfinx, mpi4py, numpy, petsc4py
@@ -33,13 +33,13 @@ const VERSION_TIMEOUT: Duration = Duration::from_secs(20);
 pub struct Interpreter {
     /// The program.
     pub path: PathBuf,
-    /// Where it was named, e.g. `--python` or `the PATH`.
+    /// Where it was found, e.g. `--python` or `the PATH`.
     pub source: &'static str,
     /// Versions of the interpreter and what it imports.
     pub versions: BTreeMap<String, String>,
 }
 
-/// Interpreters that come into question, best first: an explicit setting alone, or else Debian's
+/// Candidate interpreters, best first: only an explicit setting if there is one, otherwise Debian's
 /// own and the PATH's.
 pub fn candidates(explicit: Option<&Path>) -> Vec<(PathBuf, &'static str)> {
     if let Some(path) = explicit {
@@ -57,7 +57,7 @@ pub fn candidates(explicit: Option<&Path>) -> Vec<(PathBuf, &'static str)> {
     found
 }
 
-/// Versions of what an interpreter imports, or `None` when it does not import dolfinx.
+/// Versions of the modules of an interpreter, or `None` if it does not import dolfinx.
 pub fn imports(python: &Path) -> Option<BTreeMap<String, String>> {
     let (out, _) = capture(Command::new(python).args(["-c", PROBE]), IMPORT_TIMEOUT)?;
     serde_json::from_str(out.lines().last()?).ok()
@@ -84,7 +84,7 @@ pub fn find_interpreter(explicit: Option<&Path>) -> Result<Interpreter> {
     })
 }
 
-/// The version that a program prints on `--version`, its first line that has a digit.
+/// The version that a program prints with `--version`: the first line with a digit.
 pub fn version(program: &Path) -> Option<String> {
     let (out, err) = capture(Command::new(program).arg("--version"), VERSION_TIMEOUT)?;
     let line = out.lines().chain(err.lines()).find(|l| l.chars().any(|c| c.is_ascii_digit()))?;
@@ -124,7 +124,7 @@ pub fn is_slow_blas(name: &str) -> bool {
     name.starts_with("blas/")
 }
 
-/// Where a program stands on the PATH.
+/// The path of a program on the PATH.
 pub fn which(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;
     std::env::split_paths(&path).map(|folder| folder.join(program)).find(|file| file.is_file())

@@ -100,19 +100,21 @@ pub fn k0(x: f64) -> f64 {
     }
 }
 
-/// The pair of integrals that carry what a Poisson's ratio other than 1/2 adds,
+/// The pair of integrals for the contribution of a Poisson's ratio other than 1/2,
 ///
 /// J(u, v) = int_v^inf K0(r) dz and N(u, v) = -dJ/du = int_v^inf u K1(r)/r dz, r^2 = u^2 + z^2,
 ///
 /// for u, v >= 0 with u + v > 0; absolute error below 1e-9 (checked against quadrature).
 ///
-/// For v <= u the complement (pi/2) e^-u, less a smooth integral over [0, v] by Gauss's rule. Else
+/// For v <= u the complete integral (pi/2) e^-u, less a smooth integral over [0, v] by Gauss's
+/// rule. Otherwise
 ///
-/// J = cos f int e^(-rho C) C / (C^2 - sin^2 f) dt, N = sin f cos f int e^(-rho C) / (C^2 - sin^2 f) dt
+/// J = cos f int e^(-rho C) C / (C^2 - sin^2 f) dt, N = sin f cos f int e^(-rho C) / (C^2 - sin^2
+/// f) dt
 ///
 /// over t in (0, inf), C = cosh t, u = rho sin f, v = rho cos f, by the trapezoidal rule, which
-/// converges geometrically there: from J = int cos(s u) e^(-v sqrt(1+s^2)) / (1+s^2) ds by s = sinh t
-/// and the shift of t by i f.
+/// converges geometrically there: from J = int cos(s u) e^(-v sqrt(1+s^2)) / (1+s^2) ds by s = sinh
+/// t and the shift of t by i f.
 pub fn incomplete(u: f64, v: f64) -> (f64, f64) {
     if v <= u {
         let whole = FRAC_PI_2 * (-u).exp();

@@ -2,9 +2,9 @@
 
 /// Bessel functions J1(s), J3(s), ..., of the first `out.len()` odd orders, s >= 0.
 ///
-/// Upward recurrence from J0 and J1 where it is stable (s above the highest order), else Miller's
-/// downward recurrence normalised by J0 + 2 sum J_2n = 1 (Abramowitz and Stegun 1964, 9.1.46).
-/// Returns J0(s).
+/// Upward recurrence from J0 and J1 where it is stable (s above the highest order), otherwise
+/// Miller's downward recurrence normalised by J0 + 2 sum J_2n = 1 (Abramowitz and Stegun 1964,
+/// 9.1.46). Returns J0(s).
 pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
     let (highest, step) = (2 * out.len(), 2.0 / s);
     if s > highest as f64 {
@@ -25,7 +25,7 @@ pub fn bessel_j_odd(s: f64, out: &mut [f64]) -> f64 {
         }
         return 1.0;
     }
-    // From an order on that is below 1e-15, by (s / 2)^n / n!.
+    // Starts at an order whose value (s / 2)^n / n! is below 1e-15.
     let start = 2 * ((highest + 4).max((2.4 * s + 15.0) as usize) / 2);
     let (mut above, mut here) = (0.0, 1e-30);
     let mut norm = 0.0;

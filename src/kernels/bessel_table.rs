@@ -1,5 +1,5 @@
-//! Bessel functions from tables, where many values are wanted: those of [`super::bessel`] on rows of
-//! arguments, as polynomials of the place within a row, in [-1, 1].
+//! Bessel functions from tables, for many values: those of [`super::bessel`] on rows of arguments,
+//! as polynomials of the position within a row, in [-1, 1].
 
 use super::bessel::k0;
 use super::bessel_j::bessel_j_odd;
@@ -8,7 +8,8 @@ use multiversion::{multiversion, target::target_cfg_f};
 use nalgebra::SMatrix;
 use std::sync::LazyLock;
 
-/// Coefficients of a row of [`K0_ROWS`], and the range of its rows in octaves of x: 2^LOW to 2^HIGH.
+/// Coefficients of a row of [`K0_ROWS`], and the range of its rows in octaves of x: 2^LOW to
+/// 2^HIGH.
 const K0_ORDER: usize = 10;
 const LOW: i32 = -10;
 const HIGH: i32 = 5;
@@ -43,7 +44,7 @@ static J_ROWS: LazyLock<Vec<[[f64; J_ORDER]; J_COUNT]>> = LazyLock::new(|| {
     (0..J_NUMBER).map(row).collect()
 });
 
-/// Polynomials of `N` coefficients through C functions at Chebyshev's nodes.
+/// Polynomials of `N` coefficients through C functions at the Chebyshev nodes.
 fn polynomials<const N: usize, const C: usize>(
     functions: impl Fn(f64) -> [f64; C],
 ) -> [[f64; N]; C] {
@@ -54,18 +55,19 @@ fn polynomials<const N: usize, const C: usize>(
     })
 }
 
-/// From values at Chebyshev's `N` nodes to coefficients of powers: so few keep this well conditioned.
+/// Matrix from values at the `N` Chebyshev nodes to coefficients of powers; it is well conditioned
+/// for so few nodes.
 pub(super) fn to_powers<const N: usize>() -> SMatrix<f64, N, N> {
     let powers = SMatrix::<f64, N, N>::from_fn(|j, power| chebyshev_node(N, j).powi(power as i32));
     powers.try_inverse().expect("distinct nodes")
 }
 
-/// J1(s), J3(s), ..., of the first `out.len()` odd orders, s >= 0; returns J0(s). Absolute error below
-/// 1e-12 besides that of [`bessel_j_odd`].
+/// J1(s), J3(s), ..., of the first `out.len()` odd orders, s >= 0; returns J0(s). Absolute error
+/// below 1e-12 besides that of [`bessel_j_odd`].
 pub fn tabulated_j_odd(s: f64, out: &mut [f64]) -> f64 {
     let around = s / J_WIDTH;
     match J_ROWS.get(around as usize) {
-        // Small ones keep their digits in relation to s.
+        // Small arguments keep their relative accuracy.
         Some(row) if out.len() < J_COUNT && s >= J_WIDTH => {
             let place = 2.0 * (around - around.floor()) - 1.0;
             let at = |row: &[f64; J_ORDER]| row.iter().rev().fold(0.0, |sum, c| sum * place + c);
@@ -76,14 +78,14 @@ pub fn tabulated_j_odd(s: f64, out: &mut [f64]) -> f64 {
     }
 }
 
-/// K0(`k` |u|) for all offsets u, none of them 0, into `out`; zero from `reach` on. From a table in the
-/// range that contacts ask for most; absolute error below 1e-10.
+/// K0(`k` |u|) for all offsets u, none of them 0, into `out`; zero beyond `reach`. A table covers
+/// the range that contacts use most; absolute error below 1e-10.
 pub fn k0_of_all(k: f64, offsets: &[f64], reach: f64, out: &mut Vec<f64>) {
     out.resize(offsets.len(), 0.0);
     look_up(&K0_ROWS, k, offsets, reach, out);
 }
 
-/// [`k0_of_all`], compiled for the processor's vector units too.
+/// [`k0_of_all`], compiled for the processor's vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn look_up(rows: &[[f64; K0_ORDER]], k: f64, offsets: &[f64], reach: f64, out: &mut [f64]) {
     const MANTISSA: u32 = 52;
@@ -94,7 +96,7 @@ fn look_up(rows: &[[f64; K0_ORDER]], k: f64, offsets: &[f64], reach: f64, out: &
     for (value, u) in out.iter_mut().zip(offsets) {
         let x = k * u.abs();
         let bits = x.to_bits();
-        // An octave's half is the first digit of the mantissa; what follows is the place.
+        // The half of an octave is the first digit of the mantissa; the rest is the position.
         let row = (bits >> (MANTISSA - 1)) as i64 - (2 * (1023 + i64::from(LOW)));
         let place = f64::from_bits((bits << 1) & ((1 << MANTISSA) - 1) | ONE);
         *value = match rows.get(row as usize) {

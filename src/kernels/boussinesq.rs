@@ -1,7 +1,7 @@
 //! A normal point load on an elastic half-space (Boussinesq).
 //!
-//! Origin at the load, z >= 0 into the body, stress positive in tension, the load positive when it
-//! presses on the body.
+//! Origin at the load, z >= 0 into the body, stress positive in tension, the load positive in
+//! compression.
 
 use std::f64::consts::PI;
 
@@ -13,7 +13,7 @@ use crate::base::StressTensor;
 /// finite); `nu`: Poisson's ratio.
 ///
 /// Source: Johnson, Contact Mechanics, 1985, section 3.2, in Love's form: 1/r^2 (1 - z/rho) is
-/// written 1/(rho (rho + z)), so that nothing cancels or divides by zero on the axis below the
+/// written 1/(rho (rho + z)), to avoid cancellation and division by zero on the axis below the
 /// load.
 pub fn stress(x: f64, y: f64, z: f64, nu: f64) -> StressTensor {
     debug_assert!(z >= 0.0, "z points into the body: {z}");
@@ -33,8 +33,9 @@ pub fn stress(x: f64, y: f64, z: f64, nu: f64) -> StressTensor {
     }
 }
 
-/// Influence 1/r of a unit load at the origin on the surface point (`x`, `y`), not both zero: the
-/// displacement into the body is (1 - nu^2) / (pi E) * load / r (Johnson 1985, section 3.2).
+/// Influence coefficient 1/r of a unit load at the origin on the surface point (`x`, `y`), not both
+/// zero: the displacement into the body is (1 - nu^2) / (pi E) * load / r (Johnson 1985, section
+/// 3.2).
 pub fn deflection(x: f64, y: f64) -> f64 {
     1.0 / x.hypot(y)
 }

@@ -2,8 +2,8 @@
 //!
 //! The textbook formula (Love 1929; Johnson, Contact Mechanics, 1985, Eq. 3.25) is a difference of
 //! four logarithms per direction and loses R^2 / (a b) in relative accuracy at the distance R. Here
-//! every difference that can cancel is taken before it is rounded, so that the result is good to a
-//! few units in the last place everywhere and no far-field expansion is needed.
+//! every difference that can cancel is formed before rounding, so the result is accurate to a few
+//! units in the last place everywhere, and no far-field expansion is needed.
 
 /// Influence f of a unit pressure on the rectangle |x'| <= `a`, |y'| <= `b` at the surface point
 /// (`x`, `y`) relative to the rectangle's centre: the integral of 1/r over the rectangle.
@@ -11,8 +11,8 @@
 /// The normal displacement of the surface, positive into the body, is
 /// (1 - nu^2) / (pi E) * f * p.
 ///
-/// `x`, `y`: any finite length; `a`, `b`: half-sides, > 0; all in one unit of length, in which f
-/// comes out too. Finite and continuous everywhere, the rectangle's edges and corners included.
+/// `x`, `y`: any finite length; `a`, `b`: half-sides, > 0; all in one unit of length, which is also
+/// that of f. Finite and continuous everywhere, including the rectangle's edges and corners.
 /// Magnitudes other than zero should lie within 1e-60 to 1e60, where no intermediate over- or
 /// underflows.
 ///
@@ -43,8 +43,8 @@ fn direction(x: f64, a: f64, u: [f64; 2], y: f64, b: f64, v: [f64; 2], r: [[f64;
     if u[1] < a {
         return u[0] * log(0) - far_side;
     }
-    // x >= 2a: u1 L1 and u2 L2 may agree in many digits, so the result is put together from the sum
-    // and the exactly factored difference of the two logarithms.
+    // x >= 2a: u1 L1 and u2 L2 may agree in many digits, so the result is formed from the sum and
+    // the exactly factored difference of the two logarithms.
     let difference = if v[1] > 0.0 {
         let square = v[0] * v[0] + v[1] * v[1];
         let part = |i: usize| (u[i] * u[i] + square) / (v[1] * r[i][1] + v[0] * r[i][0]);

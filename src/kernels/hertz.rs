@@ -1,4 +1,4 @@
-//! Hertz line and circular point contacts: the solutions that a general solver is tested against.
+//! Hertz line and circular point contacts: the reference solutions for a general solver.
 //!
 //! Lengths are in units of the contact's half-width or radius, stresses in units of the maximum
 //! pressure; z points into the body, stress is positive in tension. The scales themselves are
@@ -19,8 +19,8 @@ pub fn line_pressure(x: f64) -> f64 {
 ///
 /// Source: McEwen 1949, as Johnson 1985, Eq. 4.49; sigma_yy = nu (sigma_xx + sigma_zz). With m - i
 /// n = sqrt(1 - (x + i z)^2) the forms printed there, m (1 +- (z^2 + n^2)/(m^2 + n^2)) - ..., are
-/// written as multiples of m - z = Re 1/(m + z - i (n + x)), so that they keep their digits far
-/// away and next to the surface.
+/// written as multiples of m - z = Re 1/(m + z - i (n + x)), to keep their accuracy far away and
+/// next to the surface.
 pub fn line_stress(x: f64, z: f64, nu: f64) -> StressTensor {
     debug_assert!(z >= 0.0, "z points into the body: {z}");
     let sign = 1f64.copysign(x);
@@ -80,7 +80,7 @@ pub fn point_pressure(r: f64) -> f64 {
 /// of the contact radius: the displacement into the body is (1 - nu^2) / (pi E) f p0 a.
 ///
 /// Source: Johnson 1985, Eqs. 3.41a and 3.42a. The latter, with sin(phi / 2) = 1 / r, is (pi/4) r^2
-/// (sin phi - phi cos phi), whose power series serves far away, where the difference cancels.
+/// (sin phi - phi cos phi), whose power series is used far away, where the difference cancels.
 pub fn point_deflection(r: f64) -> f64 {
     if r <= 1.0 {
         return 0.5 * FRAC_PI_2 * PI * (2.0 - r * r);
@@ -112,7 +112,7 @@ pub fn point_surface_stress(r: f64, nu: f64) -> StressTensor {
         return StressTensor { xx, yy: -xx, ..Default::default() };
     }
     let p = line_pressure(r);
-    // (1 - p^3) / r^2 with r^2 = 1 - p^2, finite in the centre.
+    // (1 - p^3) / r^2 with r^2 = 1 - p^2, finite at the centre.
     let spread = lateral * (1.0 + p + p * p) / (1.0 + p);
     StressTensor { xx: spread - p, yy: -spread - 2.0 * nu * p, zz: -p, ..Default::default() }
 }

@@ -7,17 +7,17 @@
 //! tension. Integrating any of them over k from 0 to infinity and dividing by pi gives the field
 //! of a point load (Boussinesq).
 //!
-//! Source: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2, carries
-//! sigma_dd = -p (1 + kappa v) e^(-kappa v) and, tangentially,
-//! sigma_ab = (d_a d_b / kappa^2) [(1 - 2 nu) - kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v)
-//! (the Papkovich-Neuber solution with one harmonic function; Johnson, Contact Mechanics, 1985,
-//! chapter 3). The inverse transforms in l are K0, K1 and their incomplete integrals:
-//! e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
+//! Source: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2, has the stresses sigma_dd
+//! = -p (1 + kappa v) e^(-kappa v) and, tangentially, sigma_ab = (d_a d_b / kappa^2) [(1 - 2 nu) -
+//! kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v) (the Papkovich-Neuber solution with one
+//! harmonic function; Johnson, Contact Mechanics, 1985, chapter 3). The inverse transforms in l are
+//! K0, K1 and their incomplete integrals: e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi
+//! rho), e^(-kappa v)/kappa^2 -> J/(pi k).
 
 use super::bessel::{incomplete, k0_k1};
 use std::f64::consts::FRAC_1_PI;
 
-/// Amplitudes of the six stresses; see the module for which vary as cos(k x) and which as sin(k x).
+/// Amplitudes of the six stresses; the module says which vary as cos(k x) and which as sin(k x).
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct WaveStress {
     /// Along the load's line.
@@ -66,8 +66,8 @@ pub fn exact(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
 }
 
 /// [`exact`] to first order in `k` at distances much shorter than 1/k: the plane-strain line load
-/// (Johnson 1985, Eq. 2.23) and the even term that a Poisson's ratio other than 1/2 adds; relative
-/// error below (k rho)^2 ln(k rho).
+/// (Johnson 1985, Eq. 2.23) and the even term of a Poisson's ratio other than 1/2; relative error
+/// below (k rho)^2 ln(k rho).
 #[inline]
 pub fn near(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
     let free = 1.0 - 2.0 * nu;

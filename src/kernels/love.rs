@@ -5,26 +5,26 @@
 //! tension, the pressure is 1.
 //!
 //! On the surface the field jumps across the rectangle's edges. The value on an edge is the mean of
-//! both sides, a corner takes a quarter: sigma_zz is -1 inside, -1/2 on an edge, -1/4 in a corner,
-//! 0 outside, and two rectangles that share an edge add up to what one large one gives. A
-//! coordinate of a surface point within four units in the last place of an edge counts as on it.
+//! both sides, at a corner a quarter: sigma_zz is -1 inside, -1/2 on an edge, -1/4 at a corner, 0
+//! outside, and two rectangles that share an edge add up to what one large one gives. A surface
+//! point counts as on an edge if its coordinate is within four units in the last place of it.
 //! sigma_xz and sigma_yz vanish on the surface everywhere. sigma_xy grows like ln(rho) towards a
-//! corner on the surface; in the corner itself its finite part is taken, with rho measured in
+//! corner on the surface; at the corner itself its finite part is taken, with rho measured in
 //! sqrt(a b): the contributions of the four cells of a tensor grid that meet there then cancel for
-//! equal pressures, as they must.
+//! equal pressures, as required.
 //!
 //! # How cancellation is avoided
 //!
 //! The textbook formula is a second difference over the four corners, u = x +- a and v = y +- b.
 //! Far away and for thin cells it loses R^2 / (a b), and next to the rectangle near the surface
-//! sigma_zz, which falls like z^3, is left over from terms of order one. So
+//! sigma_zz, which falls like z^3, is the difference of terms of order one. Therefore
 //!
-//! - the shears are written with both differences taken exactly; they are good everywhere;
-//! - on the surface the normal stresses need one arctangent, whose argument factors;
-//! - inside, the normal stresses are the textbook's sums, and these report how much they cancelled;
-//! - where that is too much, and far away, the stresses of a line load of finite length (which
-//!   factor) are integrated across the shorter side by Gauss's rule on panels that shrink towards
-//!   the point.
+//! - the shears are written with both differences formed exactly; they are accurate everywhere;
+//! - on the surface the normal stresses need one arctangent, whose argument factorises;
+//! - inside, the normal stresses are the textbook sums, which also return their cancellation;
+//! - where the cancellation is too large, and far away, the stresses of a line load of finite
+//!   length, which factorise, are integrated across the shorter side by Gauss's rule on panels
+//!   graded towards the point.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -34,8 +34,8 @@ use crate::base::StressTensor;
 ///
 /// `x`, `y`: any finite length, relative to the rectangle's centre (point minus cell); `z` >= 0
 /// into the body; `a`, `b` > 0: half-sides; all in one unit of length. `nu`: Poisson's ratio, 0 to
-/// 0.5. Finite everywhere; for points on edges and corners see the module. Lengths other than zero
-/// should lie within 1e-40 to 1e40, where no intermediate over- or underflows.
+/// 0.5. Finite everywhere; for points on edges and at corners see the module. Lengths other than
+/// zero should lie within 1e-40 to 1e40, where no intermediate over- or underflows.
 ///
 /// Source: Love 1929, Phil. Trans. R. Soc. A 228, 377; in the form of Eqs. 5 to 10 of the study
 /// that the package reproduces, which prints the differences x, y with the opposite sign and so
@@ -61,14 +61,14 @@ pub fn stress(x: f64, y: f64, z: f64, a: f64, b: f64, nu: f64) -> StressTensor {
 
 /// Panels of half-width h at the distance D from the point are integrated by one rule if D >= 5 h.
 const PANEL_REACH: f64 = 5.0;
-/// From here (in shorter half-sides) on the whole rectangle is one panel, and its eight lines or
-/// fewer cost no more than the four corners.
+/// Distance (in shorter half-sides) beyond which the whole rectangle is one panel, whose at most
+/// eight lines cost no more than the four corners.
 const FAR_REACH: f64 = 16.0;
 /// Largest tolerated ratio of the corner terms to a stress: 3e3 times a rounding error of 2e-16.
 const LARGEST_CANCELLATION: f64 = 3e3;
 
-/// Gauss-Legendre nodes and weights, and the distance in half-widths from which each rule is good
-/// to 1e-13 (Abramowitz and Stegun 1964, table 25.4).
+/// Gauss-Legendre nodes and weights, and the distance in half-widths beyond which each rule is
+/// accurate to 1e-13 (Abramowitz and Stegun 1964, table 25.4).
 const RULES: [(f64, &[(f64, f64)]); 3] = [
     (
         1000.0,
@@ -103,19 +103,19 @@ const RULES: [(f64, &[(f64, f64)]); 3] = [
     ),
 ];
 
-/// What the three normal stresses are made of: integrals over the loaded area, rho the distance.
+/// The integrals over the loaded area that form the three normal stresses; rho is the distance.
 #[derive(Debug, Clone, Copy, Default)]
 struct Sums {
-    /// Of z / rho^3, the solid angle.
+    /// The integral of z / rho^3, the solid angle.
     angle: f64,
-    /// Of 1/(rho (rho + z)) - y^2 (2 rho + z) / (rho^3 (rho + z)^2), the part of sigma_xx with
-    /// 1 - 2 nu; that of sigma_yy is `angle` less this.
+    /// The integral of 1/(rho (rho + z)) - y^2 (2 rho + z) / (rho^3 (rho + z)^2), the part of
+    /// sigma_xx with 1 - 2 nu; that of sigma_yy is `angle` less this.
     lateral: f64,
-    /// Of 3 z x^2 / rho^5.
+    /// The integral of 3 z x^2 / rho^5.
     direct_x: f64,
-    /// Of 3 z y^2 / rho^5.
+    /// The integral of 3 z y^2 / rho^5.
     direct_y: f64,
-    /// Of 3 z^3 / rho^5.
+    /// The integral of 3 z^3 / rho^5.
     direct_z: f64,
 }
 
@@ -187,7 +187,7 @@ impl Cell {
         Self { x, y, z, rho }
     }
 
-    /// Sums of the normal stresses, by whichever form is accurate at the point.
+    /// Sums of the normal stresses, by the form that is accurate at the point.
     fn normal(&self, nu: f64) -> Sums {
         if self.z == 0.0 {
             return self.surface();
@@ -216,8 +216,8 @@ impl Cell {
         let z = self.z;
         for (i, &u) in self.x.ends.iter().enumerate() {
             for (j, &v) in self.y.ends.iter().enumerate() {
-                // A corner straight above or beside the point adds nothing: every term is odd in u
-                // and v.
+                // A corner directly above or beside the point contributes nothing: every term is
+                // odd in u and v.
                 if u == 0.0 || v == 0.0 {
                     continue;
                 }
@@ -246,7 +246,7 @@ impl Cell {
         (sums, largest)
     }
 
-    /// The sums for z = 0, where the direct parts are the solid angle or nothing.
+    /// The sums for z = 0, where the direct parts are the solid angle or zero.
     fn surface(&self) -> Sums {
         let ([u1, u2], [v1, v2]) = (self.x.ends, self.y.ends);
         if u2 > 0.0 || v2 > 0.0 {
@@ -254,7 +254,7 @@ impl Cell {
             // cancellation: (v1 + i u1)(v2 + i u2) and (v1 + i u2)(v2 + i u1) share a real part.
             let real = v1 * v2 - u1 * u2;
             let (xy, ab) = (self.x.at * self.y.at, self.x.half * self.y.half);
-            // x y - a b from the distances to the edges, which next to the corner keep their digits.
+            // x y - a b from the distances to the edges, which are accurate next to the corner.
             let beyond = u2 * self.y.at + self.x.half * v2;
             let lateral = (-4.0 * ab * real).atan2(real * real + 4.0 * beyond * (xy + ab));
             return Sums { lateral, ..Default::default() };
@@ -268,7 +268,7 @@ impl Cell {
     }
 
     /// sigma_xy for x, y >= 0: both terms of Love's A_xy, (2 nu - 1) ln(rho + z) - z/rho, as exact
-    /// multiples of x y. They factor because rho11^2 rho22^2 - rho12^2 rho21^2 = -16 a b x y.
+    /// multiples of x y. They factorise because rho11^2 rho22^2 - rho12^2 rho21^2 = -16 a b x y.
     fn in_plane_shear(&self, nu: f64) -> f64 {
         let z = self.z;
         let [[r11, r12], [r21, r22]] = self.rho;
@@ -347,9 +347,9 @@ fn reach(across: f64, along: f64, z: f64, half: f64, half_along: f64) -> f64 {
 }
 
 /// Sums for z > 0 by Gauss's rule over lines along y, `half` the half-width in x; a rectangle too
-/// wide for its distance is cut in two, at first below the point, so that parts next to it keep the
-/// digits of their distance. Ends because the point is off the surface: the integrand is analytic
-/// within the distance [`reach`] measures.
+/// wide for its distance is divided in two, first below the point, so that the distances of parts
+/// next to it stay accurate. The recursion ends because the point is off the surface: the integrand
+/// is analytic within the distance from [`reach`].
 fn strip(x: f64, y: f64, z: f64, half: f64, half_along: f64) -> Sums {
     let distance = reach(x, y, z, half, half_along);
     let mut sums = Sums::default();

@@ -1,4 +1,4 @@
-//! Closed forms as pure functions, and tables of those that are wanted often.
+//! Closed forms as pure functions, and tables of those that are evaluated often.
 
 pub mod bessel;
 mod bessel_j;

@@ -1,39 +1,39 @@
-//! Where the stresses of line loads are tabulated: patches of the distance rho, in units of 1/k, and
-//! of the direction.
+//! The patches on which the stresses of line loads are tabulated, in the distance rho, in units of
+//! 1/k, and the direction.
 
-/// How finely a function of rho and of the direction is tabulated.
+/// The resolution of a table in rho and the direction.
 pub struct Fineness {
-    /// Coefficients in either coordinate of a patch.
+    /// Coefficients in each coordinate of a patch.
     pub order: usize,
-    /// Patches an octave of rho, a power of two.
+    /// Patches per octave of rho, a power of two.
     pub rows: usize,
-    /// Patches from the depth's direction to the surface's.
+    /// Patches from the direction of the depth to that of the surface.
     pub angles: usize,
 }
 
 /// For the stresses of fields.
 pub const STRESS: Fineness = Fineness { order: 4, rows: 2, angles: 8 };
 
-/// For the stress that the end faces' matrices are solved with.
+/// For the stress in the matrices of the end faces.
 pub const WW: Fineness = Fineness { order: 6, rows: 1, angles: 6 };
 
-/// Octaves of rho that are tabulated, 2^LOW up to 2^HIGH.
+/// Tabulated octaves of rho, 2^LOW to 2^HIGH.
 const LOW: i32 = -9;
 const HIGH: i32 = 5;
 
 /// Lower end of the tabulated range of rho.
 pub const FLOOR: f64 = 1.0 / 512.0;
-/// Its upper end.
+/// Upper end of the tabulated range of rho.
 pub const CEILING: f64 = 32.0;
 
 impl Fineness {
-    /// Of the distance `rho` the first patch of its row, and the place in it, in [-1, 1]. A distance that is
-    /// not in the table has no patch of it.
+    /// The first patch of the row for the distance `rho`, and the position in it, in [-1, 1]. A
+    /// distance outside the table has no patch.
     #[inline(always)]
     pub fn row(&self, rho: f32) -> (i32, f32) {
         const MANTISSA: u32 = 23;
         const ONE: u32 = 127 << MANTISSA;
-        // The octave's halves, and so on, are the mantissa's first digits; what follows is the place.
+        // The parts of the octave are the first digits of the mantissa; the rest is the position.
         let halves = self.rows.trailing_zeros();
         let bits = rho.to_bits();
         let row = (bits >> (MANTISSA - halves)) as i32 - ((127 + LOW) << halves);
@@ -41,8 +41,8 @@ impl Fineness {
         (row * self.angles as i32, 2.0 * place - 3.0)
     }
 
-    /// Of `share`, the offset's part in the sum of offset and depth, the patch in its row, and the
-    /// place in it, in [-1, 1].
+    /// The patch within a row for `share`, the offset divided by the sum of offset and depth, and
+    /// the position in it, in [-1, 1].
     #[inline(always)]
     pub fn direction(&self, share: f64) -> (usize, f64) {
         let around = share * self.angles as f64;
@@ -50,7 +50,8 @@ impl Fineness {
         (angle, 2.0 * (around - angle as f64) - 1.0)
     }
 
-    /// Offsets and depths of all values, patch by patch, in a patch the direction running fastest.
+    /// Offsets and depths of all values, patch by patch, with the direction running fastest within
+    /// a patch.
     pub fn places(&self) -> impl Iterator<Item = (f64, f64)> {
         let (n, rows) = (self.order, (HIGH - LOW) as usize * self.rows);
         let count = rows * self.angles * n * n;
@@ -67,7 +68,8 @@ impl Fineness {
     }
 }
 
-/// Node number `i` of Chebyshev's `order` in [-1, 1], the places of a patch's values in either coordinate.
+/// Chebyshev node number `i` of `order` in [-1, 1], the positions of a patch's values in each
+/// coordinate.
 pub fn chebyshev_node(order: usize, i: usize) -> f64 {
     (std::f64::consts::PI * (i as f64 + 0.5) / order as f64).cos()
 }

@@ -1,16 +1,18 @@
-//! An infinite plate pressed on both faces, and the two half-spaces that carry its steep part.
+//! An infinite plate under pressure on both faces, and the two half-spaces that contain its steep
+//! part.
 //!
 //! The plate is |y| <= H, unbounded in x and z; both faces carry the pressure q cos(k x) cos(l z).
 //! kappa^2 = k^2 + l^2, t = kappa H. In the plane of the wave vector and y the plate is in plane
 //! strain (Timoshenko and Goodier, Theory of Elasticity, 1970, article 24).
 
-/// The stresses of the plate less those of the two half-spaces behind its faces, per unit face pressure of
-/// one wave. The difference is smooth and vanishes like e^(-2 kappa (H - |y|) ...) for large kappa H.
+/// The stresses of the plate less those of the two half-spaces behind its faces, per unit face
+/// pressure of one wave. The difference is smooth and vanishes like e^(-2 kappa (H - |y|) ...) for
+/// large kappa H.
 #[derive(Debug, Clone, Copy)]
 pub struct Remainder {
     nu: f64,
     kappa: f64,
-    /// kappa H, and hyperbolic functions of it over their growth e^t.
+    /// kappa H, and its hyperbolic functions divided by their growth e^t.
     t: f64,
     cosh_t: f64,
     sinh_t: f64,
@@ -24,8 +26,8 @@ pub struct Remainder {
 }
 
 impl Remainder {
-    /// For the half-thickness `half` > 0, Poisson's ratio `nu`, and the wavenumbers `k` and `l` >= 0, not
-    /// both zero.
+    /// For the half-thickness `half` > 0, Poisson's ratio `nu`, and the wavenumbers `k` and `l` >=
+    /// 0, not both zero.
     pub fn new(half: f64, nu: f64, k: f64, l: f64) -> Self {
         let kappa = k.hypot(l);
         let t = kappa * half;
@@ -43,8 +45,8 @@ impl Remainder {
         }
     }
 
-    /// Amplitudes at |`y`| <= H: xx, yy, zz vary as cos(k x) cos(l z), xy as sin(k x) cos(l z), xz as
-    /// sin(k x) sin(l z), yz as cos(k x) sin(l z).
+    /// Amplitudes at |`y`| <= H: xx, yy, zz vary as cos(k x) cos(l z), xy as sin(k x) cos(l z), xz
+    /// as sin(k x) sin(l z), yz as cos(k x) sin(l z).
     pub fn at(&self, y: f64) -> [f64; 6] {
         let Self { nu, t, cosh_t, sinh_t, inverse, kk, ll, .. } = *self;
         let a = self.kappa * y;

@@ -1,7 +1,7 @@
 //! A half-space in plane strain under a pressure on a strip, as a sum of modes.
 //!
 //! The pressure on |x| <= a is p(x) = sum_m c_m sqrt(1 - t^2) U_2m(t), t = x/a; the Hertz pressure
-//! is the first mode alone. Every integral of these modes that the contact needs is closed.
+//! is the first mode alone. Every integral of these modes that the contact needs has a closed form.
 
 use super::bessel_table::tabulated_j_odd;
 use std::f64::consts::{LN_2, PI};
@@ -9,10 +9,11 @@ use std::f64::consts::{LN_2, PI};
 /// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the modes `coefficients` on
 /// |x| <= `half_width`; yy is nu (xx + zz).
 ///
-/// With zeta = (x + i z)/a: F(zeta) = int p(t')/(zeta - t') dt' = pi sum c_m (zeta - sqrt(zeta^2 - 1))^(2m+1)
-/// (Mason and Handscomb, Chebyshev Polynomials, 2003, section 9.5.1), and the line-load solution
-/// (Johnson 1985, Eq. 2.23) sums to pi xx = Im F + Re(z F'), pi zz = Im F - Re(z F'), pi xz = -Im(z F').
-/// On the surface inside the strip the limit from z > 0 is taken: xx = zz = -p, xz = 0.
+/// With zeta = (x + i z)/a: F(zeta) = int p(t')/(zeta - t') dt' = pi sum c_m (zeta - sqrt(zeta^2 -
+/// 1))^(2m+1) (Mason and Handscomb, Chebyshev Polynomials, 2003, section 9.5.1), and the line-load
+/// solution (Johnson 1985, Eq. 2.23) sums to pi xx = Im F + Re(z F'), pi zz = Im F - Re(z F'), pi
+/// xz = -Im(z F'). On the surface inside the strip the result is the limit from z > 0: xx = zz =
+/// -p, xz = 0.
 pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
     let (t, d) = (x / half_width, z / half_width);
     // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1; for z >= 0 its imaginary part is <= 0.
@@ -89,8 +90,8 @@ pub fn cumulative(half_width: f64, coefficients: &[f64], x: f64) -> f64 {
     half_width * sum
 }
 
-/// Fourier transforms int p(x) cos(k x) dx of each mode with unit coefficient on |x| <= `half_width`,
-/// into `out`: pi a (2m+1) (-1)^m J_(2m+1)(k a) / (k a). Returns that of the mode
+/// Fourier transforms int p(x) cos(k x) dx of each mode with unit coefficient on |x| <=
+/// `half_width`, into `out`: pi a (2m+1) (-1)^m J_(2m+1)(k a) / (k a). Returns that of the mode
 /// 1/sqrt(1 - t^2), pi a J_0(k a) (Abramowitz and Stegun 1964, 9.1.20 and 9.1.21).
 pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
     let s = k * half_width;
@@ -110,13 +111,13 @@ pub fn transforms(half_width: f64, k: f64, out: &mut [f64]) -> f64 {
     PI * half_width * j0
 }
 
-/// -int ln|x - x'| p(x') dx' at x = `t` `half_width` of each mode with unit coefficient, into `out`;
-/// returns that of the mode 1/sqrt(1 - t^2).
+/// -int ln|x - x'| p(x') dx' at x = `t` `half_width` of each mode with unit coefficient, into
+/// `out`; returns that of the mode 1/sqrt(1 - t^2).
 ///
-/// From -int ln|t - t'| T_n(t') / sqrt(1 - t'^2) dt' = (pi / n) T_n(t), pi ln 2 for n = 0
-/// (Mason and Handscomb 2003, section 9.5.2) and sqrt(1-t^2) U_n = (T_n - T_(n+2)) / (2 sqrt(1-t^2)).
-/// For |t| > 1 and even n it is (pi / n) w^n, w = |t| - sqrt(t^2 - 1), and pi ln(2 w) for n = 0:
-/// the expansion of the logarithm in powers of w.
+/// From -int ln|t - t'| T_n(t') / sqrt(1 - t'^2) dt' = (pi / n) T_n(t), pi ln 2 for n = 0 (Mason
+/// and Handscomb 2003, section 9.5.2) and sqrt(1-t^2) U_n = (T_n - T_(n+2)) / (2 sqrt(1-t^2)). For
+/// |t| > 1 and even n it is (pi / n) w^n, w = |t| - sqrt(t^2 - 1), and pi ln(2 w) for n = 0: the
+/// expansion of the logarithm in powers of w.
 pub fn logarithmic(half_width: f64, t: f64, out: &mut [f64]) -> f64 {
     let angle = t.clamp(-1.0, 1.0).acos();
     let outside = t.abs().max(1.0) + (t * t - 1.0).max(0.0).sqrt();
@@ -142,7 +143,7 @@ mod tests {
 
     const MODES: [f64; 3] = [1.0, -0.2, 0.05];
 
-    /// Sums f(x') p(x') over the strip by Gauss in the angle.
+    /// Integral of f(x') p(x') over the strip by Gauss quadrature in the angle.
     fn integrate(a: f64, c: &[f64], f: impl Fn(f64) -> f64) -> f64 {
         let (g, w) = gauss_legendre(400);
         g.iter()

@@ -1,5 +1,5 @@
-//! Stresses of line loads that vary as cos(k x) along their line, tabulated; the conventions and the
-//! closed forms are those of [`crate::kernels::line_load`].
+//! Stresses of line loads that vary as cos(k x) along their line, tabulated; the conventions and
+//! the closed forms are those of [`crate::kernels::line_load`].
 
 use super::bessel_table::to_powers;
 use super::line_load::{WaveStress, near};
@@ -7,51 +7,53 @@ use super::patches::{CEILING, FLOOR, STRESS, WW};
 use multiversion::{multiversion, target::target_cfg_f};
 use std::sync::{Arc, Mutex};
 
-/// [`super::line_load::exact`] of one material, tabulated: with lengths in units of 1/k the six stresses times
-/// rho are smooth functions of rho and of the angle, interpolated by polynomials on patches, rows of
-/// patches in octaves of rho. Absolute error of rho times a stress below 5e-5, of [`WaveTable::ww`]
-/// below 2e-5 (checked against the closed forms), at less than a tenth of its time.
+/// [`super::line_load::exact`] of one material, tabulated: with lengths in units of 1/k the six
+/// stresses times rho are smooth functions of rho and of the angle, interpolated by polynomials on
+/// patches, with rows of patches in octaves of rho. Absolute error of rho times a stress below
+/// 5e-5, of [`WaveTable::ww`] below 2e-5 (checked against the closed forms), at less than a tenth
+/// of its time.
 #[derive(Debug, Clone)]
 pub struct WaveTable {
     nu: f64,
-    /// xx, ww, dd and wd: all that a plane of symmetry x = 0 needs.
+    /// xx, ww, dd and wd: all stresses that do not vanish in the plane of symmetry x = 0.
     even: Vec<Patch>,
     /// xw and xd.
     odd: Vec<OddPatch>,
-    /// ww alone, more exactly: the faces' matrices are solved with.
+    /// ww alone, more accurately, for the matrices of the end faces.
     ww: Vec<WwPatch>,
 }
 
 /// Monomial coefficients of some stresses: for each power of the radial coordinate a vector of
 /// [power of the angular one][stress].
 ///
-/// In single precision, whose rounding is below the interpolation's error: a look-up is bound by
-/// the memory it touches.
+/// In single precision, whose rounding is below the interpolation error: memory access limits the
+/// speed of a look-up.
 type Patch = [[f32; LANES]; STRESS.order];
 type OddPatch = [[f32; ODD_LANES]; STRESS.order];
 
-/// Monomial coefficients of ww: for each power of the radial coordinate a vector over those of the angular
-/// one, filled up with zeros.
+/// Monomial coefficients of ww: for each power of the radial coordinate a vector over those of the
+/// angular one, filled up with zeros.
 type WwPatch = [[f64; WW_LANES]; WW.order];
 const WW_LANES: usize = 8;
 
-/// Stresses that are looked up together: those that are even in the distance along the line, and those
-/// that are odd.
+/// Stresses that are looked up together: those that are even in the distance along the line, and
+/// those that are odd.
 const EVEN: usize = 4;
 const ODD: usize = 2;
 const LANES: usize = EVEN * STRESS.order;
 const ODD_LANES: usize = ODD * STRESS.order;
 
-/// Wavenumbers whose sums are taken together: what they share of a load is looked up once.
+/// Number of wavenumbers summed together: their common data of a load is looked up once.
 pub const WAVES: usize = 8;
 
-/// Stresses times rho at the places of [`STRESS`] and of [`WW`] (ww alone), k = 1, for nu = 0 and what
-/// nu = 1 adds, in little-endian: they are linear in nu. Evaluated when the program is built.
+/// Stresses times rho at the nodes of [`STRESS`] and of [`WW`] (ww alone), k = 1, little-endian:
+/// the values for nu = 0 and their increase to nu = 1, because they are linear in nu. Evaluated by
+/// the build script.
 const STRESS_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_stress.f32"));
 const WW_VALUES: &[u8] = include_bytes!(concat!(env!("OUT_DIR"), "/wave_ww.f64"));
 
-/// Calls `add` with the monomial coefficients [radial][angular] of each patch of `C` functions, whose
-/// `values` are given in the order of [`super::patches::Fineness::places`].
+/// Calls `add` with the monomial coefficients [radial][angular] of each patch of `C` functions,
+/// whose `values` are given in the order of [`super::patches::Fineness::places`].
 fn interpolate<const N: usize, const C: usize>(
     values: impl Iterator<Item = [f64; C]>,
     mut add: impl FnMut([[[f64; C]; N]; N]),
@@ -86,14 +88,14 @@ fn interpolate<const N: usize, const C: usize>(
 }
 
 impl WaveTable {
-    /// The table for Poisson's ratio `nu`, built once for all that ask for it.
+    /// The table for Poisson's ratio `nu`, built once and shared.
     pub fn shared(nu: f64) -> Arc<Self> {
         static TABLES: Mutex<Vec<Arc<WaveTable>>> = Mutex::new(Vec::new());
         let mut tables = TABLES.lock().unwrap_or_else(|e| e.into_inner());
         if let Some(table) = tables.iter().find(|t| t.nu == nu) {
             return table.clone();
         }
-        // A sweep over many materials must not fill the memory.
+        // Limits the memory in a sweep over many materials.
         if tables.len() >= 16 {
             tables.remove(0);
         }
@@ -137,9 +139,9 @@ impl WaveTable {
         self.sum(&waves, &places, f64::INFINITY, &[[1.0; WAVES]])[0].0
     }
 
-    /// For each of the wavenumbers `k`, ascending, the stresses of line loads at `places` that are less than
-    /// `reach` / k away, and the number of those that the table gave. `loads` are those of a place at all
-    /// wavenumbers; an infinite wavenumber feels none.
+    /// For each of the ascending wavenumbers `k`, the stresses of the line loads at `places` closer
+    /// than `reach` / k, and the number of those taken from the table. `loads` holds the loads of
+    /// each place at all wavenumbers; an infinite wavenumber reaches none.
     pub fn sum(
         &self,
         k: &[f64; WAVES],
@@ -176,7 +178,8 @@ impl WaveTable {
         of_waves
     }
 
-    /// The stress ww alone, of a unit load at each of `places`, into `out`; none from beyond `reach`.
+    /// The stress ww alone, of a unit load at each of `places`, into `out`; none from beyond
+    /// `reach`.
     pub fn ww(&self, k: f64, places: &WwPlaces, reach: f64, out: &mut Vec<f64>) {
         out.resize(places.offsets.len(), 0.0);
         ww_of_all(&self.ww, k, places, reach, out);
@@ -218,7 +221,7 @@ impl WwPlaces {
     }
 }
 
-/// The tabulated stress ww into `out`, compiled for the processor's vector units too.
+/// Writes the tabulated stress ww to `out`; compiled for the processor's vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &mut [f64]) {
     let times = |a: f64, b: f64, c: f64| -> f64 {
@@ -229,7 +232,7 @@ fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &m
     for ((distance, (direction, factors)), value) in
         places.distances.iter().zip(directions).zip(out.iter_mut())
     {
-        // Rounded first: what is below the ceiling then has a row.
+        // Rounded first, so that every distance below the ceiling has a row.
         let rho = (k * distance) as f32;
         if !(floor..ceiling).contains(&rho) {
             *value = 0.0;
@@ -251,7 +254,7 @@ fn ww_of_all(patches: &[WwPatch], k: f64, places: &WwPlaces, reach: f64, out: &m
     }
 }
 
-/// Where line loads are that a target feels: what is the same for all wavenumbers.
+/// The positions of line loads relative to a target: the data common to all wavenumbers.
 #[derive(Debug, Clone, Default)]
 pub struct Places {
     offsets: Vec<f64>,
@@ -260,15 +263,16 @@ pub struct Places {
     distances: Vec<f32>,
     /// First patch of the direction, in any row of patches.
     patches: Vec<u32>,
-    /// Powers of the angular coordinate as [`Patch`] wants them, over the distance, with the signs of
-    /// the stresses that are odd in the offset: of [`WaveTable::even`] and of [`WaveTable::odd`].
+    /// Powers of the angular coordinate in the form of [`Patch`], divided by the distance, with the
+    /// signs of the stresses that are odd in the offset, for [`WaveTable::even`] and
+    /// [`WaveTable::odd`].
     even: Vec<[f32; LANES]>,
     odd: Vec<[f32; ODD_LANES]>,
 }
 
 impl Places {
     /// Line loads at the `offsets` target - source along the surface, of a target at `depth` > 0.
-    /// Only what does not vanish in the plane x = 0 is summed for a target that is `central`.
+    /// For a `central` target only the stresses that do not vanish in the plane x = 0 are summed.
     pub fn new(offsets: Vec<f64>, depth: f64, central: bool) -> Self {
         let count = offsets.len();
         let mut places = Self {
@@ -309,13 +313,13 @@ impl Places {
         self.offsets.is_empty()
     }
 
-    /// How far each load is away.
+    /// Distance of each load.
     pub fn distances(&self) -> &[f32] {
         &self.distances
     }
 }
 
-/// What spreads on a half-space's surface from line loads, for each of some wavenumbers.
+/// Sums for the stresses on a half-space's surface beside line loads, for each of some wavenumbers.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SurfaceSpread {
     /// Sums of (k / 2) e^(-k |u|) times a load.
@@ -326,8 +330,8 @@ pub struct SurfaceSpread {
     pub counts: [u32; WAVES],
 }
 
-/// Adds what spreads from line loads at the offset `u` to `sums`, for each of the wavenumbers `k` that is less
-/// than `reach` / |u|. J and N of [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
+/// Adds the effect of line loads at the offset `u` to `sums`, for each of the wavenumbers `k` below
+/// `reach` / |u|. J and N of [`super::bessel::incomplete`] at v = 0 are (pi/2) e^-u.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 pub fn add_surface_spread(
     k: &[f32; WAVES],
@@ -351,7 +355,7 @@ pub fn add_surface_spread(
 #[inline(always)]
 fn fade(x: f32) -> f32 {
     let exponent = -std::f32::consts::LOG2_E * x;
-    // Adding 3 * 2^22 rounds to a whole number, which then are the last digits.
+    // Adding 3 * 2^22 rounds to an integer, which then stands in the last digits.
     const ROUND: f32 = 12_582_912.0;
     let rounded = exponent + ROUND;
     let t = std::f32::consts::LN_2 * (exponent - (rounded - ROUND));
@@ -360,8 +364,8 @@ fn fade(x: f32) -> f32 {
     power * SERIES.iter().rev().fold(0.0, |sum, c| sum * t + c)
 }
 
-/// Sums over loads for each of some wavenumbers, in the lanes of a [`Patch`] and of an [`OddPatch`], and
-/// how many loads there were.
+/// Sums over loads for each of some wavenumbers, in the lanes of a [`Patch`] and of an
+/// [`OddPatch`], and the number of loads.
 #[derive(Debug, Clone, Copy)]
 struct Sums {
     even: [[f32; LANES]; WAVES],
@@ -369,8 +373,8 @@ struct Sums {
     counts: [u32; WAVES],
 }
 
-/// Sums of the tabulated stresses over the loads that the table reaches, compiled for the
-/// processor's vector units too.
+/// Sums of the tabulated stresses over the loads within the table; compiled for the processor's
+/// vector units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn sum_loads(
     even: &[Patch],
@@ -413,8 +417,8 @@ fn sum_loads(
     sums
 }
 
-/// Adds a load to the sums over the powers of the angular coordinate: its patch at the place `a` times
-/// the load's `factors`. `times` multiplies and adds.
+/// Adds a load to the sums over the powers of the angular coordinate: its patch at the position `a`
+/// times the load's `factors`. `times` multiplies and adds.
 #[inline(always)]
 fn add_patch<const L: usize>(
     patch: &[[f32; L]; STRESS.order],
@@ -435,7 +439,7 @@ fn add_patch<const L: usize>(
     }
 }
 
-/// The `S` stresses whose sums for each power of the angular coordinate stand in `lanes`.
+/// The `S` stresses from their sums in `lanes` for each power of the angular coordinate.
 fn from_powers<const S: usize, const L: usize>(lanes: &[f32; L]) -> [f64; S] {
     let mut sums = [0.0; S];
     for (lane, v) in lanes.iter().enumerate() {
@@ -535,7 +539,7 @@ mod tests {
     fn sums_take_each_wavenumber_by_itself() {
         let (nu, reach) = (0.3, 8.0);
         let table = WaveTable::new(nu);
-        // From next to the target, before the table begins, to beyond what is felt.
+        // From next to the target, before the table begins, to beyond the reach.
         let offsets: Vec<f64> =
             (0..30).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 } * 1e-3 * 1.45f64.powi(i)).collect();
         let mut k: [f64; WAVES] = std::array::from_fn(|wave| 0.3 * 1.9f64.powi(wave as i32));
