@@ -2,7 +2,7 @@
 
 A roller is pressed on a block; both have free end faces. This package meshes a quarter of each body
 with the gmsh program, solves the frictionless contact with FEniCSx and samples stresses and contact
-pressure at the points that it is asked for. It talks JSON in, CSV and JSON out.
+pressure at the requested points. It reads JSON and writes CSV and JSON.
 
 Conventions used everywhere in the package:
 

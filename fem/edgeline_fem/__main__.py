@@ -7,7 +7,8 @@ import os
 import sys
 from pathlib import Path
 
-# One thread a process: ranks and jobs are what runs in parallel here, and BLAS reads this when loaded.
+# One thread per process: ranks and jobs run in parallel, and BLAS reads this when it is
+# loaded.
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from .lifetime import follow_driver  # noqa: E402
@@ -67,7 +68,8 @@ def _record(arguments):
         raise FemError(f"there is no case '{unknown[0]}' in {arguments.folder / 'cases.toml'}; "
                        f"known are {', '.join(cases)}")
     run = Run(arguments.linear, arguments.ranks, arguments.launcher)
-    # Coarse meshes of all cases come first: an early stop leaves something of every case.
+    # Coarse meshes of all cases come first, so that an early stop leaves a result for
+    # every case.
     for size in sorted(arguments.sizes, reverse=True):
         for name in names:
             _log(f"{name}, size {size:g}")
@@ -107,7 +109,7 @@ def main():
     command.add_argument("--gmsh", default="gmsh", help="name or path of the gmsh program")
     command.set_defaults(run=_probe)
     arguments = parser.parse_args()
-    # The form compiler's own progress would drown ours.
+    # The form compiler's progress would hide ours.
     logging.getLogger().setLevel(logging.WARNING)
     try:
         arguments.run(arguments)

@@ -15,7 +15,7 @@ from petsc4py import PETSc
 
 
 def versions():
-    """Versions of the libraries underneath, by name."""
+    """Versions of the underlying libraries, by name."""
     return {
         "dolfinx": dolfinx.__version__,
         "petsc": ".".join(map(str, PETSc.Sys.getVersion())),
@@ -74,8 +74,8 @@ def geometry_nodes(domain):
 def direct_solver(comm):
     """PETSc's name of the sparse Cholesky factorisation to use on ``comm``.
 
-    CHOLMOD where PETSc has it: it knows better orderings than MUMPS as distributions build it. But it knows
-    one process only.
+    CHOLMOD if PETSc has it, for its better orderings than those of MUMPS in distributions;
+    it supports one process only.
     """
     serial = comm.size == 1 and PETSc.Sys.hasExternalPackage("suitesparse")
     return "cholmod" if serial else "mumps"

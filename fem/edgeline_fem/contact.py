@@ -69,7 +69,7 @@ class ContactGrid:
     """The tensor grid of nodes where contact may happen: the element boundaries ``x`` times ``y``.
 
     Nodes are numbered with y running fastest. ``weights`` are the nodes' shares of the area, lumped from
-    the consistent mass matrix; all are positive, which is what bounds on nodal forces need.
+    the consistent mass matrix; all are positive, as bounds on nodal forces require.
 
     Pressures are handled at the elements' 2 x 2 Gauss points, ``gauss_x`` times ``gauss_y``. Where no pair of
     nodes may penetrate, corner nodes carry a little too much and middle ones too little (0.1 to 0.2 % of p0 on
@@ -181,7 +181,7 @@ def _cells(nodes):
 
 
 def half_space_compliance(grid, free, attached):
-    """A dense stand-in for the contact compliance: displacement per nodal force, (n, n), symmetric.
+    """A dense approximation of the contact compliance: displacement per nodal force, (n, n), symmetric.
 
     Forces are spread, and displacements averaged, over the cells around the nodes. Both bodies are taken
     as half-spaces with the two planes of symmetry; ``free`` and ``attached`` are the sums of
@@ -205,7 +205,7 @@ def half_space_compliance(grid, free, attached):
         whole = potential(u[:, None, :, None], v[None, :, None, :])
         for axis in range(4):
             whole = np.diff(whole, axis=axis)
-        # Each reflection turns a cell's boundaries round.
+        # Each reflection reverses a cell's boundaries.
         return sign_x * sign_y * whole
 
     signs = [(sign_x, sign_y) for sign_x in (1, -1) for sign_y in (1, -1)]
@@ -237,8 +237,8 @@ def solve_contact(compliance, gap, weights, load, model, scale, tolerance, max_i
 
     Preconditioned conjugate gradients on the nodes in contact, restarted when that set changes. Directions
     keep the load, so that it holds without rescaling; its multiplier is the approach of the bodies. Nodes
-    leave the set where their force would pull, and join it where the gap is negative, once the residual
-    within the set is small enough to believe that.
+    leave the set where their force would be tensile, and join it where the gap is negative, once the
+    residual within the set is small enough.
 
     ``compliance(f)``: S f, the sum of both bodies' displacements, the only costly operation; ``model``: a
     symmetric matrix (n, n) like S, which makes the first guess and the preconditioner; ``gap`` >= 0: at
@@ -282,7 +282,7 @@ def solve_contact(compliance, gap, weights, load, model, scale, tolerance, max_i
             area = weights[touching]
         if inverse is None:
             inverse = np.linalg.inv(model[np.ix_(touching, touching)])
-            # Takes the part out of a direction that changes the load.
+            # Removes the part of a direction that changes the load.
             lift = inverse.sum(axis=1) / inverse.sum()
             direction, old = np.zeros(len(area)), 0.0
         rest = left[touching]

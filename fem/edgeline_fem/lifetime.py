@@ -1,4 +1,4 @@
-"""Processes that do not outlive whoever started them."""
+"""Processes that end with the process that started them."""
 
 import ctypes
 import os
@@ -8,7 +8,7 @@ _PR_SET_PDEATHSIG = 1
 
 
 def _boot():
-    """What tells this machine, and this run of it, from all others."""
+    """Identifies this machine and its current boot."""
     try:
         with open("/proc/sys/kernel/random/boot_id", encoding="ascii") as file:
             return file.read().strip()

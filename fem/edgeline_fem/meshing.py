@@ -98,7 +98,8 @@ def make_axes(case, options):
 
     near = graded_axis(0.0, reach, across, scale)
     arc = np.concatenate((near, graded_axis(reach, quarter_arc, across, scale)[1:]))
-    # The block's nodes stand right under the roller's, which are even in arc length, not in x.
+    # The block's nodes are directly below the roller's, which are even in arc length,
+    # not in x.
     under = radius * np.sin(near / radius)
     x = np.concatenate((under, graded_axis(under[-1], options.block_width, across, scale)[1:]))
 
@@ -355,7 +356,8 @@ def quality(points, cells):
         edges = points[cells[:, ends]] - points[cells[:, vertex]][:, None, :]
         edges /= np.linalg.norm(edges, axis=2)[:, :, None]
         smallest = np.minimum(smallest, np.linalg.det(edges))
-    # gmsh may number a whole mesh left-handed, which the volume forms do not mind.
+    # gmsh may number a whole mesh left-handed, which does not matter for the volume
+    # forms.
     if smallest.mean() < 0.0:
         return quality(points, cells[:, [3, 2, 1, 0, 7, 6, 5, 4]])
     return float(smallest.min()), float(smallest.mean())
@@ -368,7 +370,7 @@ def write_atomically(path, text):
     os.replace(temporary, path)
 
 
-# A gmsh that prints more than this has lost its way (bytes).
+# Limit of gmsh's output (bytes); only a faulty run prints more.
 MAX_OUTPUT = 1 << 20
 
 
@@ -378,7 +380,7 @@ def _run(command):
     Raises :class:`FemError` if it cannot be run, or prints more than ``MAX_OUTPUT``, which ends it.
     """
     try:
-        # Its death goes with ours; what it prints may be anything.
+        # It ends with this process; its output may be arbitrary bytes.
         with subprocess.Popen(
             command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
             preexec_fn=die_with_parent,
@@ -400,7 +402,7 @@ def run_gmsh(program, geo, msh, vtk):
     if vtk:
         outputs.append((Path(f"{msh}.vtk.part"), "vtk", Path(msh).with_suffix(".vtk")))
     for output, kind, final in outputs:
-        # What an earlier gmsh left must not pass for the work of this one.
+        # Files of an earlier gmsh run must not be taken for those of this one.
         output.unlink(missing_ok=True)
         command = [program, "-3", "-nt", "1", "-v", "2", "-format", kind, "-o", str(output), str(geo)]
         code, said = _run(command)

@@ -28,8 +28,8 @@ from .standard_points import pressure_lines, standard_curves
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
               "tau_max")
-# Errors leave out points this near to the end of the contact line (units of C): for a longer block the
-# pressure has no limit there.
+# Errors exclude points this close to the end of the contact line (units of C): for a
+# longer block the pressure has no limit there.
 EDGE_RANGE = 0.1
 
 
@@ -160,7 +160,7 @@ def estimate_errors(folder, half_length_m, c_m, p0_pa):
         last = np.abs(meshes[sizes[-2]] - meshes[sizes[-1]])
         rms = float(np.sqrt(np.mean(last**2)))
         order = factor = None
-        # Components that vanish by symmetry have no error to speak of.
+        # Components that vanish by symmetry have negligible errors.
         if len(sizes) == 3 and rms > 1e-7:
             first = float(np.sqrt(np.mean((meshes[sizes[0]] - meshes[sizes[1]]) ** 2)))
             order, factor = order_and_factor((first, rms), sizes)
@@ -267,7 +267,8 @@ def _commit(target):
     """
     new = target / NEW
     if (new / SUMS).exists():
-        # The checksums last: until then those of the old version refuse the mixture.
+        # The checksums last: until then the checksums of the old version refuse the
+        # mixture.
         for name in (*FILES, SUMS):
             if (new / name).exists():
                 os.replace(new / name, target / name)

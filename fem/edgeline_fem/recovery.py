@@ -1,4 +1,4 @@
-"""Stresses at points: superconvergent patch recovery, and known tractions put in.
+"""Stresses at points: superconvergent patch recovery, and enforcement of known tractions.
 
 The stress of a quadratic hexahedron is a full order more accurate at its 2 x 2 x 2 Gauss points than
 anywhere else. Around every inner vertex of the mesh a triquadratic polynomial is fitted to those values in
@@ -180,7 +180,7 @@ def hertz_stress(points, half_width, peak, poisson, radius):
 
 
 def enforce_tractions(points, stress, poisson, end, radius, pressure):
-    """Put known tractions into ``stress`` (n, 6) at ``points`` (n, 3), in place.
+    """Enforce known tractions on ``stress`` (n, 6) at ``points`` (n, 3), in place.
 
     On a face the tractions are known, and the strains within the face are well resolved. So the normal and
     shear stresses are replaced and the stresses within the face follow at unchanged strains: both gain

@@ -9,7 +9,7 @@ SCHEMA = 1
 
 
 class FemError(Exception):
-    """A calculation that cannot be done; the message says what, where and what to do."""
+    """A calculation that is impossible; the message says what, where and what to do."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -158,7 +158,7 @@ class SolverOptions:
 
 @dataclasses.dataclass(frozen=True)
 class Curve:
-    """Points (x, y, z) of one body at which stresses are wanted (m, z is depth below its surface)."""
+    """Points (x, y, z) of one body at which stresses are requested (m, z is depth below its surface)."""
 
     body: str
     name: str
@@ -167,7 +167,7 @@ class Curve:
 
 @dataclasses.dataclass(frozen=True)
 class Request:
-    """Everything that a calculation depends on."""
+    """All input of a calculation."""
 
     case: Case
     mesh: MeshOptions

@@ -1,4 +1,4 @@
-"""The points at which every method is compared, in units of C.
+"""The points at which all models and FEM are compared, in units of C.
 
 They are those of the solver's ``standard_curves``; a test on either side pins them.
 """
