@@ -11,12 +11,20 @@ CURVES = (
     "depth-end",
     "along-y-0.5C",
     "along-y-0.78C",
+    "depth-centre-x0.7",
+    "depth-0.9-x0.7",
+    "depth-end-x0.7",
+    "depth-centre-x1.4",
+    "depth-0.9-x1.4",
+    "depth-end-x1.4",
 )
 
 _NEAR = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5,
          3.0, 4.0, 5.0, 6.5, 8.0)
 _DECADE = (1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
 _OUTWARD = 3.0
+# Within the contact and outside it: all other curves lie on planes of symmetry.
+_OFF_PLANE = (0.7, 1.4)
 # Lengths that differ by less than this part are the same: those of a case come out of divisions.
 _SAME = 1e-9
 
@@ -52,7 +60,8 @@ def standard_curves(half_length, body_half_length):
     """Curves of one body as ``{name: [(x, y, z), ...]}`` in the order of the running coordinate.
 
     ``half_length`` is the roller's half-length, ``body_half_length`` (not less) that of the body; a
-    longer body's curves along y go on past the roller's end for up to 3 C.
+    longer body's curves along y go on past the roller's end for up to 3 C. z is the depth below the body's
+    surface at the point's x.
     """
     y = contact_line(half_length)
     ledge = body_half_length - half_length
@@ -64,11 +73,11 @@ def standard_curves(half_length, body_half_length):
     def along_y(depth):
         return [(0.0, v, depth) for v in y]
 
-    def along_z(at):
-        return [(0.0, at, z) for z in depths()]
+    def along_z(across):
+        return [[(across, v, z) for z in depths()] for v in (0.0, 0.9 * half_length, half_length)]
 
-    points = (along_y(0.0), [(v, 0.0, 0.0) for v in x], along_z(0.0), along_z(0.9 * half_length),
-              along_z(half_length), along_y(0.5), along_y(0.78))
+    points = (along_y(0.0), [(v, 0.0, 0.0) for v in x], *along_z(0.0), along_y(0.5), along_y(0.78),
+              *(curve for across in _OFF_PLANE for curve in along_z(across)))
     return dict(zip(CURVES, points))
 
 

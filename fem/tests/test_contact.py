@@ -125,12 +125,64 @@ def test_hertz_line_contact(tmp_path):
         assert found[:, 1] == pytest.approx(0.3 * (xx + zz), abs=5e-3)
 
 
-def test_the_contact_presses_along_the_rollers_normal(tmp_path):
+@pytest.fixture(scope="module")
+def round_slice(tmp_path_factory):
+    """A slice under a roller of 28 C, as :func:`plane_slice` has it."""
+    return plane_slice(1e-3, tmp_path_factory.mktemp("slice"))
+
+
+def half_plane(x, z):
+    """xx, zz, xz under a Hertz pressure, from line loads (Johnson, Contact Mechanics, 1985, Eqs. 2.23)."""
+    angles = (np.arange(4000) + 0.5) * math.pi / 4000
+    s, load = np.cos(angles), np.sin(angles) ** 2 * math.pi / 4000
+    r4 = ((x - s) ** 2 + z**2) ** 2
+    return [-2.0 / math.pi * np.sum(load * part / r4) for part in ((x - s) ** 2 * z, z**3, (x - s) * z**2)]
+
+
+def disc(radius, x, depth):
+    """xx, zz, xz of a disc under opposite Hertz pressures, ``depth`` below its surface at ``x``.
+
+    Every load causes the radial field of a half-plane behind its own tangent, and a uniform tension takes the
+    normal traction off the circumference (Timoshenko and Goodier, Theory of Elasticity, 1970, article 41).
+    """
+    angles = (np.arange(4000) + 0.5) * math.pi / 4000
+    s, load = np.cos(angles), np.sin(angles) ** 2 * math.pi / 4000
+    z = radius - math.sqrt(radius**2 - x**2) + depth
+    total = np.zeros(3)
+    for side in (1.0, -1.0):
+        sine, cosine = np.sin(s / radius), side * np.cos(s / radius)
+        along, down = x - radius * sine, z - radius + radius * cosine
+        radial = -2.0 / math.pi * load * (cosine * down - sine * along) / (along**2 + down**2) ** 2
+        total += [np.sum(radial * part) for part in (along**2, down**2, along * down)]
+    tension = load.sum() / (math.pi * radius)
+    return total + [tension, tension, 0.0]
+
+
+@pytest.mark.parametrize("x", [0.7, 1.4])
+def test_stresses_off_the_plane_of_symmetry(round_slice, x):
+    """Depth profiles beside the contact's middle: a half-plane's in the block, a whole disc's in the roller.
+
+    Depths run from the surface at x, tensors stand in the fixed axes. What depth and axes along the surface's
+    normal there would change is 0.02 p0.
+    """
+    bodies, _, _, _ = round_slice
+    radius = steel_case(1e-3, 0.5, 1.0).scales().radius
+    z = np.array([0.1, 0.3, 0.6, 1.0, 2.0, 4.0])
+    expected = {"block": [half_plane(x, v) for v in z], "roller": [disc(radius, x, v) for v in z]}
+    for name, body in bodies.items():
+        points = [(x, 0.2, v + surface_depth(name, x, radius)) for v in z]
+        xx, yy, zz, xy, xz, yz = body.stress_field().sample(points).T
+        assert np.stack([xx, zz, xz], axis=1) == pytest.approx(np.array(expected[name]), abs=5e-3), name
+        assert yy == pytest.approx(0.3 * (xx + zz), abs=5e-3), name
+        assert np.abs([xy, yz]).max() < 1e-4, name
+
+
+def test_the_contact_presses_along_the_rollers_normal(round_slice):
     """A roller of 28 C: its tilted surface carries the pressure, and no shear to 0.2 % of p0.
 
     Forces along z alone would leave a shear of p x / R, 0.019 p0 at x = 0.75.
     """
-    bodies, grid, solution, reaction_error = plane_slice(1e-3, tmp_path)
+    bodies, grid, solution, reaction_error = round_slice
     assert reaction_error < 1e-8
     radius = steel_case(1e-3, 0.5, 1.0).scales().radius
     x = np.array([0.25, 0.5, 0.75])
@@ -174,7 +226,7 @@ def test_live_contact(live):
     at = min(pressure, key=lambda y: abs(y - 4.9))
     assert pressure[at] == pytest.approx(0.735, abs=0.03)
     curves = rows(folder / "curves.csv")
-    assert len(curves) == 2 * (20 + 35 + 3 * 50 + 2 * 20)
+    assert len(curves) == 2 * (20 + 35 + 9 * 50 + 2 * 20)
     for row in curves:
         if row["curve"] == "depth-end":
             assert abs(float(row["sigma_yy_pa"])) < 1e-9 * scales.p0_pa

@@ -39,3 +39,10 @@ def test_curves_of_a_flush_block_end_with_the_roller():
     assert curves["surface-along-y"][-1] == (0.0, 5.0, 0.0)
     assert [p[0] for p in curves["surface-along-x"]][-5:] == [1.5, 1.75, 2.0, 2.5, 3.0]
     assert curves["depth-0.9"][0][1] == 4.5
+
+
+def test_depth_profiles_stand_off_the_planes_of_symmetry_too():
+    curves = standard_curves(5.0, 10.0)
+    for place, y in (("centre", 0.0), ("0.9", 4.5), ("end", 5.0)):
+        for suffix, x in (("", 0.0), ("-x0.7", 0.7), ("-x1.4", 1.4)):
+            assert curves[f"depth-{place}{suffix}"] == [(x, y, z) for z in depths()]

@@ -16,7 +16,7 @@ pub struct CurveSpec {
 }
 
 /// Names of the standard curves, in the order of [`standard_curves`].
-pub const CURVE_NAMES: [&str; 7] = [
+pub const CURVE_NAMES: [&str; 13] = [
     "surface-along-y",
     "surface-along-x",
     "depth-centre",
@@ -24,7 +24,17 @@ pub const CURVE_NAMES: [&str; 7] = [
     "depth-end",
     "along-y-0.5C",
     "along-y-0.78C",
+    "depth-centre-x0.7",
+    "depth-0.9-x0.7",
+    "depth-end-x0.7",
+    "depth-centre-x1.4",
+    "depth-0.9-x1.4",
+    "depth-end-x1.4",
 ];
+
+/// Where depth profiles stand across the contact besides its middle, within it and outside it
+/// (units of C): all other curves lie on planes of symmetry.
+const OFF_PLANE: [f64; 2] = [0.7, 1.4];
 
 /// Distances from the roller's end at which curves along y are sampled (units of C).
 const END_DISTANCES: [f64; 22] = [
@@ -81,7 +91,7 @@ pub fn depths() -> Vec<f64> {
 
 /// The standard curves of one body. `half_length` is the roller's half-length and
 /// `body_half_length` that of the body (units of C); a longer body's curves along y go on past
-/// the roller's end for up to three C.
+/// the roller's end for up to three C. z is the depth below the body's surface at the point's x.
 pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
     let mut y = contact_line(half_length);
     let ledge = body_half_length - half_length;
@@ -94,16 +104,16 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
     let mut x = across_contact();
     x.extend([1.75, 2.0, 2.5, 3.0]);
     let along_y = |depth: f64| y.iter().map(|&y| [0.0, y, depth]).collect::<Vec<_>>();
-    let along_z = |y: f64| depths().iter().map(|&z| [0.0, y, z]).collect::<Vec<_>>();
-    let points = [
-        along_y(0.0),
-        x.iter().map(|&x| [x, 0.0, 0.0]).collect(),
-        along_z(0.0),
-        along_z(0.9 * half_length),
-        along_z(half_length),
-        along_y(0.5),
-        along_y(0.78),
-    ];
+    let along_z = |x: f64| {
+        [0.0, 0.9 * half_length, half_length]
+            .map(|y| depths().iter().map(|&z| [x, y, z]).collect::<Vec<_>>())
+    };
+    let across = x.iter().map(|&x| [x, 0.0, 0.0]).collect();
+    let points = [along_y(0.0), across]
+        .into_iter()
+        .chain(along_z(0.0))
+        .chain([along_y(0.5), along_y(0.78)])
+        .chain(OFF_PLANE.into_iter().flat_map(along_z));
     CURVE_NAMES.iter().zip(points).map(|(&name, points)| CurveSpec { body, name, points }).collect()
 }
 
@@ -124,6 +134,14 @@ mod tests {
         let ledge = standard_curves(BodyKind::Block, 5.0, 5.0 / 0.99);
         assert_eq!(ledge[0].points.last(), Some(&[0.0, 5.0 / 0.99, 0.0]));
         assert_eq!(depths().len(), 50);
+        let of = |name: &str| &curves.iter().find(|c| c.name == name).unwrap().points;
+        for (curve, x) in [("x0.7", 0.7), ("x1.4", 1.4)] {
+            for (place, y) in [("centre", 0.0), ("0.9", 4.5), ("end", 5.0)] {
+                let points = of(&format!("depth-{place}-{curve}"));
+                assert!(points.iter().zip(depths()).all(|(p, z)| *p == [x, y, z]));
+                assert_eq!(points.len(), of(&format!("depth-{place}")).len());
+            }
+        }
         for rounded in [5.0 * (1.0 - 1e-15), 5.0 * (1.0 + 1e-15)] {
             let flush = standard_curves(BodyKind::Block, 5.0, rounded);
             assert_eq!(flush[0].points.len(), 20);

@@ -70,6 +70,7 @@ fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stress::curves::CURVE_NAMES;
     use crate::study::{Range, errors};
 
     #[test]
@@ -84,8 +85,8 @@ mod tests {
             let rows =
                 errors::compare(name, half_length, &reference.sampled, &same, &Range::default())
                     .unwrap();
-            // Two lines with two ranges each, fourteen curves with eight quantities.
-            assert_eq!(rows.len(), 4 + 14 * 8, "{name}");
+            // Two lines with two ranges each, the curves of both bodies with eight quantities.
+            assert_eq!(rows.len(), 4 + 2 * CURVE_NAMES.len() * 8, "{name}");
             assert!(rows.iter().all(|r| r.max == 0.0 && r.points > 10), "{name}");
             let stated = rows.iter().all(|r| r.ref_error_max.is_some());
             assert_eq!(stated, record.meshes.len() > 1, "{name}");

@@ -143,15 +143,7 @@ fn solve_writes_its_files() {
 
         let curves = rows(&out.join("curves.csv"));
         for body in ["block", "roller"] {
-            for name in [
-                "surface-along-y",
-                "surface-along-x",
-                "depth-centre",
-                "depth-0.9",
-                "depth-end",
-                "along-y-0.5C",
-                "along-y-0.78C",
-            ] {
+            for name in edgeline::stress::curves::CURVE_NAMES {
                 let rows: Vec<_> =
                     curves.iter().filter(|r| r["body"] == body && r["curve"] == name).collect();
                 assert!(rows.len() > 10, "{body} {name}");
