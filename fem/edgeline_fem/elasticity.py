@@ -192,8 +192,8 @@ class Body:
         held = np.fromiter(self._held[2], dtype=np.int64, count=len(self._held[2]))
         return self.comm.allreduce(-float(inner.array[held].sum()))
 
-    def stress_field(self):
-        """The :class:`~edgeline_fem.recovery.StressField` of the state that :meth:`keep` left."""
+    def stress_field(self, **options):
+        """The :class:`~edgeline_fem.recovery.StressField` of the state that :meth:`keep` left, with its options."""
         stress = self._stress(self.displacement)
         x = ufl.SpatialCoordinate(self.domain)
         wanted = [x[0], x[1], x[2], *(stress[i, j] for i, j in _PAIRS)]
@@ -204,4 +204,4 @@ class Body:
         # The vertices are the first eight of an element's nodes.
         corners = self.domain.geometry.x[compat.geometry_nodes(self.domain)[: len(cells), :8]]
         gathered = [np.concatenate(self.comm.allgather(part)) for part in (values, corners)]
-        return StressField(gathered[0][:, :, :3], gathered[0][:, :, 3:], gathered[1])
+        return StressField(gathered[0][:, :, :3], gathered[0][:, :, 3:], gathered[1], **options)

@@ -47,21 +47,37 @@ def _mirror(axis, flipped, points, stress, corners):
     )
 
 
+def around_the_arc(radius):
+    """The frame in which a roller's elements are boxes: x along its surface, z along the normals there.
+
+    Elements below the surface narrow towards the disc's centre. A narrow one leans by several of its widths over
+    its depth, so a box around it in x and z holds points far beside it.
+    """
+
+    def frame(points):
+        x, y, z = np.moveaxis(points, -1, 0)
+        return np.stack([radius * np.arctan2(x, radius - z), y, radius - np.hypot(x, radius - z)], axis=-1)
+
+    return frame
+
+
 class StressField:
     """Stress anywhere in a body, from its values at the elements' superconvergent points.
 
     ``points`` (m, 8, 3) and ``stress`` (m, 8, 6: xx, yy, zz, xy, xz, yz) are those of m elements, and
     ``corners`` (m, 8, 3) their vertices; all of the body's elements must be there, in any order. x = 0 and
-    y = 0 are planes of symmetry.
+    y = 0 are planes of symmetry. ``frame`` maps points (..., 3) to coordinates in which elements are boxes;
+    stresses stay in the axes x, y, z.
     """
 
-    def __init__(self, points, stress, corners):
+    def __init__(self, points, stress, corners, frame=lambda points: points):
         points, stress, corners = _mirror(0, (3, 4), points, stress, corners)
         points, stress, corners = _mirror(1, (3, 5), points, stress, corners)
         # A fixed order makes results independent of how elements were spread over ranks.
         centres = corners.mean(axis=1)
         order = np.lexsort(np.round(centres, 9).T)
-        self._points, self._stress, corners = points[order], stress[order], corners[order]
+        self._frame = frame
+        self._points, self._stress, corners = points[order], stress[order], frame(corners[order])
         keys, owner = np.unique(np.round(corners.reshape(-1, 3), 7), axis=0, return_inverse=True)
         owner = owner.ravel()
         by_vertex = np.argsort(owner, kind="stable")
@@ -87,7 +103,7 @@ class StressField:
         """Coefficients (27, 6) of a vertex's polynomial in coordinates scaled by its patch."""
         if (vertex, known) not in self._fits:
             elements = self._members[vertex]
-            at = self._local(vertex, self._points[elements].reshape(-1, 3))
+            at = self._local(vertex, self._frame(self._points[elements].reshape(-1, 3)))
             values = self._rest(elements, known)
             self._fits[vertex, known] = np.linalg.lstsq(_terms(at), values, rcond=None)[0]
         return self._fits[vertex, known]
@@ -116,9 +132,9 @@ class StressField:
         chosen = np.flatnonzero(outside.max(axis=1) <= max(1e-6, outside.max(axis=1).min()))
         values = []
         for element in chosen:
-            middle = self._points[element].mean(axis=0)
-            half = 0.5 * np.ptp(self._points[element], axis=0)
-            at = (self._points[element] - middle) / half
+            points = self._frame(self._points[element])
+            middle, half = points.mean(axis=0), 0.5 * np.ptp(points, axis=0)
+            at = (points - middle) / half
             coefficients = np.linalg.lstsq(_linear_terms(at), self._rest([element], known), rcond=None)[0]
             values.append(_linear_terms((point - middle)[None, :] / half)[0] @ coefficients)
         return np.mean(values, axis=0)
@@ -132,14 +148,15 @@ class StressField:
         """
         found = np.empty((len(points), 6))
         slack = 1e-3 * (self._box[1] - self._box[0])
-        for number, point in enumerate(np.asarray(points, dtype=float)):
+        points = np.asarray(points, dtype=float)
+        for number, (place, point) in enumerate(zip(points, self._frame(points))):
             if np.any(point < self._box[0] - slack) or np.any(point > self._box[1] + slack):
-                raise FemError(f"the point {point.tolist()} (units of C, z is depth) lies outside the body")
+                raise FemError(f"the point {place.tolist()} (units of C, z is depth) lies outside the body")
             alone = singular is not None and singular[number]
             steep = None if known is None else known[number]
             found[number] = (self._by_element if alone else self._by_patch)(point, steep)
             if steep is not None:
-                found[number] += steep(point[None, :])[0]
+                found[number] += steep(place[None, :])[0]
         return found
 
 

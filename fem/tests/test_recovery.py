@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 
-from edgeline_fem.recovery import StressField, enforce_tractions, hertz_stress, invariants
+from edgeline_fem.recovery import StressField, around_the_arc, enforce_tractions, hertz_stress, invariants
 from edgeline_fem.request import FemError
 
 
@@ -126,3 +126,34 @@ def test_tractions_on_the_arc_are_normal_to_it():
     normal = np.array([0.1, 0.0, -math.sqrt(0.99)])  # outwards
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])
     assert tensor @ normal == pytest.approx(-0.5 * normal, abs=1e-12)
+
+
+def test_narrow_elements_that_lean_are_boxes_around_the_arc():
+    """Columns towards a disc's centre lean by several of their widths: their frame is the arc's.
+
+    A field that is quadratic in that frame is reproduced in it, and not by boxes in x and z.
+    """
+    radius = 12.0
+    along, down = np.linspace(0.0, 2.0, 41), np.array([0.0, 0.5, 1.2, 2.4, 4.6, 9.0])
+
+    points, corners = [], []
+    for i, j, k in itertools.product(range(len(along) - 1), range(2), range(len(down) - 1)):
+        low, high = np.array([along[i], j, down[k]]), np.array([along[i + 1], j + 1.0, down[k + 1]])
+        for collection, offset in ((points, 0.5 / math.sqrt(3.0)), (corners, 0.5)):
+            t = np.array(list(itertools.product((-offset, offset), repeat=3)))
+            arc, y, depth = (0.5 * (low + high) + t * (high - low)).T
+            inner = radius - depth
+            collection.append(
+                np.stack([inner * np.sin(arc / radius), y, radius - inner * np.cos(arc / radius)], axis=1)
+            )
+    points, corners = np.array(points), np.array(corners)
+    frame = around_the_arc(radius)
+
+    def stress_at(p):
+        return quadratic(frame(p))
+
+    stress = stress_at(points.reshape(-1, 3)).reshape(-1, 8, 6)
+    places = np.array([[0.7, 0.5, z] for z in (0.5, 1.0, 2.0, 3.0, 4.0)])
+    found = StressField(points, stress, corners, frame).sample(places)
+    assert found == pytest.approx(stress_at(places), abs=1e-8)
+    assert np.abs(StressField(points, stress, corners).sample(places) - stress_at(places)).max() > 1e-3
