@@ -1,11 +1,11 @@
 //! The closed forms against high-precision values, quadrature, one another and the equations they
 //! solve.
 //!
-//! The values under `tests/data/` are written by `tests/data/analytic.py`, which says how.
+//! The values that it reads under `tests/data/` are written by `tests/data/analytic.py`, which says how.
 
 use std::f64::consts::PI;
-use std::path::Path;
 
+use crate::common::table;
 use edgeline::base::{StressTensor, gauss_legendre};
 use edgeline::kernels::{boussinesq, deflection, hertz, love};
 use proptest::prelude::*;
@@ -14,19 +14,6 @@ use proptest::test_runner::RngSeed;
 /// Relative error of every component of Love's stresses. The promise is 1e-10; what is left at the
 /// points of the table is 2e-13, where a component happens to pass near zero.
 const RELATIVE: f64 = 1e-12;
-
-/// Rows of `tests/data/<name>`: a label where the file has one, and the numbers.
-fn table(name: &str) -> Vec<(String, Vec<f64>)> {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
-    let mut reader = csv::Reader::from_path(path).unwrap();
-    let rows = reader.records().map(|row| {
-        let row = row.unwrap();
-        let label = row[0].parse::<f64>().is_err();
-        let numbers = row.iter().skip(usize::from(label)).map(|n| n.parse().unwrap()).collect();
-        (if label { row[0].to_owned() } else { String::new() }, numbers)
-    });
-    rows.collect()
-}
 
 /// Relative error; absolute where the true value is zero (unit pressure).
 fn error(got: f64, want: f64) -> f64 {

@@ -7,6 +7,7 @@ use edgeline::case::{Case, Factors};
 use edgeline::solve::{Scene, SceneBody, SolvedScene};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, Field};
+use std::path::Path;
 
 /// A contact of equal materials: slenderness, length ratio, Poisson's ratio.
 pub fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
@@ -71,4 +72,18 @@ pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
     let steel = Material { young_pa: 210e9, poisson: 0.3 };
     let factors = Factors { load, slenderness, length_ratio };
     Case::from_factors("case", 0.01, steel, steel, factors)
+}
+
+/// Rows of `tests/data/<name>`: a label where the file has one, and the numbers. A line that begins with
+/// # is a comment.
+pub fn table(name: &str) -> Vec<(String, Vec<f64>)> {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
+    let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).unwrap();
+    let rows = reader.records().map(|row| {
+        let row = row.unwrap();
+        let label = row[0].parse::<f64>().is_err();
+        let numbers = row.iter().skip(usize::from(label)).map(|n| n.parse().unwrap()).collect();
+        (if label { row[0].to_owned() } else { String::new() }, numbers)
+    });
+    rows.collect()
 }
