@@ -1,6 +1,8 @@
 use super::super::*;
-use crate::base::Material;
+use crate::base::{Error, Material};
+use proptest::prelude::*;
 use std::collections::BTreeMap;
+use std::path::Path;
 use toml::{Table, Value};
 
 /// A case whose numbers all differ. It is written out so that a new field does not compile before it
@@ -142,6 +144,40 @@ fn the_readme_explains_every_key_with_its_range() {
             // The README says "less than 0.5".
             let there = numbers.iter().any(|v| (v - end).abs() <= f64::EPSILON * end);
             assert!(there, "{} lacks {end:e}: {row}", key.path);
+        }
+    }
+}
+
+/// A value within a key's range; in equal ratios where the range has any.
+fn legal(key: &'static Key) -> impl Strategy<Value = f64> {
+    let (low, high) = key.range;
+    (0.0..=1.0f64).prop_map(move |t| match low > 0.0 {
+        true => (low.ln() + t * (high / low).ln()).exp().clamp(low, high),
+        false => low + t * (high - low),
+    })
+}
+
+proptest! {
+    #[test]
+    fn drafts_of_legal_numbers_are_refused_or_survive_their_file(
+        values in KEYS.iter().map(legal).collect::<Vec<_>>(),
+        form in prop_oneof![Just(Form::Load), Just(Form::Factors)],
+    ) {
+        let mut draft = Draft::new("drawn", form);
+        for (key, value) in KEYS.iter().zip(values).filter(|(key, _)| key.is_of(form)) {
+            key.set(&mut draft, value);
+            prop_assert_eq!(key.get(&draft), Some(value));
+        }
+        match draft.case() {
+            Ok(case) => {
+                let file = case.to_toml();
+                prop_assert_eq!(&Case::parse(&file, Path::new("f.toml")).unwrap(), &case);
+                let again = Draft::of(&case, form).case().unwrap();
+                prop_assert!(again.is_same_problem(&case), "{:?} became {:?}", case, again);
+            }
+            // Legal numbers may make an illegal case; then a number of the list is to blame.
+            Err(Error::Value { key, .. }) => prop_assert!(Key::find(&key).is_some(), "{}", key),
+            Err(other) => prop_assert!(false, "{other}"),
         }
     }
 }

@@ -1,5 +1,6 @@
 use super::super::*;
 use crate::base::Result;
+use proptest::prelude::*;
 use std::path::Path;
 
 const GRID: &str = "[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = [0.3, 0.25]\n\
@@ -128,5 +129,47 @@ fn broken_tables_are_errors() {
     ] {
         let said = table(text, Some("flush-short")).unwrap_err().to_string();
         assert!(said.contains(wanted), "{text}: {said}");
+    }
+}
+
+/// A text with one slice replaced by another text.
+fn mutilated(text: &'static str) -> impl Strategy<Value = String> {
+    let with = "[\\[\\]{}=\"\n#,.0-9e+a-z-]{0,12}";
+    (any::<prop::sample::Index>(), 0..20usize, with).prop_map(move |(at, length, with)| {
+        let start = at.index(text.len());
+        let end = (start + length).min(text.len());
+        format!("{}{with}{}", &text[..start], &text[end..])
+    })
+}
+
+const TABLE: &str =
+    "name,W,S_l,L_r,poisson,tolerance\na,1e-4,5,1,0.3,1e-2\nb,2e-4,6,0.5,0.25,1e-3\n";
+
+/// Every row of a sweep is a legal case or says what is wrong and what to do.
+fn check_rows(sweep: &Sweep) {
+    for i in 0..sweep.len().min(50) {
+        assert_eq!(sweep.cells(i).len(), sweep.columns().len());
+        match sweep.case(i) {
+            Ok(case) => case.check().unwrap(),
+            Err(e) => assert!(matches!(e, crate::base::Error::Value { .. }), "{e}"),
+        }
+    }
+}
+
+proptest! {
+    #[test]
+    fn mutilated_sweeps_are_refused_or_every_row_is_a_case_or_says_why_not(
+        text in mutilated(GRID),
+        rows in mutilated(TABLE),
+    ) {
+        if let Ok(sweep) = parse(&text) {
+            check_rows(&sweep);
+        }
+        for base in [None, Some("half-short")] {
+            match table(&rows, base) {
+                Ok(sweep) => check_rows(&sweep),
+                Err(e) => prop_assert!(e.to_string().starts_with("s.csv"), "{e}"),
+            }
+        }
     }
 }
