@@ -93,7 +93,7 @@ pub(super) fn check_name(name: &str) -> Result<()> {
         key: "name".into(),
         value: format!("{name:?}"),
         reason: format!(
-            "a name has 1 to {MAX_NAME} letters, digits, '-', '_' and '.', and does not start with '.'"
+            "a name is 1 to {MAX_NAME} letters, digits, '-', '_' and '.', and does not start with '.'"
         ),
         remedy: "choose such a name: folders are named after it".into(),
     })

@@ -5,7 +5,7 @@ use super::result::{wanted_curves, wanted_lines};
 use crate::case::{Accuracy, Block, Case, Load, Roller};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// The form of a case in requests and records. It leaves out the accuracy, which is the models'
@@ -32,7 +32,8 @@ pub(super) struct Request<'a> {
     solver: Solver,
     gmsh: &'a Path,
     curves: Vec<WantedCurve>,
-    pressure_points_m: BTreeMap<&'static str, Vec<[f64; 2]>>,
+    /// In the order in which the results are to have them.
+    pressure_points_m: Map<String, Value>,
 }
 
 #[derive(Serialize)]
@@ -68,7 +69,10 @@ impl<'a> Request<'a> {
                 .into_iter()
                 .map(|(body, curve, points_m)| WantedCurve { body, curve, points_m })
                 .collect(),
-            pressure_points_m: wanted_lines(case).into_iter().collect(),
+            pressure_points_m: wanted_lines(case)
+                .into_iter()
+                .map(|(name, points)| (name.to_string(), json!(points)))
+                .collect(),
         }
     }
 }

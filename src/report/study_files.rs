@@ -10,7 +10,8 @@ use crate::study::effects::{self, Effects};
 use crate::study::errors::CriticalPoint;
 use crate::study::factorial::half_normal_quantile;
 use crate::study::gate::Outcome;
-use crate::study::{CaseRun, MethodRun, Quantity, Role, Sampled, StudyRun};
+use crate::study::{BlockForm, CaseRun, MethodRun, Quantity, Role, RollerForm, Sampled, StudyRun};
+use serde_json::value::Serializer;
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -548,8 +549,8 @@ fn summary(
                 "hertz": { "c_m": hertz.c_m, "p0_pa": hertz.p0_pa },
                 "load_n": c.case.load.force_n,
                 "tolerance": c.case.accuracy.tolerance,
-                "roller": c.case.roller,
-                "block": c.case.block,
+                "roller": RollerForm::serialize(&c.case.roller, Serializer).expect("plain data"),
+                "block": BlockForm::serialize(&c.case.block, Serializer).expect("plain data"),
                 "fem": fem,
                 "methods": methods,
             })

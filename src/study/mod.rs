@@ -4,6 +4,7 @@
 //! cases of different loads, and the fraction of p0 is what a user can judge.
 
 pub mod bench;
+mod case_form;
 pub mod design;
 pub mod effects;
 pub mod errors;
@@ -18,6 +19,7 @@ mod sampled;
 pub mod sweep;
 pub mod timing;
 
+pub use case_form::{BlockForm, RollerForm};
 pub use errors::{ErrorRow, Range};
 pub use models::{Cold, Models, Solver};
 pub use run::{

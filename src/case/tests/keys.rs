@@ -109,7 +109,7 @@ fn every_key_is_checked_as_a_part_of_its_case() {
 fn a_name_of_another_alphabet_is_refused() {
     for name in ["", ".", ".a", "a/b", "a b", "über", "a\n", &"x".repeat(65)] {
         let said = Case { name: name.into(), ..every_field() }.check().unwrap_err().to_string();
-        assert!(said.starts_with(&format!("name = {name:?} is not valid: a name has 1 to 64")));
+        assert!(said.starts_with(&format!("name = {name:?} is not valid: a name is 1 to 64")));
     }
 }
 

@@ -7,7 +7,6 @@
 //! that the models' discretisation goes to. What "equal error" means is therefore stated twice: each
 //! side against its own limit, and the models against FEM.
 
-mod case_form;
 mod point;
 mod record;
 mod run;

@@ -1,8 +1,8 @@
 //! One way to solve a case: what it took, and how good it is.
 
-use super::case_form::CaseForm;
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::study::case_form::CaseForm;
 use crate::study::errors::{ErrorRow, Range, compare, summarise};
 use crate::study::sampled::Sampled;
 use crate::study::timing::Timing;

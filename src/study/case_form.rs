@@ -1,9 +1,11 @@
-//! The form of a case in `bench.json`, which is older than the one of case files.
+//! The form of a case in the files of runs, `bench.json` and `summary.json`: serde takes it by
+//! `with`. A body's material is a table of its own there, where case files and records have none.
 
 use crate::base::Material;
 use crate::case::{Accuracy, Block, Case, Load, Roller};
 use serde::{Deserialize, Serialize};
 
+/// A case in `bench.json`.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Case")]
 pub(super) struct CaseForm {
@@ -18,17 +20,19 @@ pub(super) struct CaseForm {
     accuracy: Accuracy,
 }
 
+/// A roller, with its material as a table.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Roller")]
-struct RollerForm {
+pub struct RollerForm {
     radius_m: f64,
     length_m: f64,
     material: Material,
 }
 
+/// A block, with its material as a table.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Block")]
-struct BlockForm {
+pub struct BlockForm {
     length_m: f64,
     material: Material,
 }
