@@ -16,6 +16,7 @@
 //! # Layers
 //!
 //! Each module imports only modules above it in this list; `tests/numerics/layering.rs` checks that.
+//! `docs/architecture.md` shows the way of a case through them, and what to touch to add something.
 //!
 //! | module | what lives there |
 //! |---|---|
