@@ -225,7 +225,7 @@ class Run:
 
 
 def _stage(stage, run, request, folder, log):
-    """Run one stage as a process of its own, so that its memory is its own; raise if it fails."""
+    """Run one stage as a separate process, so that its memory is separate; raise if it fails."""
     command = [*run.command(stage), str(request), str(folder)]
     # The child imports this package from where it was imported here.
     here = str(Path(__file__).resolve().parent.parent)

@@ -50,8 +50,8 @@ def _mirror(axis, flipped, points, stress, corners):
 def around_the_arc(radius):
     """The frame in which a roller's elements are boxes: x along its surface, z along the normals there.
 
-    Elements below the surface narrow towards the disc's centre. A narrow one leans by several of its widths over
-    its depth, so a box around it in x and z holds points far beside it.
+    Elements below the surface narrow towards the disc's centre. A narrow one is inclined by several of its
+    widths over its depth, so a box around it in x and z contains points far beside it.
     """
 
     def frame(points):
@@ -73,7 +73,8 @@ class StressField:
     def __init__(self, points, stress, corners, frame=lambda points: points):
         points, stress, corners = _mirror(0, (3, 4), points, stress, corners)
         points, stress, corners = _mirror(1, (3, 5), points, stress, corners)
-        # A fixed order makes results independent of how elements were spread over ranks.
+        # A fixed order makes results independent of the distribution of elements over
+        # ranks.
         centres = corners.mean(axis=1)
         order = np.lexsort(np.round(centres, 9).T)
         self._frame = frame
@@ -116,7 +117,7 @@ class StressField:
         """Stress at a point from the fits around the vertices near it."""
         away = point - self._vertices
         relative = np.maximum(away / self._high, away / self._low)
-        # Curved faces put points a little beyond the box of the patch's vertices.
+        # On curved faces points lie slightly outside the box of the patch's vertices.
         weight = np.prod(np.clip(1.0 - relative, _RIM, None), axis=1)
         weight[np.any(relative > 1.0 + 1e-6, axis=1)] = 0.0
         if not weight.any():
@@ -174,13 +175,13 @@ def hertz_stress(points, half_width, peak, poisson, radius):
         sine, depth = x / distance, radius - distance
         x = radius * sine
     cosine = np.sqrt(1.0 - sine**2)
-    # Rounding puts points of the surface a little above it.
+    # Rounding may move points of the surface slightly above it.
     depth = np.maximum(depth, 0.0)
     half = half_width**2 - x**2 + depth**2
     root = np.hypot(half, 2.0 * x * depth)
     m = np.sqrt(0.5 * np.maximum(root + half, 0.0))
     n = np.sign(x) * np.sqrt(0.5 * np.maximum(root - half, 0.0))
-    # root is 0 at the contact's edge alone, where all stresses are.
+    # root is 0 only at the contact's edge, where all stresses vanish.
     share = (depth**2 + n**2) / np.maximum(root, 1e-300)
     scale = -peak / half_width
     along, normal = scale * (m * (1.0 + share) - 2.0 * depth), scale * m * (1.0 - share)

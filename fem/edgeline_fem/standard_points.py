@@ -23,9 +23,10 @@ _NEAR = (0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.
          3.0, 4.0, 5.0, 6.5, 8.0)
 _DECADE = (1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0)
 _OUTWARD = 3.0
-# Within the contact and outside it: all other curves lie on planes of symmetry.
+# Depth profiles off the plane of symmetry, inside and outside the contact.
 _OFF_PLANE = (0.7, 1.4)
-# Lengths that differ by less than this part are the same: those of a case come out of divisions.
+# Lengths within this relative difference are equal: those of a case result from
+# divisions.
 _SAME = 1e-9
 
 
@@ -60,7 +61,7 @@ def standard_curves(half_length, body_half_length):
     """Curves of one body as ``{name: [(x, y, z), ...]}`` in the order of the running coordinate.
 
     ``half_length`` is the roller's half-length, ``body_half_length`` (not less) that of the body; a
-    longer body's curves along y go on past the roller's end for up to 3 C. z is the depth below the body's
+    longer body's curves along y continue beyond the roller's end for up to 3 C. z is the depth below the body's
     surface at the point's x.
     """
     y = contact_line(half_length)

@@ -1,9 +1,9 @@
-//! Numbers as people read them: one way for each purpose.
+//! Numbers as text for people, one format for each purpose.
 //!
 //! Files that programs read are written elsewhere: a CSV cell by `report::table::number`.
 
 /// At most `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and
-/// from 1e6 on, where plain digits would be hard to count.
+/// from 1e6, where plain digits are hard to count.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 || !value.is_finite() {
         return format!("{}", value.abs());
@@ -19,7 +19,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     without_trailing_zeros(&format!("{value:.decimals$}")).to_string()
 }
 
-/// A fixed number of digits after the point; what rounds to zero has no sign.
+/// A fixed number of digits after the point; a value that rounds to zero has no sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -28,7 +28,8 @@ pub fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A ratio or a count: two significant digits, thousands apart, nothing below a tenth.
+/// A ratio or a count: one decimal below 10, otherwise two significant digits with thousands
+/// separated.
 pub fn rounded(value: f64) -> String {
     if value < 9.95 {
         return without_trailing_zeros(&fixed(value, 1)).to_string();
@@ -40,7 +41,7 @@ pub fn rounded(value: f64) -> String {
     groups.join(",")
 }
 
-/// Seconds with a fitting unit.
+/// Seconds in a suitable unit.
 pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
@@ -51,7 +52,7 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Seconds with their +-, both in the unit that fits the first, to two digits of the second.
+/// Seconds with their +-, both in the unit of the value, to two digits of the +-.
 pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
     let (unit, name) = match seconds {
         s if s < 1e-3 => (1e6, "µs"),

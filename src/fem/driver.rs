@@ -161,7 +161,7 @@ impl Driver {
     ///
     /// # Errors
     /// [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
-    /// takes too long, [`Error::File`] when it writes nonsense, [`Error::Interrupted`] when this
+    /// takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         prepare_folder(folder)?;

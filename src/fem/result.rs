@@ -176,7 +176,7 @@ pub fn wanted_curves(case: &Case) -> Vec<(BodyKind, &'static str, Vec<[f64; 3]>)
         .collect()
 }
 
-/// The points where the contact pressure is asked for (m), by line.
+/// The points at which the contact pressure is requested (m), by line.
 pub fn wanted_lines(case: &Case) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let c_m = case.hertz().c_m;
     let half_length = 0.5 * case.roller.length_m / c_m;

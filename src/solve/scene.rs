@@ -62,7 +62,7 @@ impl Scene {
         };
         let half_length = half(roller_length_m);
         let block = half(block_length_m);
-        // Flush ends must not leave a ledge of rounding.
+        // Rounding must not leave a ledge at flush ends.
         let block = if block < half_length * (1.0 + 1e-9) { half_length } else { block };
         Self {
             half_length,
@@ -76,12 +76,12 @@ impl Scene {
         }
     }
 
-    /// What tells whether one solution serves two scenes: all that a scene has, its numbers to
-    /// twelve digits. Numbers that agree to more may still fall on two sides of a rounding, and
-    /// make two keys; that costs a solve and is no error.
+    /// The key of the solution: scenes with equal keys share one. It contains all of the scene,
+    /// with numbers rounded to twelve digits. Numbers that differ by less may still round to
+    /// different keys, which costs a solve but is no error.
     pub fn key(&self) -> SceneKey {
         let Self { half_length, bodies, model, psi, tolerance } = self;
-        // 0.0 and -0.0 are one number.
+        // 0.0 and -0.0 are equal.
         let bits = |v: f64| (rounded(v) + 0.0).to_bits();
         let body = |SceneBody { half, nu, share }: &SceneBody| [half, nu, share].map(|v| bits(*v));
         SceneKey {
@@ -93,12 +93,12 @@ impl Scene {
         }
     }
 
-    /// What the end faces of a body do.
+    /// The treatment of the end faces of a body.
     pub fn end(&self, kind: BodyKind) -> End {
         self.model.end(self.bodies[kind].nu, self.psi)
     }
 
-    /// The exponent m > 0 of the pressure s^-m at the contact's end; none where it is not singular.
+    /// The exponent m > 0 of the pressure s^-m at the contact's end; none if it is not singular.
     pub fn corner_exponent(&self) -> Option<f64> {
         let bodies = BodyKind::ALL.map(|kind| {
             let SceneBody { half, share, .. } = self.bodies[kind];
@@ -109,7 +109,7 @@ impl Scene {
     }
 }
 
-/// What scenes of one solution have in common, see [`Scene::key`].
+/// The key that scenes of one solution share, see [`Scene::key`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct SceneKey {
     half_length: u64,
@@ -119,7 +119,7 @@ pub struct SceneKey {
     tolerance: u64,
 }
 
-/// The number to twelve digits: what rounding alone makes different is the same.
+/// The number rounded to twelve digits, to remove differences by rounding.
 fn rounded(v: f64) -> f64 {
     format!("{v:.12e}").parse().expect("a formatted number")
 }

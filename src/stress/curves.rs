@@ -32,8 +32,8 @@ pub const CURVE_NAMES: [&str; 13] = [
     "depth-end-x1.4",
 ];
 
-/// Where depth profiles stand across the contact besides its middle, within it and outside it
-/// (units of C): all other curves lie on planes of symmetry.
+/// Positions x of the depth profiles off the plane of symmetry, inside and outside the contact
+/// (units of C).
 const OFF_PLANE: [f64; 2] = [0.7, 1.4];
 
 /// Distances from the roller's end at which curves along y are sampled (units of C).
