@@ -16,7 +16,7 @@ type Tile = [f64; TILE];
 
 /// The linear problem for fixed half-widths. The unknowns are those of each node, then the
 /// approach.
-pub(super) struct Linear<'a> {
+pub(super) struct LinearProblem<'a> {
     pub operator: &'a LineOperator<'a>,
     pub gap: &'a dyn Gap,
     pub layout: &'a Layout,
@@ -24,7 +24,7 @@ pub(super) struct Linear<'a> {
     pub slopes: &'a [f64],
 }
 
-impl Linear<'_> {
+impl LinearProblem<'_> {
     /// The unknowns that carry `load` (C p0).
     pub fn solve(&self, load: f64) -> Result<DVector<f64>> {
         let size = self.layout.size();
@@ -91,7 +91,7 @@ impl Linear<'_> {
     }
 
     /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights, in
-    /// the form of [`Linear::cosines`].
+    /// the form of [`LinearProblem::cosines`].
     fn transforms(&self, j: usize) -> Vec<Tile> {
         let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
         let count =

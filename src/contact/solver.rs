@@ -1,7 +1,7 @@
 //! The Newton iteration for the contact's boundary.
 
 use super::check::check;
-use super::collocation::Linear;
+use super::collocation::LinearProblem;
 use super::gap::Gap;
 use super::layout::Layout;
 use super::operator::{Compliance, LineOperator};
@@ -76,8 +76,13 @@ fn solve_once(
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
-        let held =
-            Linear { operator, gap, layout: &layout, half_widths: &half_widths, slopes: &slopes };
+        let held = LinearProblem {
+            operator,
+            gap,
+            layout: &layout,
+            half_widths: &half_widths,
+            slopes: &slopes,
+        };
         let unknowns = held.solve(load)?;
         for (j, slope) in slopes.iter_mut().enumerate() {
             let own = &unknowns.as_slice()[layout.modes(j)];

@@ -37,7 +37,7 @@ pub const CURVE_NAMES: [&str; 13] = [
 const OFF_PLANE: [f64; 2] = [0.7, 1.4];
 
 /// Distances from the roller's end at which curves along y are sampled (units of C).
-const END_DISTANCES: [f64; 22] = [
+const SAMPLED_DISTANCES: [f64; 22] = [
     0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0,
     4.0, 5.0, 6.5, 8.0,
 ];
@@ -52,7 +52,7 @@ const SAME: f64 = 1e-9;
 /// Distances from the roller's end, ascending, up to `half_length` (which is the last).
 fn end_distances(half_length: f64) -> Vec<f64> {
     let below = half_length * (1.0 - SAME);
-    let mut s: Vec<f64> = END_DISTANCES.iter().copied().filter(|&s| s < below).collect();
+    let mut s: Vec<f64> = SAMPLED_DISTANCES.iter().copied().filter(|&s| s < below).collect();
     let mut decade = 1.0;
     'grow: loop {
         for step in [1.0, 1.3, 1.6, 2.0, 2.5, 3.2, 4.0, 5.0, 6.4, 8.0] {
@@ -97,7 +97,7 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
     let ledge = body_half_length - half_length;
     if ledge > SAME * half_length {
         let reach = ledge.min(OUTWARD);
-        let outward = END_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
+        let outward = SAMPLED_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
         y.extend(outward.map(|s| half_length + s));
         y.push(half_length + reach);
     }

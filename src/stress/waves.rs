@@ -20,7 +20,7 @@ pub(super) struct Waves {
     /// Number of leading wavenumbers for which the end faces carry loads.
     pub ends: usize,
     /// The loads in blocks of [`WAVES`] wavenumbers.
-    pub blocks: Vec<Block>,
+    pub blocks: Vec<LoadBlock>,
     /// Contact pressure at the contact's nodes, a row for each wavenumber.
     pub contact: DMatrix<f64>,
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
@@ -32,14 +32,14 @@ pub(super) struct Waves {
 
 /// The loads of some wavenumbers, in single precision, as the kernels' tables are.
 #[derive(Debug, Clone)]
-pub(super) struct Block {
+pub(super) struct LoadBlock {
     surface: Loads,
     face: Loads,
     /// Mean of P over the body's length.
     mean: [f32; WAVES],
 }
 
-/// The loads of a [`Block`] on a surface or on the end faces.
+/// The loads of a [`LoadBlock`] on a surface or on the end faces.
 #[derive(Debug, Clone)]
 struct Loads {
     /// The wavenumbers; infinite, and so without effect, beyond the last with a load.
@@ -98,7 +98,7 @@ impl Waves {
         let charges = [body.surface.charges(&surface), body.face.charges(&face)];
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
         let means = total / body.half;
-        let blocks = (0..k.len()).step_by(WAVES).map(|first| Block {
+        let blocks = (0..k.len()).step_by(WAVES).map(|first| LoadBlock {
             surface: Loads::new(first, &k, &surface, &charges[0]),
             face: Loads::new(first, &k[..ends], &face, &charges[1]),
             mean: block(first, means.as_slice()).map(|mean| mean as f32),
@@ -161,7 +161,7 @@ pub(super) struct Influence {
     stencil: Stencil,
     /// Weights of the mean load on strips, which come last.
     strips: Vec<f32>,
-    target: Target,
+    target: Position,
 }
 
 /// The loaded side.
@@ -175,7 +175,7 @@ enum Side {
 
 /// The position of the target.
 #[derive(Debug, Clone)]
-enum Target {
+enum Position {
     /// Within the body, with the loads at these positions.
     Within(Places),
     /// On the loaded surface itself: the loads' offsets, and the shares of the axis's nodes at the
@@ -214,11 +214,11 @@ impl Influence {
         let mut offsets = stencil.take_offsets();
         offsets.extend(strips.iter().map(|(u, _)| u));
         let target = if depth > 0.0 {
-            Target::Within(Places::new(offsets, depth, central))
+            Position::Within(Places::new(offsets, depth, central))
         } else {
             let beyond = along > axis.end() * (1.0 + 1e-12);
             let shares = if beyond { Vec::new() } else { axis.interpolation(along).collect() };
-            Target::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
+            Position::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
         };
         Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }
     }
@@ -226,8 +226,8 @@ impl Influence {
     /// Number of loads.
     pub fn len(&self) -> usize {
         match &self.target {
-            Target::Within(places) => places.len(),
-            Target::Upon(offsets, _) => offsets.len(),
+            Position::Within(places) => places.len(),
+            Position::Upon(offsets, _) => offsets.len(),
         }
     }
 
@@ -237,7 +237,7 @@ impl Influence {
     pub fn stresses(
         &self,
         body: &Body,
-        block: &Block,
+        block: &LoadBlock,
         loads: &mut Vec<[f32; WAVES]>,
     ) -> [(WaveStress, usize); WAVES] {
         let own = match self.side {
@@ -254,12 +254,12 @@ impl Influence {
             *load = block.mean.map(|mean| w * mean);
         }
         match &self.target {
-            Target::Within(places) => {
+            Position::Within(places) => {
                 let distances = places.distances();
                 self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
                 body.kernel.sum(&own.k, places, reach, loads)
             }
-            Target::Upon(offsets, shares) => {
+            Position::Upon(offsets, shares) => {
                 self.stencil.gather(&own.values, &own.charges, offsets, limit, sources);
                 upon(body.nu, own, offsets, shares, reach, loads)
             }
