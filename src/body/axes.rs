@@ -2,7 +2,7 @@
 
 use super::end::End;
 use crate::base::{Panels, Wavenumbers};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Wavenumber below which the contact's width has no effect.
 const SLOW: f64 = 0.5;
@@ -25,7 +25,7 @@ const FACE_TAIL: f64 = 8.0;
 ///
 /// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
 /// every extent, to show convergence.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Resolution {
     /// Gauss nodes per panel along y and along the end faces' depth.
     pub order: usize,

@@ -3,6 +3,7 @@
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::write_whole;
+use crate::solve::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
@@ -34,8 +35,8 @@ impl ColdRuns {
             .stderr(Stdio::null())
             .output()
             .ok()?;
-        let summary: serde_json::Value = serde_json::from_slice(&output.stdout).ok()?;
-        summary["seconds"]["total"].as_f64()
+        let summary: Summary = serde_json::from_slice(&output.stdout).ok()?;
+        Some(summary.seconds.total)
     }
 }
 

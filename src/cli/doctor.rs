@@ -34,7 +34,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let case = builtin_case("flush-short").expect("a built-in case")?;
     let solution = solve(&case, &Options::new(EdgeModel::QuarterSpace))?;
-    let solver_ms = solution.seconds.total * 1e3;
+    let solver_ms = solution.summary.seconds.total * 1e3;
     let records = Reference::embedded_names().count();
 
     let gmsh = tools::version(&arguments.gmsh);
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     let fem_ready = gmsh.is_some() && chosen.is_some();
     let findings = json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "solver": {"works": solution.converged, "milliseconds": solver_ms},
+        "solver": {"works": solution.summary.converged, "milliseconds": solver_ms},
         "records": records,
         "fem": {
             "ready": fem_ready,

@@ -1,6 +1,8 @@
 //! What subcommands say: results on standard output, everything else on standard error.
 
 use crate::base::{Error, Result};
+use crate::report::study_files::pretty;
+use serde::Serialize;
 use std::io::Write;
 
 /// What a subcommand that ran to its end has to say.
@@ -29,6 +31,6 @@ pub(super) fn print(text: &str) -> Result<()> {
 }
 
 /// Prints a JSON value as the only thing on standard output.
-pub(super) fn print_json(value: &serde_json::Value) -> Result<()> {
-    print(&format!("{value:#}\n"))
+pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
+    print(&pretty(value))
 }

@@ -3,7 +3,7 @@
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{check_memory, read_text};
-use crate::solve::Point;
+use crate::solve::{Extent, Outside, Point};
 use crate::stress::BodyKind;
 use serde::Deserialize;
 use std::path::Path;
@@ -69,23 +69,10 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
             refuse(line, text)
         })?;
         let at_m = [row.x_m, row.y_m, row.z_m];
-        if let Some(value) = at_m.iter().find(|v| !v.is_finite()) {
-            return Err(refuse(line, format!("{value} is not a finite number")));
-        }
-        let (length_m, depth_m) = match row.body {
-            BodyKind::Block => (case.block.length_m, f64::INFINITY),
-            BodyKind::Roller => (case.roller.length_m, 2.0 * case.roller.radius_m),
-        };
-        let name = row.body.name();
-        // Coordinates may have lost digits on their way through a file.
-        if row.y_m.abs() > 0.5 * length_m * (1.0 + 1e-9) {
-            let half = 0.5 * length_m;
-            let message = format!("y_m = {:e} is outside the {name}, |y| <= {half:e} m", row.y_m);
-            return Err(refuse(line, message));
-        }
-        if !(0.0..=depth_m).contains(&row.z_m) {
-            return Err(refuse(line, format!("z_m = {:e} is outside the {name}", row.z_m)));
-        }
+        Extent::of(case, row.body).check(at_m).map_err(|outside| {
+            let Outside { axis, value_m, reason, remedy } = outside;
+            refuse(line, format!("{axis}_m = {value_m:e} {reason}: {remedy}"))
+        })?;
         points.push(Point { body: row.body, at_m });
     }
     if points.is_empty() {
@@ -122,7 +109,7 @@ mod tests {
             ("block,0,0", ":3: "),
             ("blok,0,0,0", ":3: unknown variant `blok`"),
             ("block,0,zero,0", ":3: "),
-            ("block,nan,0,0", ":3: NaN is not a finite number"),
+            ("block,nan,0,0", ":3: x_m = NaN is not a finite number"),
             ("block,0,0,-1e-9", ":3: z_m = -1e-9 is outside the block"),
             ("block,0,1,0", ":3: y_m = 1e0 is outside the block"),
             ("roller,0,0.002,0", ":3: y_m = 2e-3 is outside the roller"),

@@ -8,7 +8,7 @@ use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::{Lock, check_memory};
 use crate::report::{field, solution};
-use crate::solve::{MOST_GRID_POINTS, Options, Solution, solve};
+use crate::solve::{MOST_GRID_POINTS, Options, Solution, SolvedCase};
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -86,14 +86,15 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     }
     let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
+    let solved = SolvedCase::new(&case, &options)?;
     let fields = match counts {
-        Some(counts) => field::contents(&case, arguments.method, counts)?,
+        Some(counts) => field::contents(&solved, counts)?,
         None => Vec::new(),
     };
-    let found = solve(&case, &options)?;
+    let found = solved.solution();
     solution::write(&found, &options, fields, &arguments.out)?;
     if arguments.json {
-        print_json(&solution::summary(&found))?;
+        print_json(&found.summary)?;
     } else {
         print(&text(&case, &found, &arguments))?;
     }
@@ -136,6 +137,7 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
 
 /// The short summary for a reader.
 fn text(case: &Case, found: &Solution, arguments: &Arguments) -> String {
+    let found = &found.summary;
     let (factors, hertz) = (case.factors(), found.hertz);
     let p0 = hertz.p0_pa;
     let mut lines = vec![

@@ -6,7 +6,7 @@ use super::sum::sha256;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::read_text;
-use crate::solve::{Curve, PressureLine};
+use crate::stress::Curves;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -183,8 +183,9 @@ impl Reference {
         }
         let case = record.case;
         case.check().map_err(|e| nonsense(&path, None, format!("is not of a legal case: {e}")))?;
-        let mut curves = parse_curves(curves, &folder.join(FILES[1]))?;
-        let mut lines = parse_lines(lines, &folder.join(FILES[2]))?;
+        let hertz = case.hertz();
+        let mut curves = parse_curves(curves, &hertz, &folder.join(FILES[1]))?;
+        let mut lines = parse_lines(lines, &hertz, &folder.join(FILES[2]))?;
         let mut meshes = Vec::new();
         for (size, summary) in record.meshes {
             let parsed: f64 = size.parse().unwrap_or(f64::NAN);
@@ -192,12 +193,11 @@ impl Reference {
                 return Err(nonsense(&path, None, format!("'{size}' is not the size of a mesh")));
             }
             summary.check(&path)?;
-            let own_curves: Vec<Curve> =
-                curves.extract_if(.., |(s, _)| *s == parsed).map(|(_, curve)| curve).collect();
-            let own_lines: Vec<PressureLine> =
-                lines.extract_if(.., |(s, _)| *s == parsed).map(|(_, line)| line).collect();
-            check_points(&case, &own_curves, &own_lines, folder)?;
-            meshes.push(MeshResult { size: parsed, summary, curves: own_curves, lines: own_lines });
+            let pressure = lines.extract_if(.., |(s, _)| *s == parsed).map(|(_, line)| line);
+            let stress = curves.extract_if(.., |(s, _)| *s == parsed).map(|(_, curve)| curve);
+            let curves = Curves { hertz, pressure: pressure.collect(), stress: stress.collect() };
+            check_points(&case, &curves, folder)?;
+            meshes.push(MeshResult { size: parsed, summary, curves });
         }
         if meshes.is_empty() {
             return Err(nonsense(&path, None, "holds no mesh"));

@@ -1,10 +1,9 @@
 //! The output of the finite-element program: `fem.json`, `curves.csv`, `pressure.csv`.
 
-use crate::base::{Error, Result, StressTensor};
+use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::case::Case;
-use crate::solve::{Curve, PressureLine};
-use crate::stress::BodyKind;
 use crate::stress::curves::{CURVE_NAMES, across_contact, contact_line, standard_curves};
+use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
@@ -13,9 +12,11 @@ use std::path::Path;
 /// Names of the pressure lines: x = 0, and y = 0.
 pub const LINE_NAMES: [&str; 2] = ["along-y", "along-x"];
 
-/// Points that differ by less than this fraction of the half-width C are equal: files have nine
-/// digits.
+/// Points that differ by less than this (C) are equal: files have nine digits.
 const SAME_POINT: f64 = 1e-6;
+
+/// The same as a part of a coordinate far from the centre.
+const SAME_POINT_RELATIVE: f64 = 1e-8;
 
 /// The summary of one finite-element run: the content of `fem.json`, and of one mesh in a record.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -90,11 +91,9 @@ pub struct MeshResult {
     pub size: f64,
     /// The summary of its run.
     pub summary: FemSummary,
-    /// Stresses on the standard curves of both bodies, in the order of
-    /// [`standard_curves`], the block first.
-    pub curves: Vec<Curve>,
-    /// Contact pressure along y and along x.
-    pub lines: Vec<PressureLine>,
+    /// Contact pressure along y and along x, and stresses on the standard curves of both bodies, in the
+    /// order of [`standard_curves`], the block first.
+    pub curves: Curves,
 }
 
 /// The files of a finished run as texts.
@@ -139,112 +138,106 @@ impl MeshResult {
             let message = format!("was computed by {} processes", summary.ranks);
             return Err(nonsense(&path, None, message));
         }
-        let curves = parse_curves(texts.curves, &folder.join("curves.csv"))?;
-        let curves: Vec<_> = curves.into_iter().map(|(_, curve)| curve).collect();
-        let lines = parse_lines(texts.pressure, &folder.join("pressure.csv"))?;
-        let lines: Vec<_> = lines.into_iter().map(|(_, line)| line).collect();
-        check_points(case, &curves, &lines, folder)?;
-        Ok(Self { size, summary, curves, lines })
+        let stress = parse_curves(texts.curves, &hertz, &folder.join("curves.csv"))?;
+        let pressure = parse_lines(texts.pressure, &hertz, &folder.join("pressure.csv"))?;
+        let curves = Curves {
+            hertz,
+            pressure: pressure.into_iter().map(|(_, line)| line).collect(),
+            stress: stress.into_iter().map(|(_, curve)| curve).collect(),
+        };
+        check_points(case, &curves, folder)?;
+        Ok(Self { size, summary, curves })
     }
+}
 
-    /// The curve called `name` of `body`.
-    pub fn curve(&self, body: BodyKind, name: &str) -> Option<&Curve> {
-        self.curves.iter().find(|c| c.body == body && c.name == name)
-    }
+/// The standard curves of both bodies of `case` (C).
+fn curves_of(case: &Case) -> impl Iterator<Item = CurveSpec> {
+    let c_m = case.hertz().c_m;
+    let half_length = 0.5 * case.roller.length_m / c_m;
+    let block = 0.5 * case.block.length_m / c_m;
+    let bodies = [(BodyKind::Block, block), (BodyKind::Roller, half_length)].into_iter();
+    bodies.flat_map(move |(body, half)| standard_curves(body, half_length, half))
+}
 
-    /// The pressure line called `name`.
-    pub fn line(&self, name: &str) -> Option<&PressureLine> {
-        self.lines.iter().find(|l| l.name == name)
-    }
+/// The points of the pressure lines of `case` (C).
+fn lines_of(case: &Case) -> [(&'static str, Vec<[f64; 2]>); 2] {
+    let half_length = 0.5 * case.roller.length_m / case.hertz().c_m;
+    let along_y = contact_line(half_length).into_iter().map(|y| [0.0, y]).collect();
+    let along_x = across_contact().into_iter().map(|x| [x, 0.0]).collect();
+    let [first, second] = LINE_NAMES;
+    [(first, along_y), (second, along_x)]
 }
 
 /// The curves that are asked of the finite-element side, points in metres.
 pub fn wanted_curves(case: &Case) -> Vec<(BodyKind, &'static str, Vec<[f64; 3]>)> {
     let c_m = case.hertz().c_m;
-    let half_length = 0.5 * case.roller.length_m / c_m;
-    let body_half_length = |body| match body {
-        BodyKind::Block => 0.5 * case.block.length_m / c_m,
-        BodyKind::Roller => half_length,
-    };
-    BodyKind::ALL
-        .into_iter()
-        .flat_map(|body| standard_curves(body, half_length, body_half_length(body)))
-        .map(|spec| {
-            let points = spec.points.iter().map(|p| p.map(|v| v * c_m)).collect();
-            (spec.body, spec.name, points)
-        })
-        .collect()
+    let in_metres = |points: &[[f64; 3]]| points.iter().map(|p| p.map(|v| v * c_m)).collect();
+    curves_of(case).map(|spec| (spec.body, spec.name, in_metres(&spec.points))).collect()
 }
 
 /// The points at which the contact pressure is requested (m), by line.
 pub fn wanted_lines(case: &Case) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     let c_m = case.hertz().c_m;
-    let half_length = 0.5 * case.roller.length_m / c_m;
-    let along_y = contact_line(half_length).iter().map(|y| [0.0, y * c_m]).collect();
-    let along_x = across_contact().iter().map(|x| [x * c_m, 0.0]).collect();
-    LINE_NAMES.into_iter().zip([along_y, along_x]).collect()
+    let in_metres = |points: Vec<[f64; 2]>| points.iter().map(|p| p.map(|v| v * c_m)).collect();
+    lines_of(case).into_iter().map(|(name, points)| (name, in_metres(points))).collect()
 }
 
-/// Checks that `curves` and `lines`, from `curves.csv` and `pressure.csv` in `folder`, are those
-/// of `case`, point by point.
+/// Whether two lists hold the same points (C), but for the digits lost in a file.
+fn same_points<const N: usize>(got: &[[f64; N]], want: &[[f64; N]]) -> bool {
+    let near = |(g, w): (&f64, &f64)| (g - w).abs() <= SAME_POINT + SAME_POINT_RELATIVE * w.abs();
+    got.len() == want.len() && got.iter().zip(want).all(|(g, w)| g.iter().zip(w).all(near))
+}
+
+/// Checks that `curves`, from `curves.csv` and `pressure.csv` in `folder`, are those of `case`, point by
+/// point.
 ///
 /// # Errors
 /// [`Error::File`] that names the first curve or line that is missing, too many, or elsewhere.
-pub fn check_points(
-    case: &Case,
-    curves: &[Curve],
-    lines: &[PressureLine],
-    folder: &Path,
-) -> Result<()> {
+pub fn check_points(case: &Case, curves: &Curves, folder: &Path) -> Result<()> {
     let path = &folder.join("curves.csv");
-    let near = SAME_POINT * case.hertz().c_m;
-    let same = |got: &[f64], want: &[f64]| {
-        got.iter().zip(want).all(|(g, w)| (g - w).abs() <= near + 1e-8 * w.abs())
-    };
-    let wanted = wanted_curves(case);
-    if curves.len() != wanted.len() {
-        let message = format!("holds {} curves instead of {}", curves.len(), wanted.len());
+    let wanted: Vec<_> = curves_of(case).collect();
+    if curves.stress.len() != wanted.len() {
+        let message = format!("holds {} curves instead of {}", curves.stress.len(), wanted.len());
         return Err(nonsense(path, None, message));
     }
-    for (curve, (body, name, points)) in curves.iter().zip(&wanted) {
-        let matches = curve.body == *body
-            && curve.name == *name
-            && curve.at_m.len() == points.len()
-            && curve.at_m.iter().zip(points).all(|(g, w)| same(g, w));
-        if !matches {
+    for (curve, spec) in curves.stress.iter().zip(&wanted) {
+        let named = curve.body == spec.body && curve.name == spec.name;
+        if !(named && same_points(&curve.at, &spec.points)) {
             let message = format!(
-                "the {} points of {} {} are not the {} of {} {name}",
-                curve.at_m.len(),
+                "the {} points of {} {} are not the {} of {} {}",
+                curve.at.len(),
                 curve.body.name(),
                 curve.name,
-                points.len(),
-                body.name(),
+                spec.points.len(),
+                spec.body.name(),
+                spec.name,
             );
             return Err(nonsense(path, None, message));
         }
     }
     let path = &folder.join("pressure.csv");
-    let wanted = wanted_lines(case);
-    let matches = lines.len() == wanted.len()
-        && lines.iter().zip(&wanted).all(|(line, (name, points))| {
-            line.name == *name
-                && line.at_m.len() == points.len()
-                && line.at_m.iter().zip(points).all(|(g, w)| same(g, w))
-        });
-    if !matches {
-        return Err(nonsense(path, None, "the pressure lines are not those that were asked for"));
+    let wanted = lines_of(case);
+    let same = |(line, (name, points)): (&PressureLine, &(&str, Vec<_>))| {
+        line.name == *name && same_points(&line.at, points)
+    };
+    if curves.pressure.len() == wanted.len() && curves.pressure.iter().zip(&wanted).all(same) {
+        return Ok(());
     }
-    Ok(())
+    Err(nonsense(path, None, "the pressure lines are not those that were asked for"))
 }
 
-/// Curves of a `curves.csv`, each with the size of its mesh: from the leading column `mesh` where
-/// there is one, else NaN.
-pub(super) fn parse_curves(text: &str, path: &Path) -> Result<Vec<(f64, Curve)>> {
+/// Curves of a `curves.csv` in units of `hertz`, each with the size of its mesh: from the leading
+/// column `mesh` where there is one, else NaN.
+pub(super) fn parse_curves(
+    text: &str,
+    hertz: &HertzScales,
+    path: &Path,
+) -> Result<Vec<(f64, StressCurve)>> {
     let mut stress_columns = Vec::from(["body", "curve", "x_m", "y_m", "z_m"]);
     let names = StressTensor::NAMES.map(|name| format!("{name}_pa"));
     stress_columns.extend(names.iter().map(String::as_str));
     let table = Csv::parse(text, path, &stress_columns)?;
-    let mut curves: Vec<(f64, Curve)> = Vec::new();
+    let mut curves: Vec<(f64, StressCurve)> = Vec::new();
     for row in table.rows() {
         let row = row?;
         let body = BodyKind::ALL
@@ -252,42 +245,51 @@ pub(super) fn parse_curves(text: &str, path: &Path) -> Result<Vec<(f64, Curve)>>
             .find(|body| body.name() == row.text(0))
             .ok_or_else(|| row.nonsense(format!("there is no body '{}'", row.text(0))))?;
         let name = row.one_of(1, &CURVE_NAMES)?;
-        let at = [row.number(2)?, row.number(3)?, row.number(4)?];
+        let at = [row.number(2)?, row.number(3)?, row.number(4)?].map(|v| v / hertz.c_m);
         let mut components = [0.0; 6];
         for (i, component) in components.iter_mut().enumerate() {
-            *component = row.number(5 + i)?;
+            *component = row.number(5 + i)? / hertz.p0_pa;
         }
         let stress = StressTensor::from_components(components);
         let size = row.mesh()?;
         match curves.last_mut() {
             Some((s, curve)) if same_mesh(*s, size) && curve.body == body && curve.name == name => {
-                curve.at_m.push(at);
-                curve.stress_pa.push(stress);
+                curve.at.push(at);
+                curve.stress.push(stress);
             }
             _ => {
-                let curve = Curve { body, name, at_m: vec![at], stress_pa: vec![stress] };
-                curves.push((size, curve));
+                let (name, at, stress) = (name.to_string(), vec![at], vec![stress]);
+                curves.push((size, StressCurve { body, name, at, stress, own_error: None }));
             }
         }
     }
     Ok(curves)
 }
 
-/// Lines of a `pressure.csv`, each with the size of its mesh as in [`parse_curves`].
-pub(super) fn parse_lines(text: &str, path: &Path) -> Result<Vec<(f64, PressureLine)>> {
+/// Lines of a `pressure.csv` in units of `hertz`, each with the size of its mesh as in
+/// [`parse_curves`].
+pub(super) fn parse_lines(
+    text: &str,
+    hertz: &HertzScales,
+    path: &Path,
+) -> Result<Vec<(f64, PressureLine)>> {
     let table = Csv::parse(text, path, &["line", "x_m", "y_m", "p_pa"])?;
     let mut lines: Vec<(f64, PressureLine)> = Vec::new();
     for row in table.rows() {
         let row = row?;
         let name = row.one_of(0, &LINE_NAMES)?;
-        let (at, p) = ([row.number(1)?, row.number(2)?], row.number(3)?);
+        let at = [row.number(1)?, row.number(2)?].map(|v| v / hertz.c_m);
+        let p = row.number(3)? / hertz.p0_pa;
         let size = row.mesh()?;
         match lines.last_mut() {
             Some((s, line)) if same_mesh(*s, size) && line.name == name => {
-                line.at_m.push(at);
-                line.p_pa.push(p);
+                line.at.push(at);
+                line.p.push(p);
             }
-            _ => lines.push((size, PressureLine { name, at_m: vec![at], p_pa: vec![p] })),
+            _ => {
+                let (name, at, p) = (name.to_string(), vec![at], vec![p]);
+                lines.push((size, PressureLine { name, at, p, own_error: None }));
+            }
         }
     }
     Ok(lines)

@@ -28,8 +28,8 @@ fn default_study_and_validation_cases_are_on_record() {
         // The estimates' names are those of the curves.
         for error in &reference.errors {
             let known = match BodyKind::ALL.iter().find(|b| b.name() == error.body) {
-                Some(&body) => reference.finest().curve(body, &error.curve).is_some(),
-                None => reference.finest().line(&error.curve).is_some(),
+                Some(&body) => reference.finest().curves.curve(body, &error.curve).is_some(),
+                None => reference.finest().curves.line(&error.curve).is_some(),
             };
             assert!(known, "{error:?}");
         }

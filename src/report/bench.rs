@@ -4,6 +4,7 @@ use super::draw::{Figure, Look, Marker, Panel, Series, look};
 use super::table::{Table, number, optional};
 use crate::base::Result;
 use crate::host::write_set;
+use crate::study::Source;
 use crate::study::bench::{Accuracy, Against, Bench, CaseBench, Origin, Point, front};
 use crate::study::factorial::median;
 use serde_json::Value;
@@ -108,7 +109,7 @@ fn table(bench: &Bench) -> Table {
             let text = |v: Option<String>| v.unwrap_or_default();
             let mut row = vec![
                 case.case.name.clone(),
-                point.source.clone(),
+                point.source.to_string(),
                 match point.origin {
                     Origin::Model => "model",
                     Origin::LiveFem => "live-fem",
@@ -148,7 +149,7 @@ fn table(bench: &Bench) -> Table {
 
 /// One entry of a panel: where it belongs, and its time and error.
 struct Entry<'a> {
-    source: &'a str,
+    source: &'a Source,
     origin: Origin,
     setting: f64,
     at: (f64, f64),
@@ -188,7 +189,7 @@ fn summed_up(cases: &[CaseBench], against: Against) -> Vec<Entry<'_>> {
 
 fn panel(title: String, entries: &[Entry]) -> Panel {
     let recorded = Look { marker: Marker::Diamond, dash: Some((2.0, 4.0)), ..look("fem") };
-    let mut sources: Vec<(&str, Origin)> = Vec::new();
+    let mut sources: Vec<(&Source, Origin)> = Vec::new();
     for e in entries {
         if !sources.contains(&(e.source, e.origin)) {
             sources.push((e.source, e.origin));
@@ -203,9 +204,10 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
     let line = Look { dash: Some((1.0, 3.0)), ..look("fem") };
     let front = Series { markers: false, ..Series::curve("front of the models", line, best) };
     let curves = sources.iter().map(|&(source, origin)| {
+        let own = look(source.name());
         let (name, look) = match origin {
-            Origin::Model => (source, look(source)),
-            Origin::LiveFem => ("FEM, this run", look(source)),
+            Origin::Model => (source.name(), own),
+            Origin::LiveFem => ("FEM, this run", own),
             Origin::RecordedFem => ("FEM, recorded on its own machine", recorded),
         };
         Series::curve(name, look, points(&|e| e.source == source && e.origin == origin))

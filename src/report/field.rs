@@ -6,10 +6,9 @@
 use super::draw::{Figure, Map};
 use super::vtk::Grid;
 use crate::base::{Result, StressTensor};
-use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::solve::solve_on_grid;
-use crate::stress::{self, BodyKind, GridStress};
+use crate::solve::SolvedCase;
+use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edge};
 use rayon::prelude::*;
 
 /// Number of grid points of a quarter of a body across, along and into it.
@@ -18,10 +17,6 @@ pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
 /// How far the field goes from the middle of the contact in x, beyond the roller's end in y, and
 /// into the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
-
-/// Around the roller's edge (C) stresses may be singular: contours are cut there at the largest
-/// value outside, and the largest value is looked for outside.
-const EDGE: f64 = 0.1;
 
 /// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards: finer towards
 /// the roller's end along y and towards the surface along z. `counts` are at least 2 each.
@@ -43,7 +38,7 @@ fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     [x, y, z]
 }
 
-/// A quarter of a body's field, with axes in units of C and stresses in Pa.
+/// A quarter of a body's field, with axes in units of C and stresses in units of p0.
 struct Quarter<'a> {
     axes: [Vec<f64>; 3],
     stress: GridStress,
@@ -53,17 +48,11 @@ struct Quarter<'a> {
 
 impl<'a> Quarter<'a> {
     /// The field of `body`.
-    fn solve(
-        case: &'a Case,
-        method: EdgeModel,
-        body: BodyKind,
-        counts: [usize; 3],
-    ) -> Result<Self> {
-        let axes = axes(case, body, counts);
-        let c_m = case.hertz().c_m;
-        let [x, y, z] = axes.each_ref().map(|axis| axis.iter().map(|v| v * c_m).collect());
-        let stress = solve_on_grid(case, method, body, &stress::Grid { x, y, z })?;
-        Ok(Self { axes, stress, case, body })
+    fn new(solved: &'a SolvedCase, body: BodyKind, counts: [usize; 3]) -> Result<Self> {
+        let axes = axes(solved.case(), body, counts);
+        let [x, y, z] = axes.clone();
+        let stress = solved.on_grid(body, &stress::Grid { x, y, z })?;
+        Ok(Self { axes, stress, case: solved.case(), body })
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
@@ -81,11 +70,12 @@ impl<'a> Quarter<'a> {
             zs.reverse();
         }
         let side = if roller { -1.0 } else { 1.0 };
+        let p0_pa = self.case.hertz().p0_pa;
         // What is even or odd in x and y is computed once and copied.
         let quarter: Vec<[f32; 8]> = (0..self.stress.len())
             .into_par_iter()
             .map(|index| {
-                let s = self.stress.at(index);
+                let s = self.stress.at(index) * p0_pa;
                 let [xx, yy, zz, xy, xz, yz] = s.components();
                 let all = [xx, yy, zz, xy, side * xz, side * yz, s.von_mises(), s.tau_max()];
                 all.map(|v| v as f32)
@@ -106,7 +96,8 @@ impl<'a> Quarter<'a> {
 
     /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
     fn pressure(&self) -> Grid {
-        let value = |index: usize| (-self.stress.at(index).zz as f32).max(0.0);
+        let p0_pa = self.case.hertz().p0_pa;
+        let value = |index: usize| ((-self.stress.at(index).zz * p0_pa) as f32).max(0.0);
         let values = self.mirrored(&[0], [false; 2], value);
         Grid {
             axes_m: self.axes_m(std::iter::once(0.0)),
@@ -146,15 +137,16 @@ impl<'a> Quarter<'a> {
         [whole(&self.axes[0]), whole(&self.axes[1]), z.map(|z| z * c_m).collect()]
     }
 
-    /// Whether a point is near enough to the roller's edge for stresses to be singular.
+    /// Whether a point is near enough to the roller's edge for stresses to be singular: contours are
+    /// cut there at the largest value outside, and the largest value is looked for outside.
     fn at_edge(&self, j: usize, k: usize) -> bool {
-        let half = self.case.factors().slenderness;
-        (self.axes[1][j] - half).hypot(self.axes[2][k]) < EDGE * (1.0 - 1e-9)
+        let at = [0.0, self.axes[1][j], self.axes[2][k]];
+        !away_from_edge(at, self.case.factors().slenderness, EDGE)
     }
 
     /// Von Mises stress (p0) at a point of the grid.
     fn von_mises(&self, i: usize, j: usize, k: usize) -> f64 {
-        self.at(i, j, k).von_mises() / self.case.hertz().p0_pa
+        self.at(i, j, k).von_mises()
     }
 
     /// The largest von Mises stress (p0) outside the surroundings of the edge, and its layer.
@@ -208,19 +200,15 @@ impl<'a> Quarter<'a> {
 /// The files of the field by name: `field-block.vtr`, `field-roller.vtr`, `pressure.vtr` and the
 /// contours `field-<body>-<plane>.svg` and `.png`.
 ///
-/// They are those of `case` by `method`, with `counts` of a quarter's points.
+/// `counts` are the numbers of a quarter's points across, along and into a body.
 ///
 /// # Errors
-/// Those of [`solve_on_grid`].
-pub fn contents(
-    case: &Case,
-    method: EdgeModel,
-    counts: [usize; 3],
-) -> Result<Vec<(String, Vec<u8>)>> {
+/// Those of [`SolvedCase::on_grid`].
+pub fn contents(solved: &SolvedCase, counts: [usize; 3]) -> Result<Vec<(String, Vec<u8>)>> {
     let mut files = Vec::new();
     let mut put = |name: String, content: Vec<u8>| files.push((name, content));
     for body in BodyKind::ALL {
-        let quarter = Quarter::solve(case, method, body, counts)?;
+        let quarter = Quarter::new(solved, body, counts)?;
         let name = body.name();
         put(format!("field-{name}.vtr"), quarter.grid().to_vtr());
         if body == BodyKind::Block {
@@ -238,13 +226,15 @@ pub fn contents(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::EdgeModel;
+    use crate::solve::Options;
     use std::path::Path;
 
     #[test]
     fn the_grid_reaches_the_ends_and_mirrors_the_shears() {
         let case = Case::find(Path::new("half-short")).unwrap();
-        let counts = [5, 7, 6];
-        let quarter = |body| Quarter::solve(&case, EdgeModel::Mirror, body, counts).unwrap();
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
+        let quarter = |body| Quarter::new(&solved, body, [5, 7, 6]).unwrap();
         // The block's grid goes on beyond the roller's end.
         assert_eq!(quarter(BodyKind::Block).stress.len(), 5 * (7 + 3) * 6);
         let quarter = quarter(BodyKind::Roller);

@@ -1,32 +1,11 @@
-//! The files of one solution: `summary.json`, `pressure.csv`, `curves.csv` and `points.csv`.
+//! The files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv` and `points.csv`.
 
 use super::study_files::pretty;
-use crate::base::{Result, StressTensor};
+use crate::base::{HertzScales, Result, StressTensor};
 use crate::host::write_set;
 use crate::solve::{Options, Solution};
-use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
-
-/// The summary of a solution, as `summary.json` and `--json` show it.
-pub fn summary(solution: &Solution) -> Value {
-    json!({
-        "case": solution.case,
-        "method": solution.method,
-        "hertz": solution.hertz,
-        "load_n": solution.load_n,
-        "approach_m": solution.approach_m,
-        "p_centre_pa": solution.p_centre_pa,
-        "p_max_pa": solution.p_max_pa,
-        "p_max_at_m": solution.p_max_at_m,
-        "converged": solution.converged,
-        "iterations": solution.iterations,
-        "load_error_rel": solution.load_error_rel,
-        "seconds": solution.seconds,
-        "critical": solution.critical,
-        "details": solution.details,
-    })
-}
 
 /// Writes the files of `solution` into `folder`: `more` by their names, `points.csv` if `options` asked
 /// for points, and `summary.json` last, so that its presence means that all are there.
@@ -46,26 +25,29 @@ pub fn write(
     if !options.points.is_empty() {
         put("points.csv", points_csv(solution, options));
     }
-    put("summary.json", pretty(&summary(solution)));
+    put("summary.json", pretty(&solution.summary));
     write_set(folder, &files)
 }
 
 /// The contact pressure, one row a cell.
 fn pressure_csv(solution: &Solution) -> String {
+    let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
     let mut text = String::from("x_m,y_m,dx_m,dy_m,p_pa\n");
     for cell in &solution.cells {
-        row(&mut text, "", &[cell.x_m, cell.y_m, cell.dx_m, cell.dy_m, cell.p_pa]);
+        let [x_m, y_m, dx_m, dy_m] = [cell.x, cell.y, cell.dx, cell.dy].map(|v| v * c_m);
+        row(&mut text, "", &[x_m, y_m, dx_m, dy_m, cell.p * p0_pa]);
     }
     text
 }
 
 /// The standard curves, one row a point.
 fn curves_csv(solution: &Solution) -> String {
+    let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
     let mut text = format!("body,curve,{}\n", stress_columns());
-    for curve in &solution.curves {
+    for curve in &solution.curves.stress {
         let place = format!("{},{},", curve.body.name(), curve.name);
-        for (at, stress) in curve.at_m.iter().zip(&curve.stress_pa) {
-            row(&mut text, &place, &with_stress(at, stress));
+        for (at, stress) in curve.at.iter().zip(&curve.stress) {
+            row(&mut text, &place, &with_stress(at.map(|v| v * c_m), *stress * p0_pa));
         }
     }
     text
@@ -76,7 +58,7 @@ fn points_csv(solution: &Solution, options: &Options) -> String {
     let mut text = format!("body,{}\n", stress_columns());
     for (point, stress) in options.points.iter().zip(&solution.points) {
         let place = format!("{},", point.body.name());
-        row(&mut text, &place, &with_stress(&point.at_m, stress));
+        row(&mut text, &place, &with_stress(point.at_m, *stress * solution.curves.hertz.p0_pa));
     }
     text
 }
@@ -87,10 +69,10 @@ fn stress_columns() -> String {
     format!("x_m,y_m,z_m,{components},von_mises_pa,tau_max_pa")
 }
 
-fn with_stress(at: &[f64; 3], stress: &StressTensor) -> Vec<f64> {
-    let mut values = at.to_vec();
-    values.extend(stress.components());
-    values.extend([stress.von_mises(), stress.tau_max()]);
+fn with_stress(at_m: [f64; 3], stress_pa: StressTensor) -> Vec<f64> {
+    let mut values = at_m.to_vec();
+    values.extend(stress_pa.components());
+    values.extend([stress_pa.von_mises(), stress_pa.tau_max()]);
     values
 }
 

@@ -5,12 +5,13 @@ use super::table::{self, Table, number, optional};
 use super::verdict;
 use crate::base::number::significant;
 use crate::base::{Error, Result};
+use crate::stress::{Critical, Curves, Quantity};
 use crate::study::bench::Speedup;
 use crate::study::effects::{self, Effects};
-use crate::study::errors::CriticalPoint;
 use crate::study::factorial::half_normal_quantile;
 use crate::study::gate::Outcome;
-use crate::study::{BlockForm, CaseRun, MethodRun, Quantity, Role, RollerForm, Sampled, StudyRun};
+use crate::study::{BlockForm, CaseRun, MethodRun, Role, RollerForm, Source, StudyRun};
+use serde::Serialize;
 use serde_json::value::Serializer;
 use serde_json::{Value, json};
 use std::path::Path;
@@ -141,8 +142,9 @@ impl StudyFiles {
 }
 
 /// JSON with indents and a newline at its end.
-pub fn pretty(value: &Value) -> String {
-    let mut text = serde_json::to_string_pretty(value).expect("a JSON value is always written");
+pub fn pretty(value: &impl Serialize) -> String {
+    let mut text =
+        serde_json::to_string_pretty(value).expect("names and numbers are always written");
     text.push('\n');
     text
 }
@@ -250,7 +252,7 @@ impl<'a> Row<'a> {
         self.cells[column] = value.to_string();
     }
 
-    fn set_critical(&mut self, critical: Option<CriticalPoint>, c_m: f64, p0_pa: f64) {
+    fn set_critical(&mut self, critical: Option<Critical>, c_m: f64, p0_pa: f64) {
         let Some(critical) = critical else { return };
         self.set("critical_body", critical.body.name());
         self.set("critical_von_mises_pa", &number(critical.value * p0_pa));
@@ -275,7 +277,7 @@ fn method_row(
             return row.cells;
         }
     };
-    let s = &answer.solution;
+    let s = &answer.solution.summary;
     row.set("converged", if s.converged { "true" } else { "false" });
     row.set("iterations", &s.iterations.to_string());
     row.set("load_error_rel", &number(s.load_error_rel));
@@ -327,7 +329,7 @@ fn fem_row(table: &Table, case: &CaseRun) -> Vec<String> {
         }
     };
     let hertz = case.case.hertz();
-    if let Some(line) = reference.sampled.line("along-y") {
+    if let Some(line) = reference.curves.line("along-y") {
         row.set("p_centre_pa", &optional(line.p.first().map(|p| p * hertz.p0_pa)));
     }
     row.set_critical(case.reference_critical, hertz.c_m, hertz.p0_pa);
@@ -347,23 +349,26 @@ fn fem_row(table: &Table, case: &CaseRun) -> Vec<String> {
 }
 
 /// Every source of every case with its answer.
-fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, &Sampled)> {
+fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, Source, &Curves)> {
     run.cases.iter().flat_map(|case| {
-        let methods = case.methods.iter().filter_map(|m| m.answer.as_ref().ok());
-        let fem = case.reference.as_ref().ok().map(|r| &r.sampled);
-        methods.map(|a| &a.sampled).chain(fem).map(move |s| (case, s))
+        let methods = case.methods.iter().filter_map(move |m| {
+            let answer = m.answer.as_ref().ok()?;
+            Some((case, m.method.into(), &answer.solution.curves))
+        });
+        let reference = case.reference.iter();
+        methods.chain(reference.map(move |r| (case, r.engine.clone().into(), &r.curves)))
     })
 }
 
 fn curves_table(run: &StudyRun) -> Table {
     let mut table = Table::new(["case", "source"].into_iter().chain(STRESS_COLUMNS));
-    for (case, sampled) in sources(run) {
-        let hertz = case.case.hertz();
-        for curve in &sampled.curves {
+    for (case, source, curves) in sources(run) {
+        let hertz = curves.hertz;
+        for curve in &curves.stress {
             for (at, stress) in curve.at.iter().zip(&curve.stress) {
                 let mut row = vec![
                     case.case.name.clone(),
-                    sampled.source.clone(),
+                    source.to_string(),
                     curve.body.name().to_string(),
                     curve.name.clone(),
                 ];
@@ -378,13 +383,13 @@ fn curves_table(run: &StudyRun) -> Table {
 
 fn pressure_table(run: &StudyRun) -> Table {
     let mut table = Table::new(["case", "source", "line", "x_m", "y_m", "p_pa"]);
-    for (case, sampled) in sources(run) {
-        let hertz = case.case.hertz();
-        for line in &sampled.lines {
+    for (case, source, curves) in sources(run) {
+        let hertz = curves.hertz;
+        for line in &curves.pressure {
             for (at, p) in line.at.iter().zip(&line.p) {
                 table.push(vec![
                     case.case.name.clone(),
-                    sampled.source.clone(),
+                    source.to_string(),
                     line.name.clone(),
                     number(at[0] * hertz.c_m),
                     number(at[1] * hertz.c_m),
@@ -404,13 +409,13 @@ fn fem_error_table(run: &StudyRun) -> Table {
     let mut table = Table::new(header);
     for case in &run.cases {
         let Ok(reference) = &case.reference else { continue };
-        let hertz = case.case.hertz();
+        let hertz = reference.curves.hertz;
         let place = |body: &str, curve: &str, at: [f64; 3]| {
             let mut row = vec![case.case.name.clone(), body.to_string(), curve.to_string()];
             row.extend(at.map(|v| number(v * hertz.c_m)));
             row
         };
-        for line in &reference.sampled.lines {
+        for line in &reference.curves.pressure {
             for (at, e) in line.at.iter().zip(line.own_error.iter().flatten()) {
                 let mut row = place("contact", &line.name, [at[0], at[1], 0.0]);
                 row.push(number(e * hertz.p0_pa));
@@ -418,7 +423,7 @@ fn fem_error_table(run: &StudyRun) -> Table {
                 table.push(row);
             }
         }
-        for curve in &reference.sampled.curves {
+        for curve in &reference.curves.stress {
             for (at, e) in curve.at.iter().zip(curve.own_error.iter().flatten()) {
                 let mut row = place(curve.body.name(), &curve.name, *at);
                 row.push(String::new());
@@ -534,7 +539,9 @@ fn summary(
                 .iter()
                 .map(|m| {
                     let value = match &m.answer {
-                        Ok(a) => json!({ "timing": m.timing, "details": a.solution.details }),
+                        Ok(a) => {
+                            json!({ "timing": m.timing, "details": a.solution.summary.details })
+                        }
                         Err(e) => json!({ "err": e }),
                     };
                     (m.method.name().to_string(), value)

@@ -70,8 +70,8 @@ fn result_cells(outcome: &Outcome) -> Vec<String> {
             return cells;
         }
     };
-    let KeyResults { hertz, p_at_pa, critical, .. } = results;
-    let (factors, p0) = (case.factors(), hertz.p0_pa);
+    let KeyResults { p_centre, critical, .. } = results;
+    let (factors, c, p0) = (case.factors(), results.hertz.c_m, results.hertz.p0_pa);
     let mut cells = vec![number(case.accuracy.tolerance)];
     cells.extend(
         [
@@ -79,22 +79,22 @@ fn result_cells(outcome: &Outcome) -> Vec<String> {
             factors.slenderness,
             factors.length_ratio,
             results.load_n,
-            hertz.c_m,
+            c,
             p0,
             results.approach_m,
-            results.p_centre_pa,
-            results.p_centre_pa / p0,
-            results.p_max_pa,
-            results.p_max_at_m[0],
-            results.p_max_at_m[1],
+            p_centre * p0,
+            *p_centre,
+            results.p_max * p0,
+            results.p_max_at[0] * c,
+            results.p_max_at[1] * c,
         ]
         .map(number),
     );
-    cells.extend(p_at_pa.map(|p| optional(p.map(|p| p / p0))));
-    cells.push(optional(p_at_pa[0].map(|p| p / results.p_centre_pa)));
+    cells.extend(results.p_at.map(optional));
+    cells.push(optional(results.p_at[0].map(|p| p / p_centre)));
     cells.push(critical.body.name().to_string());
-    cells.extend([critical.value_pa, critical.value_pa / p0].map(number));
-    cells.extend(critical.at_m.map(number));
+    cells.extend([critical.value * p0, critical.value].map(number));
+    cells.extend(critical.at.map(|v| number(v * c)));
     cells.push(String::new());
     cells
 }

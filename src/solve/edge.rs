@@ -5,7 +5,7 @@
 use super::scene::SolvedScene;
 use crate::base::BodyKind;
 use nalgebra::{DMatrix, DVector, SVD};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// Range of distances from the end (C) for the fit of an unbounded pressure: farther away it is not
 /// a power of the distance, and nearer it is not resolved.
@@ -19,7 +19,7 @@ const POINTS: usize = 25;
 
 /// The pressure p(x = 0) near the contact's end, s the distance from it in units of C; pressures in
 /// units of p0.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum EdgeStrength {
     /// p = `factor` s^-`exponent`: it grows without bound.

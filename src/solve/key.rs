@@ -1,12 +1,13 @@
 //! The key results of many cases that are one problem in units of C and p0, without the curves and
 //! cells of a whole solution.
 
+use super::cells::{largest, pressure_cells};
 use super::scene::{Scene, SolvedScene};
-use super::{Critical, pressure_cells};
+use super::solved::approach_m;
 use crate::base::{HertzScales, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::Case;
-use crate::stress::{BodyKind, RoundStress, curves};
+use crate::stress::{BodyKind, Critical, EDGE, RoundStress, away_from_edge, curves};
 
 /// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
 pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
@@ -20,15 +21,15 @@ pub struct KeyResults {
     pub load_n: f64,
     /// Approach of the bodies' far points (m).
     pub approach_m: f64,
-    /// Pressure at the contact's centre (Pa).
-    pub p_centre_pa: f64,
-    /// Largest pressure of the cells (Pa).
-    pub p_max_pa: f64,
-    /// Its place x, y (m).
-    pub p_max_at_m: [f64; 2],
-    /// Pressure (Pa) at x = 0 and the [`END_DISTANCES`] from the roller's end; none where that is
+    /// Pressure at the contact's centre (p0).
+    pub p_centre: f64,
+    /// Largest pressure of the cells (p0).
+    pub p_max: f64,
+    /// Its place x, y (C).
+    pub p_max_at: [f64; 2],
+    /// Pressure (p0) at x = 0 and the [`END_DISTANCES`] from the roller's end; none where that is
     /// beyond the centre.
-    pub p_at_pa: [Option<f64>; END_DISTANCES.len()],
+    pub p_at: [Option<f64>; END_DISTANCES.len()],
     /// The most stressed place of both bodies outside 0.1 C of the roller's edge.
     pub critical: Critical,
 }
@@ -54,7 +55,7 @@ pub fn key_results(
     let solved = SolvedScene::new(&scene)?;
     let samples = samples(&solved);
     let cells = pressure_cells(&solved);
-    let top = cells.iter().max_by(|a, b| a.p_pa.total_cmp(&b.p_pa)).expect("cells");
+    let top = largest(&cells);
     let along = |s: f64| {
         let y = scene.half_length - s;
         (y >= 0.0).then(|| solved.pressure.at(0.0, y))
@@ -62,19 +63,18 @@ pub fn key_results(
     let at_end = END_DISTANCES.map(along);
     let centre = solved.pressure.at(0.0, 0.0);
     for (i, case) in cases.iter().enumerate() {
-        let hertz = case.hertz();
-        let (c, p0, radius) = (hertz.c_m, hertz.p0_pa, case.roller.radius_m);
+        let (hertz, radius_m) = (case.hertz(), case.roller.radius_m);
         each(
             i,
             KeyResults {
                 hertz,
                 load_n: case.load.force_n,
-                approach_m: solved.approach(radius / c) * c * c / (2.0 * radius),
-                p_centre_pa: centre * p0,
-                p_max_pa: top.p_pa * p0,
-                p_max_at_m: [top.x_m.abs() * c, top.y_m.abs() * c],
-                p_at_pa: at_end.map(|p| p.map(|p| p * p0)),
-                critical: critical(&samples, c / radius, c, p0),
+                approach_m: approach_m(&solved, &hertz, radius_m),
+                p_centre: centre,
+                p_max: top.p,
+                p_max_at: [top.x.abs(), top.y.abs()],
+                p_at: at_end,
+                critical: critical(&samples, hertz.c_m / radius_m),
             },
         );
     }
@@ -82,23 +82,16 @@ pub fn key_results(
 }
 
 /// The largest von Mises stress of the samples, where the roller's C / R is `curvature`.
-fn critical(samples: &[Sample], curvature: f64, c: f64, p0: f64) -> Critical {
-    let mut best = (BodyKind::Block, [0.0; 3], f64::NEG_INFINITY);
-    for (kind, at, stress) in samples {
-        let value = match kind {
+fn critical(samples: &[Sample], curvature: f64) -> Critical {
+    let values = samples.iter().map(|(body, at, stress)| {
+        let value = match body {
             BodyKind::Block => stress.flat.von_mises(),
             BodyKind::Roller => stress.at(curvature).von_mises(),
         };
-        if value > best.2 {
-            best = (*kind, *at, value);
-        }
-    }
-    Critical {
-        body: best.0,
-        measure: "von_mises",
-        value_pa: best.2 * p0,
-        at_m: best.1.map(|v| v * c),
-    }
+        Critical { body: *body, value, at: *at }
+    });
+    let best = values.reduce(|best, next| if next.value > best.value { next } else { best });
+    best.expect("both bodies have samples")
 }
 
 /// Depths (C) of the search's first pass.
@@ -107,8 +100,6 @@ const DEPTHS: [f64; 6] = [0.0, 0.25, 0.5, 0.75, 1.0, 1.5];
 const ALONG: [f64; 3] = [0.3, 1.0, 2.5];
 /// Depths of the curves along y (C).
 const ALONG_DEPTHS: [f64; 3] = [0.0, 0.5, 0.78];
-/// Nearest distance from the roller's edge that counts (C).
-const FROM_EDGE: f64 = 0.1;
 
 /// The stresses among which the critical one is sought.
 fn samples(solved: &SolvedScene) -> Vec<Sample> {
@@ -131,11 +122,6 @@ fn samples(solved: &SolvedScene) -> Vec<Sample> {
     all
 }
 
-/// Whether a point is far enough from the roller's edge to count.
-fn counts(y: f64, z: f64, half_length: f64) -> bool {
-    (y - half_length).hypot(z) >= 0.999 * FROM_EDGE
-}
-
 /// All points of the standard curves.
 fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>) {
     let field = solved.field(kind);
@@ -144,7 +130,7 @@ fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sa
     let mut index = std::collections::HashMap::new();
     for curve in curves::standard_curves(kind, half_length, half) {
         for [x, y, z] in curve.points {
-            if !counts(y, z, half_length) {
+            if !away_from_edge([x, y, z], half_length, EDGE) {
                 continue;
             }
             let column = *index.entry((y.to_bits(), z.to_bits())).or_insert_with(|| {
@@ -168,7 +154,10 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
     let mut seen = Vec::new();
     let mut add = |y: f64, z: f64, all: &mut Vec<Sample>| -> f64 {
         let inside = (0.0..=half * (1.0 + 1e-12)).contains(&y) && z >= 0.0;
-        if !inside || !counts(y, z, half_length) || seen.contains(&(y.to_bits(), z.to_bits())) {
+        if !inside
+            || !away_from_edge([0.0, y, z], half_length, EDGE)
+            || seen.contains(&(y.to_bits(), z.to_bits()))
+        {
             return 0.0;
         }
         seen.push((y.to_bits(), z.to_bits()));
@@ -182,12 +171,12 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
         }
     }
     // At the end the stress may be largest just outside what does not count.
-    add(half_length, FROM_EDGE, all);
+    add(half_length, EDGE, all);
     for z in ALONG_DEPTHS {
-        for s in ALONG.into_iter().chain((z == 0.0).then_some(FROM_EDGE)) {
+        for s in ALONG.into_iter().chain((z == 0.0).then_some(EDGE)) {
             add(half_length - s, z, all);
         }
-        add((half_length + FROM_EDGE).min(half), z, all);
+        add((half_length + EDGE).min(half), z, all);
     }
     // The surface across the contact, where it is largest for small Poisson's ratios.
     let xs = [0.25, 0.5, 0.75, 1.0, 1.25];
@@ -238,11 +227,12 @@ mod tests {
             let case = case.with_tolerance(1e-2);
             let method = EdgeModel::QuarterSpace;
             let whole = solve(&case, &Options::new(method)).unwrap();
-            let (p0, all) = (whole.hertz.p0_pa, whole.critical.unwrap());
+            let p0 = whole.curves.hertz.p0_pa;
+            let all = whole.summary.critical.unwrap();
             let mut found = None;
             key_results(&[case], method, |_, results| found = Some(results.critical)).unwrap();
             let found = found.unwrap();
-            let less = (all.value_pa - found.value_pa) / p0;
+            let less = all.value_pa / p0 - found.value;
             assert!(less < 2e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
         }
     }

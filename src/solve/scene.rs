@@ -18,6 +18,9 @@ const SOUNDNESS: f64 = 5.0;
 /// (docs/robustness.md).
 const WORST_CONDITION: f64 = 1e7;
 
+/// Part of a scene's tolerance that the contact's iteration is ended at.
+const CONTACT_TOLERANCE: f64 = 1e-2;
+
 /// One of the two bodies of a [`Scene`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SceneBody {
@@ -125,7 +128,7 @@ fn rounded(v: f64) -> f64 {
 }
 
 /// Run time of each stage (s).
-#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Seconds {
     /// Axes and compliance.
     pub setup: f64,
@@ -209,7 +212,7 @@ impl SolvedScene {
         let settings = ContactSettings {
             modes: resolution.modes,
             spacing: resolution.spacing,
-            tolerance: 1e-2 * scene.tolerance,
+            tolerance: CONTACT_TOLERANCE * scene.tolerance,
             max_iterations: 40,
             soundness: SOUNDNESS * scene.tolerance.max(Resolution::FINEST),
         };
@@ -240,6 +243,11 @@ impl SolvedScene {
             BodyKind::Roller => self.bodies.len() - 1,
         };
         &self.bodies[index]
+    }
+
+    /// Whether the contact iteration reached its tolerance.
+    pub fn converged(&self) -> bool {
+        self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
     }
 
     /// Whether both bodies share one computation.

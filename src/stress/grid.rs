@@ -64,12 +64,6 @@ impl GridStress {
         &self.values
     }
 
-    /// All values times `factor`.
-    pub fn scaled(mut self, factor: f64) -> Self {
-        self.values.iter_mut().for_each(|v| *v *= factor);
-        self
-    }
-
     /// The stress at one point, by its index.
     pub fn at(&self, index: usize) -> StressTensor {
         StressTensor::from_components(std::array::from_fn(|c| self.component(c)[index]))

@@ -2,10 +2,10 @@
 
 use super::factorial::{self, Analysis, Verdict};
 use super::run::{CaseRun, MethodRun, Role, StudyRun};
-use super::sampled::Quantity;
 use super::timing::Ratio;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
+use crate::stress::Quantity;
 
 /// A number per case and method whose dependence on the factors is analysed.
 #[derive(Debug, Clone, PartialEq)]

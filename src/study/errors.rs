@@ -10,9 +10,9 @@
 //! max |e|, RMS = sqrt(sum w e^2 / sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1
 //! properties of the curve, not of how densely it was sampled.
 
-use super::sampled::{Quantity, Sampled};
+use super::source::Source;
 use crate::base::{Error, Result};
-use crate::stress::BodyKind;
+use crate::stress::{Critical, Curves, Quantity, away_from_edge};
 use serde::{Deserialize, Serialize};
 
 /// Over which range errors are taken.
@@ -77,11 +77,6 @@ struct Measures {
     max_index: usize,
     rms: f64,
     l1: f64,
-}
-
-/// Distance of a point from the roller's edge (C).
-fn edge_distance(at: [f64; 3], half_length: f64) -> f64 {
-    (at[1] - half_length).hypot(at[2])
 }
 
 /// Trapezoid weights of the arc length between kept points (C); a segment counts when both its
@@ -172,11 +167,8 @@ struct Pair<'a> {
 
 impl Pair<'_> {
     fn row(&self, case: &str, method: &str, half_length: f64) -> Option<ErrorRow> {
-        let kept: Vec<bool> = self
-            .at
-            .iter()
-            .map(|&at| edge_distance(at, half_length) >= self.excluded_c * (1.0 - 1e-9))
-            .collect();
+        let away = |at: &[f64; 3]| away_from_edge(*at, half_length, self.excluded_c);
+        let kept: Vec<bool> = self.at.iter().map(away).collect();
         let difference: Vec<f64> =
             self.value.iter().zip(self.reference).map(|(a, b)| a - b).collect();
         let m = measure(self.at, &difference, &kept)?;
@@ -204,8 +196,8 @@ impl Pair<'_> {
     }
 }
 
-/// Errors of `candidate` against `reference`, one row for each quantity of each curve of the
-/// reference and for each pressure line and range.
+/// Errors of `candidate`, the answer of `source`, against `reference`: one row for each quantity of each
+/// curve of the reference and for each pressure line and range.
 ///
 /// `half_length` is the roller's half-length S_l (C). Curves of the reference that the candidate
 /// was not asked for are left out; a curve that it has, but on other points, is an error.
@@ -215,12 +207,12 @@ impl Pair<'_> {
 pub fn compare(
     case: &str,
     half_length: f64,
-    reference: &Sampled,
-    candidate: &Sampled,
+    reference: &Curves,
+    (source, candidate): (&Source, &Curves),
     range: &Range,
 ) -> Result<Vec<ErrorRow>> {
     let mut rows = Vec::new();
-    for line in &reference.lines {
+    for line in &reference.pressure {
         let Some(other) = candidate.line(&line.name) else { continue };
         let lift = |at: &[[f64; 2]]| at.iter().map(|a| [a[0], a[1], 0.0]).collect::<Vec<_>>();
         let (at, theirs) = (lift(&line.at), lift(&other.at));
@@ -237,10 +229,10 @@ pub fn compare(
                 reference: &line.p,
                 own_error: line.own_error.clone(),
             };
-            rows.extend(pair.row(case, &candidate.source, half_length));
+            rows.extend(pair.row(case, source.name(), half_length));
         }
     }
-    for curve in &reference.curves {
+    for curve in &reference.stress {
         let Some(other) = candidate.curve(curve.body, &curve.name) else { continue };
         let what = format!("{case}: {} of the {}", curve.name, curve.body.name());
         let index = matching(&curve.at, &other.at, &what)?;
@@ -257,40 +249,25 @@ pub fn compare(
                 reference: &truth,
                 own_error: curve.own_error.as_ref().map(|e| e.iter().map(|v| v[k]).collect()),
             };
-            rows.extend(pair.row(case, &candidate.source, half_length));
+            rows.extend(pair.row(case, source.name(), half_length));
         }
     }
     Ok(rows)
 }
 
-/// The most stressed place of the standard curves outside the range left out.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct CriticalPoint {
-    /// The body.
-    pub body: BodyKind,
-    /// Von Mises stress (p0).
-    pub value: f64,
-    /// Place (C).
-    pub at: [f64; 3],
-}
-
 /// The largest von Mises stress of all curves. On a depth curve the parabola through the largest
 /// point and its neighbours gives value and depth, so that the place is not tied to the sampling.
 /// `None` when no point is left.
-pub fn critical_point(
-    sampled: &Sampled,
-    half_length: f64,
-    excluded_c: f64,
-) -> Option<CriticalPoint> {
-    let mut best: Option<CriticalPoint> = None;
-    for curve in &sampled.curves {
+pub fn critical_point(curves: &Curves, half_length: f64, excluded_c: f64) -> Option<Critical> {
+    let mut best: Option<Critical> = None;
+    for curve in &curves.stress {
         let v: Vec<f64> = curve.stress.iter().map(|s| s.von_mises()).collect();
-        let kept = |i: usize| edge_distance(curve.at[i], half_length) >= excluded_c * (1.0 - 1e-9);
+        let kept = |i: usize| away_from_edge(curve.at[i], half_length, excluded_c);
         for i in (0..v.len()).filter(|&i| kept(i)) {
             if best.is_some_and(|b| v[i] <= b.value) {
                 continue;
             }
-            let mut point = CriticalPoint { body: curve.body, value: v[i], at: curve.at[i] };
+            let mut point = Critical { body: curve.body, value: v[i], at: curve.at[i] };
             let inside = i > 0 && i + 1 < v.len() && kept(i - 1) && kept(i + 1);
             if curve.name.starts_with("depth") && inside && v[i] >= v[i - 1] && v[i] >= v[i + 1] {
                 let z = [curve.at[i - 1][2], curve.at[i][2], curve.at[i + 1][2]];
@@ -372,23 +349,25 @@ pub fn summarise(rows: &[ErrorRow], range: &Range) -> Option<ErrorSummary> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::HertzScales;
     use crate::base::StressTensor;
-    use crate::study::sampled::{SampledCurve, SampledLine};
+    use crate::body::EdgeModel;
+    use crate::stress::{BodyKind, PressureLine, StressCurve};
     use approx::assert_relative_eq;
 
     /// A depth curve under the roller's end with sigma_xx = f(z) and a pressure line p = g(y).
-    fn sampled(f: impl Fn(f64) -> f64, g: impl Fn(f64) -> f64) -> Sampled {
+    fn sampled(f: impl Fn(f64) -> f64, g: impl Fn(f64) -> f64) -> Curves {
         let z = [0.0, 0.05, 0.1, 0.3, 0.7, 1.5];
         let y = [0.0, 3.0, 4.5, 4.8, 4.9, 4.95, 5.0];
-        Sampled {
-            source: "test".to_string(),
-            lines: vec![SampledLine {
+        Curves {
+            hertz: HertzScales { e_star_pa: 1.0, c_m: 1.0, p0_pa: 1.0 },
+            pressure: vec![PressureLine {
                 name: "along-y".to_string(),
                 at: y.iter().map(|&y| [0.0, y]).collect(),
                 p: y.iter().map(|&y| g(y)).collect(),
                 own_error: Some(vec![0.003; y.len()]),
             }],
-            curves: vec![SampledCurve {
+            stress: vec![StressCurve {
                 body: BodyKind::Block,
                 name: "depth-end".to_string(),
                 at: z.iter().map(|&z| [0.0, 5.0, z]).collect(),
@@ -401,6 +380,10 @@ mod tests {
         }
     }
 
+    fn mirror() -> Source {
+        EdgeModel::Mirror.into()
+    }
+
     #[test]
     fn measures_of_known_differences() {
         let reference = sampled(|_| 0.0, |_| 1.0);
@@ -409,7 +392,7 @@ mod tests {
             |z| if z < 0.09 { 99.0 } else { z },
             |y| if y > 4.91 { 50.0 } else { 1.0 - 0.01 * y },
         );
-        let rows = compare("c", 5.0, &reference, &other, &Range::default()).unwrap();
+        let rows = compare("c", 5.0, &reference, (&mirror(), &other), &Range::default()).unwrap();
         let xx = rows.iter().find(|r| r.quantity == "sigma_xx").unwrap();
         assert_eq!((xx.points, xx.excluded_c), (4, 0.1));
         assert_eq!((xx.max, xx.max_at), (1.5, [0.0, 5.0, 1.5]));
@@ -437,11 +420,12 @@ mod tests {
     fn other_points_are_refused_and_nan_is_not_swallowed() {
         let reference = sampled(|_| 0.0, |_| 1.0);
         let mut moved = reference.clone();
-        moved.curves[0].at[3][2] = 0.31;
-        let message = compare("c", 5.0, &reference, &moved, &Range::default()).unwrap_err();
+        moved.stress[0].at[3][2] = 0.31;
+        let message =
+            compare("c", 5.0, &reference, (&mirror(), &moved), &Range::default()).unwrap_err();
         assert!(message.to_string().contains("depth-end of the block"), "{message}");
         let broken = sampled(|z| if z == 0.3 { f64::NAN } else { 0.0 }, |_| 1.0);
-        let rows = compare("c", 5.0, &reference, &broken, &Range::default()).unwrap();
+        let rows = compare("c", 5.0, &reference, (&mirror(), &broken), &Range::default()).unwrap();
         let summary = summarise(&rows, &Range::default()).unwrap();
         assert!(summary.stress[0].is_nan() && summary.stress[1].is_nan());
     }

@@ -251,7 +251,7 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
             let response = |name| super::effects::response_value(name, case, m);
             whole("critical_value", response("critical_value").map(f64::abs));
             whole("critical_depth", response("critical_depth").map(f64::abs));
-            whole("load", Some(answer.solution.load_error_rel));
+            whole("load", Some(answer.solution.summary.load_error_rel));
             whole("speedup", response("log10_speedup").map(|d| 10f64.powf(d)));
         }
     }

@@ -15,7 +15,7 @@ pub mod live;
 mod models;
 pub mod reference;
 mod run;
-mod sampled;
+mod source;
 pub mod sweep;
 pub mod timing;
 
@@ -25,7 +25,7 @@ pub use models::{Cold, Models, Solver};
 pub use run::{
     Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, StudyRun, Timed, run,
 };
-pub use sampled::{Quantity, Sampled, SampledCurve, SampledLine};
+pub use source::{Engine, Source};
 
 #[cfg(test)]
 pub(crate) mod synthetic;

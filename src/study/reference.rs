@@ -1,8 +1,8 @@
-//! FEM's answers on the study's terms: recorded or live results in units of C and p0, with the
-//! difference of the two finest meshes as FEM's own error at every point.
+//! FEM's answers on the study's terms: recorded or live results with the difference of the two finest
+//! meshes as FEM's own error at every point.
 
 use super::run::{Provenance, Reference};
-use super::sampled::{Quantity, Sampled, SampledCurve, SampledLine};
+use super::source::Engine;
 use crate::fem::{self, MeshResult};
 
 /// From the reader of records or from a live run.
@@ -12,33 +12,13 @@ use crate::fem::{self, MeshResult};
 /// converge with an order: a band of the plain difference is there for every curve.
 pub fn from_fem(reference: &fem::Reference) -> Reference {
     let finest = reference.finest();
-    let next = reference.meshes.get(1);
-    let hertz = reference.case.hertz();
-    let (c, p0) = (hertz.c_m, hertz.p0_pa);
-    let lines = finest.lines.iter().map(|line| SampledLine {
-        name: line.name.to_string(),
-        at: line.at_m.iter().map(|at| at.map(|v| v / c)).collect(),
-        p: line.p_pa.iter().map(|p| p / p0).collect(),
-        own_error: next.and_then(|n| n.line(line.name)).map(|other| {
-            line.p_pa.iter().zip(&other.p_pa).map(|(a, b)| (a - b).abs() / p0).collect()
-        }),
-    });
-    let curves = finest.curves.iter().map(|curve| SampledCurve {
-        body: curve.body,
-        name: curve.name.to_string(),
-        at: curve.at_m.iter().map(|at| at.map(|v| v / c)).collect(),
-        stress: curve.stress_pa.iter().map(|&s| s * (1.0 / p0)).collect(),
-        own_error: next.and_then(|n| n.curve(curve.body, curve.name)).map(|other| {
-            let pairs = curve.stress_pa.iter().zip(&other.stress_pa);
-            pairs.map(|(a, b)| Quantity::ALL.map(|q| (q.of(a) - q.of(b)).abs() / p0)).collect()
-        }),
-    });
+    let curves = match reference.meshes.get(1) {
+        Some(next) => finest.curves.clone().with_error_from(&next.curves),
+        None => finest.curves.clone(),
+    };
     Reference {
-        sampled: Sampled {
-            source: "fem".to_string(),
-            lines: lines.collect(),
-            curves: curves.collect(),
-        },
+        engine: Engine::fenicsx(),
+        curves,
         provenance: provenance(finest, reference.source == "live"),
     }
 }
@@ -71,7 +51,7 @@ fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
 mod tests {
     use super::*;
     use crate::stress::curves::CURVE_NAMES;
-    use crate::study::{Range, errors};
+    use crate::study::{Range, Source, errors};
 
     #[test]
     fn a_record_is_its_own_reference() {
@@ -79,11 +59,10 @@ mod tests {
         for name in fem::Reference::embedded_names() {
             let record = fem::Reference::embedded(name).unwrap().unwrap();
             let reference = from_fem(&record);
-            let mut same = reference.sampled.clone();
-            same.source = "again".to_string();
             let half_length = record.case.factors().slenderness;
+            let again = (&Source::Engine(reference.engine.clone()), &reference.curves);
             let rows =
-                errors::compare(name, half_length, &reference.sampled, &same, &Range::default())
+                errors::compare(name, half_length, &reference.curves, again, &Range::default())
                     .unwrap();
             // Two lines with two ranges each, the curves of both bodies with eight quantities.
             assert_eq!(rows.len(), 4 + 2 * CURVE_NAMES.len() * 8, "{name}");

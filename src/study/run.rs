@@ -1,15 +1,14 @@
 //! The run of a study: every case by every method, paired with FEM.
 
-use super::errors::{
-    CriticalPoint, ErrorRow, ErrorSummary, Range, compare, critical_point, summarise,
-};
+use super::errors::{ErrorRow, ErrorSummary, Range, compare, critical_point, summarise};
 use super::models::{Attempt, Models, Work};
-use super::sampled::Sampled;
+use super::source::Engine;
 use super::timing::Timing;
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::solve::Solution;
+use crate::stress::{Critical, Curves};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -17,8 +16,10 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 /// FEM's answer for one case, and where it comes from.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// Its curves in units of C and p0; the source is `fem`.
-    pub sampled: Sampled,
+    /// The engine that computed it.
+    pub engine: Engine,
+    /// Its curves.
+    pub curves: Curves,
     /// Where it comes from and what it cost.
     pub provenance: Provenance,
 }
@@ -88,12 +89,10 @@ pub enum Role {
 /// What one method made of one case.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// The solution in SI units.
+    /// The solution.
     pub solution: Solution,
-    /// The same on the standard points, in units of C and p0.
-    pub sampled: Sampled,
     /// The most stressed place outside the range left out.
-    pub critical: Option<CriticalPoint>,
+    pub critical: Option<Critical>,
     /// Errors against FEM; empty without a reference.
     pub errors: Vec<ErrorRow>,
     /// The errors summed up.
@@ -121,7 +120,7 @@ pub struct CaseRun {
     /// FEM's answer, or why there is none.
     pub reference: std::result::Result<Reference, String>,
     /// FEM's most stressed place outside the range left out.
-    pub reference_critical: Option<CriticalPoint>,
+    pub reference_critical: Option<Critical>,
     /// The methods, in the order asked for.
     pub methods: Vec<MethodRun>,
 }
@@ -239,7 +238,7 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
                 method: attempt.method,
                 answer: attempt
                     .solution
-                    .and_then(|solution| answer(case, &reference, solution, &setup.range))
+                    .and_then(|s| answer(case, &reference, (attempt.method, s), &setup.range))
                     .map_err(|e| e.to_string()),
                 timing: attempt.timing,
             };
@@ -250,7 +249,7 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
                 reference_critical: reference
                     .as_ref()
                     .ok()
-                    .and_then(|r| critical_point(&r.sampled, half_length, setup.range.stress_c)),
+                    .and_then(|r| critical_point(&r.curves, half_length, setup.range.stress_c)),
                 methods: attempts.into_iter().map(answer).collect(),
                 reference,
             }
@@ -270,20 +269,19 @@ pub fn run(study: &Study, setup: &Setup) -> StudyRun {
 fn answer(
     case: &Case,
     reference: &std::result::Result<Reference, String>,
-    solution: Solution,
+    (method, solution): (EdgeModel, Solution),
     range: &Range,
 ) -> Result<Answer> {
     let half_length = case.factors().slenderness;
-    let sampled = Sampled::from_solution(&solution);
+    let own = (&method.into(), &solution.curves);
     let errors = match reference {
-        Ok(r) => compare(&case.name, half_length, &r.sampled, &sampled, range)?,
+        Ok(r) => compare(&case.name, half_length, &r.curves, own, range)?,
         Err(_) => Vec::new(),
     };
     Ok(Answer {
-        critical: critical_point(&sampled, half_length, range.stress_c),
+        critical: critical_point(&solution.curves, half_length, range.stress_c),
         summary: summarise(&errors, range),
         solution,
-        sampled,
         errors,
     })
 }

@@ -207,8 +207,10 @@ mod tests {
         found.sort_by_key(|f| f.0);
         let of = |i: usize| &found[i].1.as_ref().unwrap().1;
         // p0 grows with the root of W, and so does everything that is proportional to it.
-        assert!((of(1).p_centre_pa / of(0).p_centre_pa - 2.0).abs() < 1e-9);
-        assert!((of(1).critical.at_m[1] / of(0).critical.at_m[1] - 2.0).abs() < 1e-9);
+        let p_centre_pa = |i: usize| of(i).p_centre * of(i).hertz.p0_pa;
+        let critical_y_m = |i: usize| of(i).critical.at[1] * of(i).hertz.c_m;
+        assert!((p_centre_pa(1) / p_centre_pa(0) - 2.0).abs() < 1e-9);
+        assert!((critical_y_m(1) / critical_y_m(0) - 2.0).abs() < 1e-9);
         assert!(found[2].1.as_ref().unwrap_err().contains("dimensionless.W = 9e0"));
     }
 

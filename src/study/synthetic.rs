@@ -1,15 +1,16 @@
 //! Made-up solutions for tests: smooth closed forms of the right shape, different for each model.
 
-use crate::base::{Error, Result, StressTensor};
-use crate::body::EdgeModel;
+use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Study};
 use crate::fem::{self, MeshResult};
-use crate::solve::{Critical, Curve, PressureCell, PressureLine, Seconds, Solution};
-use crate::stress::{BodyKind, curves};
+use crate::solve::{Details, PressureCell, Seconds, Solution, Summary};
+use crate::stress::{BodyKind, Curves, PressureLine, StressCurve, curves};
 use crate::study::bench::{FemMeshes, Mesh};
 use crate::study::run::{Provenance, Reference, Setup, StudyRun, Timed, run as run_study};
 use crate::study::timing::Timing;
-use crate::study::{Models, Range, Sampled};
+use crate::study::{Engine, Models, Range};
+use std::f64::consts::PI;
 
 /// What the made-up FEM answer differs by from the quarter-space one (p0).
 pub const SHIFT: f64 = 0.003;
@@ -27,8 +28,6 @@ fn end_share(method: EdgeModel) -> f64 {
 /// A solution of `case` whose end effect is `share`; `shift` (p0) is added to all normal stresses
 /// and the pressure, to tell a "reference" from a method.
 fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution {
-    let hertz = case.hertz();
-    let (c, p0) = (hertz.c_m, hertz.p0_pa);
     let half = case.factors().slenderness;
     let end = |y: f64| share * (-(half - y).abs() / 0.8).exp();
     let pressure = |x: f64, y: f64| {
@@ -48,7 +47,7 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
             yz: 0.2 * end(y) * z * (-z).exp(),
         }
     };
-    let curves: Vec<Curve> = BodyKind::ALL
+    let stress_curves = BodyKind::ALL
         .into_iter()
         .flat_map(|body| {
             let body_half = match body {
@@ -57,55 +56,66 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
             };
             curves::standard_curves(body, half, body_half)
         })
-        .map(|spec| Curve {
+        .map(|spec| StressCurve {
             body: spec.body,
-            name: spec.name,
-            stress_pa: spec.points.iter().map(|p| stress(p[0], p[1], p[2]) * p0).collect(),
-            at_m: spec.points.iter().map(|p| p.map(|v| v * c)).collect(),
+            name: spec.name.to_string(),
+            stress: spec.points.iter().map(|p| stress(p[0], p[1], p[2])).collect(),
+            at: spec.points,
+            own_error: None,
         })
         .collect();
-    let line = |name, at: Vec<[f64; 2]>| PressureLine {
-        name,
-        p_pa: at.iter().map(|a| pressure(a[0], a[1]) * p0).collect(),
-        at_m: at.iter().map(|a| a.map(|v| v * c)).collect(),
+    let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
+        name: name.to_string(),
+        p: at.iter().map(|a| pressure(a[0], a[1])).collect(),
+        at,
+        own_error: None,
     };
     let lines = vec![
         line("along-y", curves::contact_line(half).into_iter().map(|y| [0.0, y]).collect()),
         line("along-x", curves::across_contact().into_iter().map(|x| [x, 0.0]).collect()),
     ];
-    let cells = vec![PressureCell {
-        x_m: 0.0,
-        y_m: 0.0,
-        dx_m: 2.0 * c,
-        dy_m: case.roller.length_m,
-        p_pa: case.load.force_n / (2.0 * c * case.roller.length_m),
-    }];
-    let (p_centre_pa, p_end_pa) = (pressure(0.0, 0.0) * p0, pressure(0.0, half) * p0);
-    let end_is_peak = p_end_pa > p_centre_pa;
+    let (p_centre, p_end) = (pressure(0.0, 0.0), pressure(0.0, half));
+    let p_max_y = if p_end > p_centre { half } else { 0.0 };
     Solution {
+        summary: summary(case, method, p_centre, (p_centre.max(p_end), p_max_y)),
+        curves: Curves { hertz: case.hertz(), pressure: lines, stress: stress_curves },
+        cells: vec![PressureCell { x: 0.0, y: 0.0, dx: 2.0, dy: 2.0 * half, p: PI / 4.0 }],
+        points: Vec::new(),
+    }
+}
+
+/// The summary of a made-up solution with these pressures (p0) at the centre and at most, there at y
+/// (C).
+fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> Summary {
+    let hertz = case.hertz();
+    let HertzScales { c_m, p0_pa, .. } = hertz;
+    Summary {
         case: case.name.clone(),
         method,
         hertz,
         load_n: case.load.force_n,
-        approach_m: 0.7 * c * c / case.roller.radius_m,
-        p_centre_pa,
-        p_max_pa: p_centre_pa.max(p_end_pa),
-        p_max_at_m: [0.0, if end_is_peak { half * c } else { 0.0 }],
+        approach_m: 0.7 * c_m * c_m / case.roller.radius_m,
+        p_centre_pa: p_centre * p0_pa,
+        p_max_pa: p_max.0 * p0_pa,
+        p_max_at_m: [0.0, p_max.1 * c_m],
         converged: true,
         iterations: 12,
         load_error_rel: 1e-12,
         seconds: Seconds { setup: 0.004, contact: 0.002, stress: 0.003, total: 0.009 },
-        critical: Some(Critical {
-            body: BodyKind::Block,
-            measure: "von_mises",
-            value_pa: 0.6 * p0,
-            at_m: [0.0, 0.0, 0.7 * c],
-        }),
-        cells,
-        lines,
-        curves,
-        points: Vec::new(),
-        details: serde_json::json!({ "evaluations": { "done": 100, "skipped": 40 } }),
+        critical: None,
+        details: Details {
+            tolerance: case.accuracy.tolerance,
+            resolution: Resolution::for_tolerance(case.accuracy.tolerance),
+            wavenumbers: [20, 100],
+            contact_nodes: 30,
+            edge: None,
+            edge_residual: 1e-6,
+            condition: 10.0,
+            bodies_shared: false,
+            work: None,
+            approach_reference_m: case.roller.radius_m,
+            roller_diametral_tension_pa: 0.5 * c_m / case.roller.radius_m * p0_pa,
+        },
     }
 }
 
@@ -131,9 +141,9 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
             "load_error_rel": 0.0,
             "equilibrium_residual": 0.0,
             "complementarity_residual": 0.0,
-            "approach_m": answer.approach_m,
-            "p_centre_pa": answer.p_centre_pa,
-            "p_max_pa": answer.p_max_pa,
+            "approach_m": answer.summary.approach_m,
+            "p_centre_pa": answer.summary.p_centre_pa,
+            "p_max_pa": answer.summary.p_max_pa,
             "seconds": { "total": 30.0 / size.powi(3) },
             "peak_memory_mib": 100.0,
         });
@@ -141,7 +151,6 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
             size,
             summary: serde_json::from_value(summary).unwrap(),
             curves: answer.curves,
-            lines: answer.lines,
         }
     };
     let timed = |size: f64| {
@@ -197,7 +206,7 @@ pub fn run(twist: Twist) -> StudyRun {
                 }
                 let mut answer = solution(case, method, share, 0.0);
                 if twist == Twist::ShearSign {
-                    for s in answer.curves.iter_mut().flat_map(|c| &mut c.stress_pa) {
+                    for s in answer.curves.stress.iter_mut().flat_map(|c| &mut c.stress) {
                         (s.xz, s.yz) = (-s.xz, -s.yz);
                     }
                 }
@@ -210,10 +219,8 @@ pub fn run(twist: Twist) -> StudyRun {
             return Err("there is no record".to_string());
         }
         let method = EdgeModel::QuarterSpace;
-        let answer = solution(case, method, end_share(method), SHIFT);
-        let mut sampled = Sampled::from_solution(&answer);
-        sampled.source = "fem".to_string();
-        for curve in &mut sampled.curves {
+        let mut curves = solution(case, method, end_share(method), SHIFT).curves;
+        for curve in &mut curves.stress {
             curve.own_error = Some(vec![[0.004; 8]; curve.at.len()]);
             match &twist {
                 Twist::FemCurve { case: name, curve: which, factor }
@@ -224,7 +231,7 @@ pub fn run(twist: Twist) -> StudyRun {
                 _ => {}
             }
         }
-        for line in &mut sampled.lines {
+        for line in &mut curves.pressure {
             line.own_error = Some(vec![0.002; line.at.len()]);
         }
         let fem_seconds = 15.0 * case.factors().slenderness / 5.0;
@@ -247,7 +254,7 @@ pub fn run(twist: Twist) -> StudyRun {
             timed: Some(timed),
             ..Default::default()
         };
-        Ok(Reference { sampled, provenance })
+        Ok(Reference { engine: Engine::fenicsx(), curves, provenance })
     };
     run_study(
         &Study::built_in(),

@@ -158,8 +158,8 @@ fn a_curve_alone_is_what_it_is_among_all() {
     options.bodies = vec![BodyKind::Roller];
     options.curves = vec!["depth-end".into()];
     let alone = solve(&case, &options).unwrap();
-    assert_eq!(alone.curves.len(), 1);
-    let same = whole.curves.iter().find(|c| **c == alone.curves[0]);
+    assert_eq!(alone.curves.stress.len(), 1);
+    let same = whole.curves.stress.iter().find(|c| **c == alone.curves.stress[0]);
     assert!(same.is_some(), "the curve differs");
 }
 

@@ -56,7 +56,7 @@ fn flipped_shears_are_named() {
     let sign = |cases: &[Case], method: EdgeModel| {
         let mut solutions = usual(cases, method);
         for solution in solutions.iter_mut().flatten() {
-            for stress in solution.curves.iter_mut().flat_map(|c| &mut c.stress_pa) {
+            for stress in solution.curves.stress.iter_mut().flat_map(|c| &mut c.stress) {
                 (stress.xz, stress.yz) = (-stress.xz, -stress.yz);
             }
         }

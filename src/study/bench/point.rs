@@ -2,9 +2,10 @@
 
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::stress::Curves;
 use crate::study::case_form::CaseForm;
 use crate::study::errors::{ErrorRow, Range, compare, summarise};
-use crate::study::sampled::Sampled;
+use crate::study::source::Source;
 use crate::study::timing::Timing;
 use serde::{Deserialize, Serialize};
 
@@ -53,8 +54,8 @@ impl Accuracy {
     /// Of `answer` against `reference`, both of `case`.
     pub(super) fn between(
         case: &Case,
-        reference: &Sampled,
-        answer: &Sampled,
+        reference: &Curves,
+        answer: (&Source, &Curves),
         range: &Range,
     ) -> Option<Self> {
         let half_length = case.factors().slenderness;
@@ -79,8 +80,8 @@ pub enum Origin {
 /// One way to solve a case: what it took, and how good it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// The model's name, or `fem`.
-    pub source: String,
+    /// The model or FEM.
+    pub source: Source,
     /// Where the time was taken.
     pub origin: Origin,
     /// A model's tolerance (p0); a mesh's relative element size.
@@ -110,9 +111,9 @@ pub struct Point {
 
 impl Point {
     /// A point that neither was timed nor compared.
-    pub(super) fn new(source: &str, origin: Origin, setting: f64) -> Self {
+    pub(super) fn new(source: impl Into<Source>, origin: Origin, setting: f64) -> Self {
         Self {
-            source: source.to_string(),
+            source: source.into(),
             origin,
             setting,
             unknowns: None,

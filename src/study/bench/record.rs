@@ -118,7 +118,7 @@ impl Bench {
         let same = |p: &&Point| (p.setting / case.accuracy.tolerance - 1.0).abs() < 1e-9;
         let models = found.points.iter().filter(|p| p.origin == Origin::Model).filter(same);
         let methods: std::collections::BTreeMap<_, _> =
-            models.filter_map(|p| Some((p.source.clone(), p.timing?.with_spread()))).collect();
+            models.filter_map(|p| Some((p.source.to_string(), p.timing?.with_spread()))).collect();
         (!methods.is_empty()).then(|| Timed {
             date: self.date.clone(),
             machine: self.machine.processor.clone(),

@@ -4,11 +4,11 @@
 use super::point::{Accuracy, BEST, CaseBench, Origin, Point};
 use crate::case::Case;
 use crate::fem::{self, Driver, MeshResult};
+use crate::stress::Curves;
 use crate::study::errors::Range;
 use crate::study::live::repeated;
 use crate::study::models::{Attempt, Models, Work};
-use crate::study::reference::from_fem;
-use crate::study::sampled::Sampled;
+use crate::study::source::Engine;
 use crate::study::timing::Timing;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -53,7 +53,7 @@ impl FemMeshes {
     }
 
     /// The finest mesh as the reference. Of two that are equally fine the recorded one counts.
-    fn reference(&self, case: &Case) -> Option<FemReference> {
+    fn reference(&self) -> Option<FemReference> {
         let recorded = self.recorded.iter().flat_map(|r| &r.meshes).map(|m| ("recorded", m));
         let live = self.live.iter().filter_map(|(_, m)| Some(("live", &m.as_ref().ok()?.result)));
         let mut all: Vec<(&'static str, &MeshResult)> = recorded.chain(live).collect();
@@ -61,8 +61,8 @@ impl FemMeshes {
         all.dedup_by(|a, b| a.1.size == b.1.size);
         let (source, finest) = *all.first()?;
         Some(FemReference {
-            finest: sampled(case, finest, source),
-            next: all.get(1).map(|(source, mesh)| sampled(case, mesh, source)),
+            finest: finest.curves.clone(),
+            next: all.get(1).map(|(_, mesh)| mesh.curves.clone()),
             size: finest.size,
             words: format!("{source}, size {}", finest.size),
         })
@@ -71,17 +71,11 @@ impl FemMeshes {
 
 /// FEM's finest mesh as a reference.
 struct FemReference {
-    finest: Sampled,
+    finest: Curves,
     /// The mesh after it, whose difference is what the finest says of its own error.
-    next: Option<Sampled>,
+    next: Option<Curves>,
     size: f64,
     words: String,
-}
-
-/// One mesh at the standard points, in units of C and p0.
-fn sampled(case: &Case, mesh: &MeshResult, source: &'static str) -> Sampled {
-    let meshes = vec![mesh.clone()];
-    from_fem(&fem::Reference { case: case.clone(), source, meshes, errors: Vec::new() }).sampled
 }
 
 /// What a run needs.
@@ -96,8 +90,8 @@ pub struct Setup<'a> {
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
 }
 
-/// One sampled answer of a point.
-type Answered = (Point, Option<Sampled>);
+/// A point with the curves of its answer.
+type Answered = (Point, Option<Curves>);
 
 /// Runs every case on FEM's meshes, and then by every model at every tolerance. What fails is kept
 /// with its reason.
@@ -113,7 +107,7 @@ pub fn run(cases: &[Case], setup: &Setup) -> Vec<CaseBench> {
             meshes
         })
         .collect();
-    let references: Vec<_> = cases.iter().zip(&fem).map(|(c, f)| f.reference(c)).collect();
+    let references: Vec<_> = fem.iter().map(FemMeshes::reference).collect();
     let mut points: Vec<Vec<Answered>> = vec![Vec::new(); cases.len()];
     for (stage, &tolerance) in setup.tolerances.iter().enumerate() {
         let of_stage = models_at(cases, tolerance, &setup.models, &|done, all, what| {
@@ -131,7 +125,7 @@ pub fn run(cases: &[Case], setup: &Setup) -> Vec<CaseBench> {
         .zip(references)
         .zip(points)
         .map(|(((case, meshes), reference), mut points)| {
-            points.extend(fem_points(case, meshes));
+            points.extend(fem_points(meshes));
             assess(case, points, reference, limit, &Range::default())
         })
         .collect()
@@ -151,26 +145,26 @@ fn models_at(
     let attempts =
         work.run(&|what| step(done.fetch_add(1, Ordering::Relaxed) + 1, work.steps(), what));
     let of_model = |attempt: Attempt| {
-        let (sampled, err) = match attempt.solution {
-            Ok(solution) => (Some(Sampled::from_solution(&solution)), None),
+        let (curves, err) = match attempt.solution {
+            Ok(solution) => (Some(solution.curves), None),
             Err(e) => (None, Some(e.to_string())),
         };
         // No time counts for an answer that was not computed.
-        let timing = |i: usize| sampled.as_ref().and(attempt.timing.get(i)).copied();
+        let timing = |i: usize| curves.as_ref().and(attempt.timing.get(i)).copied();
         let point = Point {
             timing: timing(0),
             all_threads: timing(1),
             err,
-            ..Point::new(attempt.method.name(), Origin::Model, tolerance)
+            ..Point::new(attempt.method, Origin::Model, tolerance)
         };
-        (point, sampled)
+        (point, curves)
     };
     attempts.into_iter().map(|all| all.into_iter().map(of_model).collect()).collect()
 }
 
 /// The points of FEM, live meshes first.
-fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
-    let point = |origin, setting| Point::new("fem", origin, setting);
+fn fem_points(meshes: &FemMeshes) -> Vec<Answered> {
+    let point = |origin, setting| Point::new(Engine::fenicsx(), origin, setting);
     let live = meshes.live.iter().map(|(size, mesh)| match mesh {
         Ok(mesh) => (
             Point {
@@ -178,7 +172,7 @@ fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
                 timing: Some(mesh.timing),
                 ..point(Origin::LiveFem, *size)
             },
-            Some(sampled(case, &mesh.result, "live")),
+            Some(mesh.result.curves.clone()),
         ),
         Err(message) => {
             (Point { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
@@ -192,7 +186,7 @@ fn fem_points(case: &Case, meshes: &FemMeshes) -> Vec<Answered> {
             machine: Some(mesh.summary.processor().to_string()),
             ..point(Origin::RecordedFem, mesh.size)
         };
-        (point, Some(sampled(case, mesh, "recorded")))
+        (point, Some(mesh.curves.clone()))
     });
     live.chain(recorded).collect()
 }
@@ -205,26 +199,28 @@ fn assess(
     limit: f64,
     range: &Range,
 ) -> CaseBench {
-    let is_limit = |p: &Point| p.source == BEST.name() && p.setting == limit;
+    let is_limit = |p: &Point| p.source == BEST.into() && p.setting == limit;
     let limit = points.iter().find(|(p, _)| is_limit(p)).and_then(|(_, s)| s.clone());
+    let fem = Engine::fenicsx().into();
     // The finest mesh against itself would be exact.
     let own = reference
         .as_ref()
-        .and_then(|r| Accuracy::between(case, &r.finest, r.next.as_ref()?, range));
+        .and_then(|r| Accuracy::between(case, &r.finest, (&fem, r.next.as_ref()?), range));
     let points = points
         .into_iter()
-        .map(|(mut point, sampled)| {
-            let Some(sampled) = sampled else { return point };
+        .map(|(mut point, curves)| {
+            let Some(curves) = curves else { return point };
+            let source = point.source.clone();
             point.to_fem = reference.as_ref().and_then(|r| {
-                if point.source == "fem" && point.setting <= r.size {
+                if point.source.is_engine() && point.setting <= r.size {
                     return own;
                 }
-                Accuracy::between(case, &r.finest, &sampled, range)
+                Accuracy::between(case, &r.finest, (&source, &curves), range)
             });
             if !is_limit(&point) {
                 point.to_limit = limit
                     .as_ref()
-                    .and_then(|limit| Accuracy::between(case, limit, &sampled, range));
+                    .and_then(|limit| Accuracy::between(case, limit, (&source, &curves), range));
             }
             point
         })

@@ -51,7 +51,7 @@ fn speedup(case: &CaseBench, level: f64, against: Against) -> Option<Speedup> {
         timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
     };
     let (fem, fem_time) = fastest(&|p| p.origin == Origin::LiveFem, Against::Fem)?;
-    let best = |p: &Point| p.origin == Origin::Model && p.source == BEST.name();
+    let best = |p: &Point| p.origin == Origin::Model && p.source == BEST.into();
     let (model, model_time) = fastest(&best, against)?;
     Some(Speedup {
         case: case.case.name.clone(),

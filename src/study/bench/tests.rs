@@ -31,7 +31,8 @@ fn bench() -> Vec<CaseBench> {
 }
 
 fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> &'a Point {
-    let is_it = |p: &&Point| p.source == source && p.origin == origin && p.setting == setting;
+    let is_it =
+        |p: &&Point| p.source.name() == source && p.origin == origin && p.setting == setting;
     case.points.iter().find(is_it).unwrap()
 }
 

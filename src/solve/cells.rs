@@ -1,0 +1,54 @@
+//! The contact pressure in cells, whose sum is the load.
+
+use super::scene::SolvedScene;
+use crate::kernels::strip;
+
+/// Cells of the written pressure across the contact (C).
+const CELL: f64 = 0.05;
+
+/// A cell of the contact pressure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PressureCell {
+    /// Centre across the contact (C).
+    pub x: f64,
+    /// Place along the contact (C).
+    pub y: f64,
+    /// Width (C).
+    pub dx: f64,
+    /// Length (C).
+    pub dy: f64,
+    /// Mean pressure (p0), >= 0; the sum of p dx dy over the cells is the load.
+    pub p: f64,
+}
+
+/// The cell of largest pressure; there is always one.
+pub(super) fn largest(cells: &[PressureCell]) -> &PressureCell {
+    cells.iter().max_by(|a, b| a.p.total_cmp(&b.p)).expect("a contact has cells")
+}
+
+/// Mean pressures of cells that are `CELL` wide and as long as a node's quadrature weight, so that
+/// their sum is the solution's load.
+pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
+    let pressure = &solved.pressure;
+    let axis = pressure.axis();
+    let mut cells = Vec::new();
+    // Alike to either side of both planes of symmetry: computed once.
+    let profile = |j: usize| -> Vec<f64> {
+        let (a, coefficients) = pressure.at_node(j);
+        let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;
+        let carried = |i: i32| strip::cumulative(a, coefficients, (f64::from(i) - 0.5) * CELL);
+        let sums: Vec<f64> = (0..=reach + 1).map(carried).collect();
+        sums.windows(2).map(|sum| ((sum[1] - sum[0]) / CELL).max(0.0)).collect()
+    };
+    let profiles: Vec<Vec<f64>> = (0..axis.len()).map(profile).collect();
+    let nodes = axis.nodes().iter().zip(axis.weights()).zip(&profiles);
+    let sides = nodes.clone().rev().map(|n| (-1.0, n)).chain(nodes.map(|n| (1.0, n)));
+    for (side, ((&y, &dy), profile)) in sides {
+        let reach = profile.len() as i32 - 1;
+        for i in -reach..=reach {
+            let p = profile[i.unsigned_abs() as usize];
+            cells.push(PressureCell { x: f64::from(i) * CELL, y: side * y, dx: CELL, dy, p });
+        }
+    }
+    cells
+}

@@ -1,0 +1,40 @@
+//! From cases to solutions.
+
+use super::options::Options;
+use super::scene::Scene;
+use super::solved::{Solution, SolvedCase, Stresses};
+use crate::base::Result;
+use crate::case::Case;
+
+/// Solves `case` with one method.
+///
+/// # Errors
+/// As [`SolvedCase::new`].
+pub fn solve(case: &Case, options: &Options) -> Result<Solution> {
+    SolvedCase::new(case, options).map(|solved| solved.solution())
+}
+
+/// Solves cases that differ in scale only together: the first one's scene is solved once, and every
+/// case gets its own scales, approach and roller. A case of another scene is solved by itself.
+pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
+    let mut shared: Option<(SolvedCase, Stresses)> = None;
+    cases
+        .iter()
+        .map(|case| {
+            options.check(case)?;
+            let key = Scene::new(case, options.method, options.psi).key();
+            // Extra points are given in metres, so they are another case's own.
+            let own = !options.points.is_empty();
+            let fits = |(first, _): &&(SolvedCase, Stresses)| first.scene().scene.key() == key;
+            if let Some((first, stresses)) = shared.as_ref().filter(|_| !own).filter(fits) {
+                let solved = SolvedCase::of_scene(case, options, first.scene().clone());
+                return Ok(solved.solution_with(stresses));
+            }
+            let solved = SolvedCase::new(case, options)?;
+            let stresses = solved.stresses();
+            let solution = solved.solution_with(&stresses);
+            shared = Some((solved, stresses));
+            Ok(solution)
+        })
+        .collect()
+}

@@ -1,0 +1,271 @@
+//! A solved case: the scene's solution with the case's own scales and roller, to be kept and asked
+//! for pressures and stresses.
+
+use super::cells::{PressureCell, largest, pressure_cells};
+use super::edge::edge_strength;
+use super::extent::Extent;
+use super::grid::check_grid;
+use super::lines;
+use super::options::Options;
+use super::scene::{Scene, Seconds, SolvedScene};
+use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
+use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::case::Case;
+use crate::stress::curves::{across_contact, contact_line, standard_curves};
+use crate::stress::grid::on_grid;
+use crate::stress::{
+    BodyKind, Critical, CurveSpec, Curves, EDGE, Grid, GridStress, PressureLine, RoundStress,
+    StressCurve, away_from_edge, round,
+};
+use std::sync::Arc;
+use std::time::Instant;
+
+/// A case whose contact is solved. Lengths are in units of C, stresses and pressures in units of p0.
+#[derive(Debug, Clone)]
+pub struct SolvedCase {
+    case: Case,
+    options: Options,
+    hertz: HertzScales,
+    scene: Arc<SolvedScene>,
+}
+
+/// The solution of a case by one method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Solution {
+    /// The results in numbers, in SI units.
+    pub summary: Summary,
+    /// The contact pressure on the two standard lines, and stresses on the curves asked for.
+    pub curves: Curves,
+    /// The contact pressure in cells.
+    pub cells: Vec<PressureCell>,
+    /// Stresses at the extra points (p0), in their order.
+    pub points: Vec<StressTensor>,
+}
+
+/// The stresses that [`Options`] ask for, of a roller whose radius is still open: cases of one scene
+/// share them.
+pub(super) struct Stresses {
+    specs: Vec<CurveSpec>,
+    found: lines::Stresses,
+    seconds: f64,
+}
+
+impl SolvedCase {
+    /// Solves the contact of `case`.
+    ///
+    /// # Errors
+    /// [`Error::Value`] when `options` ask for what does not exist, [`Error::NotConverged`] and
+    /// [`Error::Unsound`] as [`SolvedScene::new`].
+    pub fn new(case: &Case, options: &Options) -> Result<Self> {
+        options.check(case)?;
+        let scene = SolvedScene::new(&Scene::new(case, options.method, options.psi))?;
+        Ok(Self::of_scene(case, options, Arc::new(scene)))
+    }
+
+    /// A case of a scene that is solved already.
+    pub(super) fn of_scene(case: &Case, options: &Options, scene: Arc<SolvedScene>) -> Self {
+        let hertz = case.hertz();
+        Self { case: case.clone(), options: options.clone(), hertz, scene }
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The scales.
+    pub fn hertz(&self) -> &HertzScales {
+        &self.hertz
+    }
+
+    /// The scene's solution, which knows nothing of the roller's radius.
+    pub(super) fn scene(&self) -> &Arc<SolvedScene> {
+        &self.scene
+    }
+
+    /// The contact pressure (p0) at `x`, `y` (C).
+    pub fn pressure(&self, x: f64, y: f64) -> f64 {
+        self.scene.pressure.at(x, y)
+    }
+
+    /// Stresses (p0) of `body` at `points` x, y, z (C); z is the depth into that body.
+    ///
+    /// # Errors
+    /// [`Error::Value`] that names the first point outside the body.
+    pub fn stress(&self, body: BodyKind, points: &[[f64; 3]]) -> Result<Vec<StressTensor>> {
+        let extent = Extent::of(&self.case, body);
+        for (i, at) in points.iter().enumerate() {
+            extent.check(at.map(|v| v * self.hertz.c_m)).map_err(|outside| Error::Value {
+                key: format!("{} of point {} ({})", outside.axis, i + 1, body.name()),
+                value: format!("{:e} m", outside.value_m),
+                reason: format!("it {}", outside.reason),
+                remedy: outside.remedy,
+            })?;
+        }
+        let places: Vec<_> = points.iter().map(|at| (body, *at)).collect();
+        let found = lines::stresses(&self.scene, &[], &places).points;
+        Ok(found.iter().map(|s| self.shaped(body, s)).collect())
+    }
+
+    /// The six stress components of `body` (p0) at every point of `grid` (C).
+    ///
+    /// Runs on all threads of the current pool. Coordinates that mirror each other exactly in x = 0 or
+    /// in y = 0 are computed once.
+    ///
+    /// # Errors
+    /// [`Error::Value`] when the grid is empty, too large, or leaves the body.
+    pub fn on_grid(&self, body: BodyKind, grid: &Grid) -> Result<GridStress> {
+        check_grid(&self.case, body, grid)?;
+        // The body's end may be a rounding beyond itself.
+        let half = Extent::of(&self.case, body).half_length_m() / self.hertz.c_m;
+        let y = grid.y.iter().map(|y| y.clamp(-half, half)).collect();
+        let grid = Grid { y, ..grid.clone() };
+        let curvature = (body == BodyKind::Roller).then(|| self.curvature());
+        Ok(on_grid(&self.scene.field(body), &grid, curvature))
+    }
+
+    /// Everything that the options ask for.
+    pub fn solution(&self) -> Solution {
+        self.solution_with(&self.stresses())
+    }
+
+    /// The stresses that the options ask for.
+    pub(super) fn stresses(&self) -> Stresses {
+        let start = Instant::now();
+        let (scene, options) = (&self.scene.scene, &self.options);
+        let mut specs = Vec::new();
+        for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies.iter()) {
+            if options.bodies.contains(&kind) {
+                let all = standard_curves(kind, scene.half_length, body.half).into_iter();
+                specs.extend(all.filter(|c| options.curves.iter().any(|n| n == c.name)));
+            }
+        }
+        let points: Vec<_> =
+            options.points.iter().map(|p| (p.body, p.at_m.map(|v| v / self.hertz.c_m))).collect();
+        let found = lines::stresses(&self.scene, &specs, &points);
+        Stresses { specs, found, seconds: start.elapsed().as_secs_f64() }
+    }
+
+    /// The solution whose stresses are known.
+    pub(super) fn solution_with(&self, stresses: &Stresses) -> Solution {
+        let curves = Curves {
+            hertz: self.hertz,
+            pressure: self.pressure_lines(),
+            stress: self.stress_curves(stresses),
+        };
+        let points = self.options.points.iter().zip(&stresses.found.points);
+        let points = points.map(|(point, s)| self.shaped(point.body, s)).collect();
+        let cells = pressure_cells(&self.scene);
+        let critical = most_stressed(&curves.stress, self.scene.scene.half_length);
+        let summary = self.summary(stresses, critical, &cells);
+        Solution { summary, curves, cells, points }
+    }
+
+    /// The roller's C / R.
+    fn curvature(&self) -> f64 {
+        self.hertz.c_m / self.case.roller.radius_m
+    }
+
+    /// The stress of a body (p0), the roller's with what its radius adds.
+    fn shaped(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
+        match body {
+            BodyKind::Block => stress.flat,
+            BodyKind::Roller => stress.at(self.curvature()),
+        }
+    }
+
+    /// The pressure on the two standard lines.
+    fn pressure_lines(&self) -> Vec<PressureLine> {
+        let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
+            name: name.to_string(),
+            p: at.iter().map(|&[x, y]| self.pressure(x, y)).collect(),
+            at,
+            own_error: None,
+        };
+        let along = contact_line(self.scene.scene.half_length);
+        vec![
+            line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
+            line("along-x", across_contact().into_iter().map(|x| [x, 0.0]).collect()),
+        ]
+    }
+
+    fn stress_curves(&self, stresses: &Stresses) -> Vec<StressCurve> {
+        let curves = stresses.specs.iter().zip(&stresses.found.curves);
+        curves
+            .map(|(spec, found)| StressCurve {
+                body: spec.body,
+                name: spec.name.to_string(),
+                stress: found.iter().map(|s| self.shaped(spec.body, s)).collect(),
+                at: spec.points.clone(),
+                own_error: None,
+            })
+            .collect()
+    }
+
+    fn summary(
+        &self,
+        stresses: &Stresses,
+        critical: Option<Critical>,
+        cells: &[PressureCell],
+    ) -> Summary {
+        let HertzScales { c_m, p0_pa, .. } = self.hertz;
+        let (case, solved) = (&self.case, &self.scene);
+        let carried: f64 =
+            cells.iter().map(|cell| cell.p * p0_pa * (cell.dx * c_m) * (cell.dy * c_m)).sum();
+        let top = largest(cells);
+        Summary {
+            case: case.name.clone(),
+            method: solved.scene.model,
+            hertz: self.hertz,
+            load_n: case.load.force_n,
+            approach_m: approach_m(solved, &self.hertz, case.roller.radius_m),
+            p_centre_pa: self.pressure(0.0, 0.0) * p0_pa,
+            p_max_pa: top.p * p0_pa,
+            p_max_at_m: [top.x, top.y].map(|v| (v * c_m).abs()),
+            converged: solved.converged(),
+            iterations: solved.contact.iterations,
+            load_error_rel: (carried / case.load.force_n - 1.0).abs(),
+            seconds: Seconds {
+                stress: stresses.seconds,
+                total: solved.seconds.total + stresses.seconds,
+                ..solved.seconds
+            },
+            critical: critical.map(|critical| CriticalSummary::new(&critical, &self.hertz)),
+            details: self.details(stresses),
+        }
+    }
+
+    fn details(&self, stresses: &Stresses) -> Details {
+        let solved = &self.scene;
+        let alike = solved.bodies_shared() && self.options.bodies.len() > 1;
+        Details {
+            tolerance: self.case.accuracy.tolerance,
+            resolution: solved.resolution,
+            wavenumbers: [solved.wavenumbers.coarse().len(), solved.wavenumbers.fine().len()],
+            contact_nodes: solved.pressure.axis().len(),
+            edge: edge_strength(solved),
+            edge_residual: solved.contact.residual,
+            condition: solved.condition,
+            bodies_shared: solved.bodies_shared(),
+            work: Some(WorkSummary::new(&stresses.found.work, alike)),
+            approach_reference_m: self.case.roller.radius_m,
+            roller_diametral_tension_pa: round::DIAMETRAL_TENSION
+                * self.curvature()
+                * self.hertz.p0_pa,
+        }
+    }
+}
+
+/// The most stressed point of the curves outside the surroundings of the roller's edge.
+fn most_stressed(curves: &[StressCurve], half_length: f64) -> Option<Critical> {
+    let points = curves.iter().flat_map(|c| c.at.iter().zip(&c.stress).map(|p| (c.body, p)));
+    let away = points.filter(|(_, (at, _))| away_from_edge(**at, half_length, EDGE));
+    let values =
+        away.map(|(body, (at, stress))| Critical { body, value: stress.von_mises(), at: *at });
+    values.reduce(|best, next| if next.value > best.value { next } else { best })
+}
+
+/// Approach of points one roller radius, `radius_m` (m), below the surfaces (m).
+pub(super) fn approach_m(scene: &SolvedScene, hertz: &HertzScales, radius_m: f64) -> f64 {
+    scene.approach(radius_m / hertz.c_m) * (hertz.c_m * hertz.c_m / (2.0 * radius_m))
+}

@@ -1,0 +1,141 @@
+//! What a solution says in numbers, in SI units, as `summary.json` holds it.
+
+use super::edge::EdgeStrength;
+use super::scene::Seconds;
+use crate::base::HertzScales;
+use crate::body::{EdgeModel, Resolution};
+use crate::stress::{BodyKind, Critical, Work};
+use serde::{Deserialize, Serialize};
+
+/// The summary of a solution.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// The case's name.
+    pub case: String,
+    /// The edge model.
+    pub method: EdgeModel,
+    /// The scales.
+    pub hertz: HertzScales,
+    /// Load (N).
+    pub load_n: f64,
+    /// Approach of the bodies' far points that the model implies (m).
+    pub approach_m: f64,
+    /// Pressure at the contact's centre (Pa).
+    pub p_centre_pa: f64,
+    /// Largest pressure of the cells (Pa).
+    pub p_max_pa: f64,
+    /// Its place x, y (m).
+    pub p_max_at_m: [f64; 2],
+    /// Whether the contact iteration reached its tolerance.
+    pub converged: bool,
+    /// Iterations of the contact solve.
+    pub iterations: usize,
+    /// |load of the pressure - load| / load.
+    pub load_error_rel: f64,
+    /// Time spent.
+    pub seconds: Seconds,
+    /// The most stressed place of the curves asked for, more than 0.1 C from the roller's edge.
+    pub critical: Option<CriticalSummary>,
+    /// What was chosen and what was left out.
+    pub details: Details,
+}
+
+/// The most stressed place in SI units.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CriticalSummary {
+    /// The body.
+    pub body: BodyKind,
+    /// The measure.
+    pub measure: Measure,
+    /// Its value (Pa).
+    pub value_pa: f64,
+    /// Where: x, y, z (m).
+    pub at_m: [f64; 3],
+}
+
+/// What a place is the most stressed one by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Measure {
+    /// Von Mises equivalent stress.
+    VonMises,
+}
+
+impl CriticalSummary {
+    /// `critical` in SI units.
+    pub fn new(critical: &Critical, hertz: &HertzScales) -> Self {
+        Self {
+            body: critical.body,
+            measure: Measure::VonMises,
+            value_pa: critical.value * hertz.p0_pa,
+            at_m: critical.at.map(|v| v * hertz.c_m),
+        }
+    }
+}
+
+/// How a scene was resolved and what came out beside the results.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Details {
+    /// Requested accuracy (p0).
+    pub tolerance: f64,
+    /// The resolution chosen for it.
+    pub resolution: Resolution,
+    /// Numbers of wavenumbers: those of the bodies' equations, and those of the loads.
+    pub wavenumbers: [usize; 2],
+    /// Nodes along half of the contact line.
+    pub contact_nodes: usize,
+    /// Strength of the contact's end, where the model has a law for it.
+    pub edge: Option<EdgeStrength>,
+    /// Amplitude of the pressure's singularity across the contact that was left (p0).
+    pub edge_residual: f64,
+    /// The largest condition number of the bodies' equations.
+    pub condition: f64,
+    /// Whether both bodies are one computation.
+    pub bodies_shared: bool,
+    /// Evaluations of waves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub work: Option<WorkSummary>,
+    /// Depth of the points whose approach is stated (m).
+    pub approach_reference_m: f64,
+    /// The uniform sigma_xx of the roller squeezed across its diameter (Pa).
+    pub roller_diametral_tension_pa: f64,
+}
+
+/// Evaluations done and avoided.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct WorkSummary {
+    /// Evaluations that stresses were summed from.
+    pub done: u64,
+    /// Those avoided, by reason.
+    pub avoided: Avoided,
+}
+
+/// Evaluations avoided, by reason; the names are those of the file and of the report.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Avoided {
+    /// Sources farther away than a wave reaches.
+    #[serde(rename = "sources beyond a wave's reach")]
+    pub sources: u64,
+    /// End faces that a wavenumber does not reach from the contact.
+    #[serde(rename = "end faces beyond a wave's reach")]
+    pub ends: u64,
+    /// Wavenumbers behind those that add nothing any more.
+    #[serde(rename = "wavenumbers that have faded")]
+    pub faded: u64,
+    /// The second of two bodies that are alike.
+    #[serde(rename = "the other body is alike")]
+    pub alike: u64,
+}
+
+impl WorkSummary {
+    /// From the work of the fields; `alike` says that it served two bodies.
+    pub fn new(work: &Work, alike: bool) -> Self {
+        let avoided = Avoided {
+            sources: work.beyond_reach,
+            ends: work.ends,
+            faded: work.faded,
+            alike: if alike { work.done } else { 0 },
+        };
+        Self { done: work.done, avoided }
+    }
+}

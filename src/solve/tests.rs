@@ -1,0 +1,65 @@
+//! A solved case that is asked in different ways gives the same answers.
+
+use super::{Options, Point, SolvedCase, solve};
+use crate::body::EdgeModel;
+use crate::case::builtin_case;
+use crate::stress::{BodyKind, Grid};
+
+#[test]
+fn a_grid_is_what_points_are() {
+    let mut case = builtin_case("half-short").unwrap().unwrap();
+    case.accuracy.tolerance = 5e-3;
+    let c = case.hertz().c_m;
+    let end = case.factors().slenderness;
+    let grid = Grid {
+        x: vec![-1.2, -0.4, 0.0, 0.4, 2.0],
+        y: vec![-end, -0.7 * end, 0.1 * end, 0.7 * end, end],
+        z: vec![0.0, 0.3, 1.7],
+    };
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves.clear();
+    let solved = SolvedCase::new(&case, &options).unwrap();
+    for body in BodyKind::ALL {
+        let stress = solved.on_grid(body, &grid).unwrap();
+        assert_eq!(stress.len(), 75);
+        let (mut indices, mut places) = (Vec::new(), Vec::new());
+        for (iz, &z) in grid.z.iter().enumerate() {
+            for (iy, &y) in grid.y.iter().enumerate() {
+                for (ix, &x) in grid.x.iter().enumerate() {
+                    indices.push(grid.index(ix, iy, iz));
+                    places.push([x, y, z]);
+                }
+            }
+        }
+        options.points = places.iter().map(|at| Point { body, at_m: at.map(|v| v * c) }).collect();
+        let of_options = solve(&case, &options).unwrap().points;
+        let of_places = solved.stress(body, &places).unwrap();
+        for ((i, a), b) in indices.into_iter().zip(&of_options).zip(&of_places) {
+            let got = stress.at(i).components();
+            for ((got, a), b) in got.into_iter().zip(a.components()).zip(b.components()) {
+                let off = (got - a).abs().max((got - b).abs());
+                assert!(off < 1e-9, "{body:?} point {i}: {got} is not {a} or {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn bad_grids_are_refused() {
+    let case = builtin_case("flush-short").unwrap().unwrap();
+    let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
+    let good = Grid { x: vec![0.0], y: vec![0.0], z: vec![0.0] };
+    let refused = |grid: Grid| solved.on_grid(BodyKind::Roller, &grid).unwrap_err().to_string();
+    assert!(refused(Grid { x: vec![], ..good.clone() }).contains("0 x 1 x 1"));
+    assert!(refused(Grid { x: vec![f64::NAN], ..good.clone() }).contains("grid x (roller)"));
+    let end = case.factors().slenderness;
+    assert!(refused(Grid { y: vec![-2.0 * end], ..good.clone() }).contains("keep |y| <="));
+    assert!(refused(Grid { z: vec![-1e-9], ..good.clone() }).contains("keep 0 <= z"));
+    let beyond = 2.0 * case.roller.radius_m / case.hertz().c_m * 1.001;
+    let said = refused(Grid { z: vec![beyond], ..good.clone() });
+    assert!(said.contains("grid z (roller)") && said.contains("outside the roller"), "{said}");
+    let many = Grid { x: vec![0.0; 5000], y: vec![0.0; 5000], z: vec![0.0] };
+    assert!(refused(many).contains("5000 x 5000 x 1"));
+    let said = solved.stress(BodyKind::Roller, &[[0.0, 0.0, beyond]]).unwrap_err().to_string();
+    assert!(said.starts_with("z of point 1 (roller)"), "{said}");
+}

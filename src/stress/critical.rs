@@ -1,0 +1,27 @@
+//! The most stressed place of a body, and the roller's edge, around which none is looked for.
+
+use crate::base::BodyKind;
+
+/// The most stressed place that was looked for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Critical {
+    /// The body.
+    pub body: BodyKind,
+    /// Von Mises stress (p0).
+    pub value: f64,
+    /// Place x, y, z (C), z into the body.
+    pub at: [f64; 3],
+}
+
+/// Distance from the roller's edge (C) within which the stress of a sharp corner is a property of the
+/// sampling and not of the contact.
+pub const EDGE: f64 = 0.1;
+
+/// Part of a distance from the edge that rounding may take away.
+const SLACK: f64 = 1e-9;
+
+/// Whether the point `at` (C) is at least `distance` (C) away from the roller's edges, the lines
+/// |y| = `half_length`, z = 0 at any x.
+pub fn away_from_edge(at: [f64; 3], half_length: f64, distance: f64) -> bool {
+    (at[1].abs() - half_length).hypot(at[2]) >= distance * (1.0 - SLACK)
+}

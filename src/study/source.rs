@@ -1,0 +1,70 @@
+//! Where an answer comes from.
+
+use crate::body::EdgeModel;
+use serde::{Deserialize, Serialize};
+use std::fmt;
+
+/// An edge model, or an engine that models are compared with. In files it is its name.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum Source {
+    /// A semi-analytical model.
+    Model(EdgeModel),
+    /// A reference.
+    Engine(Engine),
+}
+
+/// A finite-element code, or whatever else gives reference curves, by its name in files.
+#[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct Engine(String);
+
+impl Engine {
+    /// gmsh and FEniCSx, whose name in files is `fem`.
+    pub fn fenicsx() -> Self {
+        Self("fem".to_string())
+    }
+
+    /// The name in files.
+    pub fn name(&self) -> &str {
+        &self.0
+    }
+
+    /// The name for readers.
+    pub fn title(&self) -> &str {
+        if *self == Self::fenicsx() { "FEM" } else { &self.0 }
+    }
+}
+
+impl Source {
+    /// The name in files.
+    pub fn name(&self) -> &str {
+        match self {
+            Source::Model(method) => method.name(),
+            Source::Engine(engine) => engine.name(),
+        }
+    }
+
+    /// Whether this is a reference and no model.
+    pub fn is_engine(&self) -> bool {
+        matches!(self, Source::Engine(_))
+    }
+}
+
+impl From<EdgeModel> for Source {
+    fn from(method: EdgeModel) -> Self {
+        Source::Model(method)
+    }
+}
+
+impl From<Engine> for Source {
+    fn from(engine: Engine) -> Self {
+        Source::Engine(engine)
+    }
+}
+
+impl fmt::Display for Source {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
