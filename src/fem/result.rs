@@ -15,7 +15,7 @@ pub const LINE_NAMES: [&str; 2] = ["along-y", "along-x"];
 /// Points that differ by less than this (C) are equal: files have nine digits.
 const SAME_POINT: f64 = 1e-6;
 
-/// The same as a part of a coordinate far from the centre.
+/// The relative tolerance of a coordinate far from the centre.
 const SAME_POINT_RELATIVE: f64 = 1e-8;
 
 /// The summary of one finite-element run: the content of `fem.json`, and of one mesh in a record.
@@ -91,8 +91,8 @@ pub struct MeshResult {
     pub size: f64,
     /// The summary of its run.
     pub summary: FemSummary,
-    /// Contact pressure along y and along x, and stresses on the standard curves of both bodies, in the
-    /// order of [`standard_curves`], the block first.
+    /// Contact pressure along y and along x, and stresses on the standard curves of both bodies, in
+    /// the order of [`standard_curves`], the block first.
     pub curves: Curves,
 }
 
@@ -182,14 +182,14 @@ pub fn wanted_lines(case: &Case) -> Vec<(&'static str, Vec<[f64; 2]>)> {
     lines_of(case).into_iter().map(|(name, points)| (name, in_metres(points))).collect()
 }
 
-/// Whether two lists hold the same points (C), but for the digits lost in a file.
+/// Whether two lists contain the same points (C), within the digits of a file.
 fn same_points<const N: usize>(got: &[[f64; N]], want: &[[f64; N]]) -> bool {
     let near = |(g, w): (&f64, &f64)| (g - w).abs() <= SAME_POINT + SAME_POINT_RELATIVE * w.abs();
     got.len() == want.len() && got.iter().zip(want).all(|(g, w)| g.iter().zip(w).all(near))
 }
 
-/// Checks that `curves`, from `curves.csv` and `pressure.csv` in `folder`, are those of `case`, point by
-/// point.
+/// Checks that `curves`, from `curves.csv` and `pressure.csv` in `folder`, are those of `case`,
+/// point by point.
 ///
 /// # Errors
 /// [`Error::File`] that names the first curve or line that is missing, too many, or elsewhere.
@@ -227,7 +227,7 @@ pub fn check_points(case: &Case, curves: &Curves, folder: &Path) -> Result<()> {
 }
 
 /// Curves of a `curves.csv` in units of `hertz`, each with the size of its mesh: from the leading
-/// column `mesh` where there is one, else NaN.
+/// column `mesh` if there is one, otherwise NaN.
 pub(super) fn parse_curves(
     text: &str,
     hertz: &HertzScales,

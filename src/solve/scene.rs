@@ -18,7 +18,7 @@ const SOUNDNESS: f64 = 5.0;
 /// (docs/robustness.md).
 const WORST_CONDITION: f64 = 1e7;
 
-/// Part of a scene's tolerance that the contact's iteration is ended at.
+/// Tolerance of the contact's iteration, in tolerances of the scene.
 const CONTACT_TOLERANCE: f64 = 1e-2;
 
 /// One of the two bodies of a [`Scene`].

@@ -1,5 +1,5 @@
-//! What one source, a model or a reference, says at the standard points: pressures and stresses in
-//! units of C and p0, with the scales that lead back to SI units.
+//! The results of one source, a model or a reference, at the standard points: pressures and
+//! stresses in units of C and p0, with the scales for the conversion to SI units.
 
 use super::quantity::Quantity;
 use crate::base::{BodyKind, HertzScales, StressTensor};
@@ -13,7 +13,7 @@ pub struct PressureLine {
     pub at: Vec<[f64; 2]>,
     /// Pressure (p0), as long as `at`.
     pub p: Vec<f64>,
-    /// The source's own error at the points (p0), where it is known.
+    /// The source's own error at the points (p0), if known.
     pub own_error: Option<Vec<f64>>,
 }
 
@@ -28,7 +28,7 @@ pub struct StressCurve {
     pub at: Vec<[f64; 3]>,
     /// Stresses (p0), as long as `at`.
     pub stress: Vec<StressTensor>,
-    /// The source's own error at the points (p0) for each of [`Quantity::ALL`], where it is known.
+    /// The source's own error at the points (p0) for each of [`Quantity::ALL`], if known.
     pub own_error: Option<Vec<[f64; 8]>>,
 }
 
@@ -54,8 +54,8 @@ impl Curves {
         self.stress.iter().find(|c| c.body == body && c.name == name)
     }
 
-    /// The same curves, with the differences to `other` at every point as their own error. Curves that
-    /// `other` lacks state none.
+    /// The same curves, with the differences from `other` at every point as their own error; none
+    /// for curves that `other` lacks.
     pub fn with_error_from(mut self, other: &Curves) -> Self {
         for line in &mut self.pressure {
             line.own_error = other

@@ -1,23 +1,24 @@
-//! The most stressed place of a body, and the roller's edge, around which none is looked for.
+//! The most stressed point of a body, and the neighbourhood of the roller's edge, which is
+//! excluded.
 
 use crate::base::BodyKind;
 
-/// The most stressed place that was looked for.
+/// The most stressed point.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Critical {
     /// The body.
     pub body: BodyKind,
     /// Von Mises stress (p0).
     pub value: f64,
-    /// Place x, y, z (C), z into the body.
+    /// Point x, y, z (C), z into the body.
     pub at: [f64; 3],
 }
 
-/// Distance from the roller's edge (C) within which the stress of a sharp corner is a property of the
-/// sampling and not of the contact.
+/// Distance from the roller's edge (C) within which the stress at a sharp corner is a property of
+/// the sampling, not of the contact.
 pub const EDGE: f64 = 0.1;
 
-/// Part of a distance from the edge that rounding may take away.
+/// Relative tolerance for rounding of a distance from the edge.
 const SLACK: f64 = 1e-9;
 
 /// Whether the point `at` (C) is at least `distance` (C) away from the roller's edges, the lines

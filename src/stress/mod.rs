@@ -1,4 +1,4 @@
-//! Stresses at points, on standard curves and at critical points.
+//! Stresses at points, on standard curves and at critical points, and the form of results on them.
 
 mod answer;
 mod critical;

@@ -14,7 +14,7 @@ pub enum Quantity {
 }
 
 impl Quantity {
-    /// All quantities that a stress has, in the order of the files' columns.
+    /// All quantities of a stress, in the order of the files' columns.
     pub const ALL: [Quantity; 8] = [
         Quantity::Stress(0),
         Quantity::Stress(1),
