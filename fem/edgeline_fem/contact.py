@@ -25,7 +25,7 @@ def _line_mass(nodes):
     return mass
 
 
-def _interpolation(nodes, at):
+def interpolation(nodes, at):
     """Matrix of quadratic interpolation from ``nodes`` to the points ``at`` (within their range)."""
     at = np.asarray(at, dtype=float)
     first = np.clip(np.searchsorted(nodes[::2], at, side="right") - 1, 0, len(nodes) // 2 - 1) * 2
@@ -46,16 +46,20 @@ def _gauss_points(nodes):
 
 
 def _mirrored(values):
-    """``values`` at Gauss points, preceded by the images of the first two in the plane of symmetry."""
+    """``values`` of an even function at Gauss points, preceded by the images of the first two."""
     return np.concatenate([values[1::-1], values])
 
 
-def _through_nearest(points, at):
-    """Weights of cubic interpolation to ``at`` of an even function known at ascending Gauss ``points``.
+def _mirrored_places(points):
+    """Gauss ``points``, preceded by the images of the first two."""
+    return np.concatenate([-points[1::-1], points])
 
-    They are those of :func:`_mirrored` values: the four nearest, or the last four beyond the last.
+
+def _through_nearest(points, at):
+    """Weights of cubic interpolation to ``at`` of a function known at ascending Gauss ``points``.
+
+    They are those of the four nearest, or of the last four beyond an end.
     """
-    points = np.concatenate([-points[1::-1], points])
     first = int(np.clip(np.searchsorted(points, at) - 2, 0, len(points) - 4))
     near = points[first : first + 4]
     weights = np.zeros(len(points))
@@ -65,23 +69,30 @@ def _through_nearest(points, at):
     return weights
 
 
+# The square of a pressure (p0) that is none.
+_NO_CONTACT = 1e-6
+
+
 class ContactGrid:
     """The tensor grid of nodes where contact may happen: the element boundaries ``x`` times ``y``.
 
-    Nodes are numbered with y running fastest. ``weights`` are the nodes' shares of the area, lumped from
-    the consistent mass matrix; all are positive, as bounds on nodal forces require.
+    x = 0 is a plane of symmetry, and with ``even`` so is y = 0, where the grid then begins. Nodes are numbered
+    with y running fastest. ``weights`` are the nodes' shares of the area and ``lengths`` those of the length along
+    y, lumped from the consistent mass matrix; all are positive, as bounds on nodal forces require.
 
     Pressures are handled at the elements' 2 x 2 Gauss points, ``gauss_x`` times ``gauss_y``. Where no pair of
     nodes may penetrate, corner nodes carry a little too much and middle ones too little (0.1 to 0.2 % of p0 on
     the meshes in use); to second degree that vanishes at the Gauss points, where the stress is best as well.
     """
 
-    def __init__(self, x, y):
+    def __init__(self, x, y, even=True):
+        self.even = even
         self.x, self.y = with_middles(np.asarray(x)), with_middles(np.asarray(y))
         self.gauss_x, self.gauss_y = _gauss_points(self.x), _gauss_points(self.y)
         self._mass_x, self._mass_y = _line_mass(self.x), _line_mass(self.y)
         self.shape = (len(self.x), len(self.y))
-        self.weights = np.outer(self._mass_x.sum(axis=0), self._mass_y.sum(axis=0)).ravel()
+        self.lengths = self._mass_y.sum(axis=0)
+        self.weights = np.outer(self._mass_x.sum(axis=0), self.lengths).ravel()
 
     def __len__(self):
         return self.shape[0] * self.shape[1]
@@ -100,7 +111,7 @@ class ContactGrid:
         return np.where(on_x & on_y, i * self.shape[1] + j, -1)
 
     def _at_gauss_points(self, nodal):
-        across, along = _interpolation(self.x, self.gauss_x), _interpolation(self.y, self.gauss_y)
+        across, along = interpolation(self.x, self.gauss_x), interpolation(self.y, self.gauss_y)
         return across @ nodal @ along.T
 
     def lumped_pressure(self, forces):
@@ -116,9 +127,8 @@ class ContactGrid:
         error away; the inverse would carry the overshoot at a longer block's corner far along the line.
         """
         across = np.linalg.solve(self._mass_x, forces.reshape(self.shape))
-        area = self._mass_y.sum(axis=0)
-        lumped = across / area
-        return self._at_gauss_points(lumped + (across - lumped @ self._mass_y) / area)
+        lumped = across / self.lengths
+        return self._at_gauss_points(lumped + (across - lumped @ self._mass_y) / self.lengths)
 
     def _profile(self, pressure, y):
         """The square of the pressure across the contact at ``y``, and how it goes on to the contact's edge.
@@ -127,8 +137,14 @@ class ContactGrid:
         edge; the x at which the square falls to 0, and its slope with x^2 on the way there. The last two are
         ``None`` where too few elements lie within the contact to tell.
         """
-        line = _mirrored(pressure.T).T @ _through_nearest(self.gauss_y, min(y, self.y[-1]))
+        y = min(max(y, self.y[0]), self.y[-1])
+        if self.even:
+            line = _mirrored(pressure.T).T @ _through_nearest(_mirrored_places(self.gauss_y), y)
+        else:
+            line = pressure @ _through_nearest(self.gauss_y, y)
         square = np.maximum(line, 0.0) ** 2
+        if square.max() < _NO_CONTACT:
+            return 0.0 * square, self.x[-1], None, None
         cut = np.flatnonzero(line > 0.02 * line.max())[-1] // 2
         fit = slice(0, 2 * (cut - 1))
         if cut < 3:
@@ -144,9 +160,11 @@ class ContactGrid:
         """Half-width and peak (floats) of the Hertz pressure that falls to 0 at ``y`` as ``pressure`` does.
 
         Where the contact is too coarse to tell, the half-width is that of the points with pressure and the
-        peak the pressure at x = 0.
+        peak the pressure at x = 0. ``None`` where the bodies do not touch.
         """
         square, _, edge, slope = self._profile(pressure, y)
+        if not square.any():
+            return None
         if edge is None:
             touching = np.flatnonzero(square > 4e-4 * square.max())
             return self.gauss_x[touching[-1]], np.sqrt(square[0])
@@ -160,13 +178,13 @@ class ContactGrid:
         it see the cut; there the square goes on as a Hertz pressure's does, a straight line in x^2.
         """
         found = np.zeros(len(points))
-        limit = np.array([self.x[-1], self.y[-1]]) * (1.0 + 1e-9)
+        slack = 1e-9 * np.array([self.x[-1], np.ptp(self.y)])
         for number, (x, y) in enumerate(points):
-            if x > limit[0] or y > limit[1]:
+            if x > self.x[-1] + slack[0] or not self.y[0] - slack[1] <= y <= self.y[-1] + slack[1]:
                 continue
             square, sound, edge, slope = self._profile(pressure, y)
             if x <= sound:
-                value = _through_nearest(self.gauss_x, x) @ _mirrored(square)
+                value = _through_nearest(_mirrored_places(self.gauss_x), x) @ _mirrored(square)
             else:
                 value = slope * (x**2 - edge**2)
             found[number] = np.sqrt(max(value, 0.0))
@@ -180,12 +198,12 @@ def _cells(nodes):
     return np.concatenate(([nodes[0]], inner, [nodes[-1]]))
 
 
-def half_space_compliance(grid, free, attached):
+def half_space_compliance(grid, bodies, ends):
     """A dense approximation of the contact compliance: displacement per nodal force, (n, n), symmetric.
 
     Forces are spread, and displacements averaged, over the cells around the nodes. Both bodies are taken
-    as half-spaces with the two planes of symmetry; ``free`` and ``attached`` are the sums of
-    (1 - nu^2) / E over those that end with the contact line and those that go on. The former are mirrored
+    as half-spaces with the grid's planes of symmetry. ``bodies``: (1 - nu^2) / E of them all; ``ends``: pairs of the
+    place of an end of the grid and the sum of (1 - nu^2) / E over the bodies that end there. Those are mirrored
     in their end face, whose lack of support is made up for by the factor that Guilbault's correction has
     for nu = 0.3. It only speeds up :func:`solve_contact` and has no part in its result.
     """
@@ -208,53 +226,77 @@ def half_space_compliance(grid, free, attached):
         # Each reflection reverses a cell's boundaries.
         return sign_x * sign_y * whole
 
-    signs = [(sign_x, sign_y) for sign_x in (1, -1) for sign_y in (1, -1)]
-    direct = sum(influence(*pair, 0.0) for pair in signs)
-    mirrored = sum(influence(sx, sy, 2.0 * y[-1]) for sx, sy in signs)
-    whole = (free + attached) * direct + 1.39 * free * mirrored
+    signs_y = (1, -1) if grid.even else (1,)
+    whole = bodies * sum(influence(sx, sy, 0.0) for sx in (1, -1) for sy in signs_y)
+    for place, free in ends:
+        # The image of y in the face is 2 place - y; with y = 0 a plane of symmetry, that of -y counts as well.
+        mirrored = sum(influence(sx, -sy, 2.0 * place) for sx in (1, -1) for sy in signs_y)
+        whole = whole + 1.39 * free * mirrored
     return whole.reshape(len(grid), len(grid)) / (np.pi * np.outer(grid.weights, grid.weights))
 
 
 @dataclasses.dataclass(frozen=True)
 class ContactSolution:
-    """Nodal ``forces`` of the contact, the ``approach`` (multiplier of the load) and how well they hold.
+    """Nodal ``forces`` of the contact, the ``multipliers`` of its constraints and how well they hold.
 
+    The first multiplier, that of the load, is the approach; the second, if the moment is prescribed, the tilt.
     ``residual``: root mean square of the gap left in contact; ``smallest_gap``: the most negative gap
     anywhere (both relative to the gap scale ``C^2 / 2R``); ``iterations`` of the outer loop and
     ``applications`` of the compliance.
     """
 
     forces: np.ndarray
-    approach: float
+    multipliers: np.ndarray
     residual: float
     smallest_gap: float
     iterations: int
     applications: int
 
+    @property
+    def approach(self):
+        """The approach of the bodies (units of C)."""
+        return float(self.multipliers[0])
 
-def solve_contact(compliance, gap, weights, load, model, scale, tolerance, max_iterations, progress):
-    """Minimise f' S f / 2 + gap' f over nodal forces f >= 0 with sum(f) = ``load``.
+
+def _balanced(forces, constraints, wanted):
+    """``forces`` >= 0, scaled over y so that ``constraints @ forces`` is ``wanted``.
+
+    The factor is linear in the constraints' rows; nodes that it would make pull are left out.
+    """
+    for _ in range(100):
+        factor = np.linalg.solve((constraints * forces) @ constraints.T, wanted) @ constraints
+        forces = forces * factor
+        if forces.min() >= 0.0:
+            return forces
+        forces = np.maximum(forces, 0.0)
+    raise FemError("no pressing forces carry the load and its moment: reduce eccentricity_m")
+
+
+def solve_contact(
+    compliance, gap, weights, constraints, wanted, model, scale, tolerance, max_iterations, progress
+):
+    """Minimise f' S f / 2 + gap' f over nodal forces f >= 0 with ``constraints @ f = wanted``.
 
     Preconditioned conjugate gradients on the nodes in contact, restarted when that set changes. Directions
-    keep the load, so that it holds without rescaling; its multiplier is the approach of the bodies. Nodes
-    leave the set where their force would be tensile, and join it where the gap is negative, once the
-    residual within the set is small enough.
+    keep the constraints, so that they hold without rescaling; their multipliers are the approach of the bodies
+    and, if the moment is prescribed, their tilt. Nodes leave the set where their force would be tensile,
+    and join it where the gap is negative, once the residual within the set is small enough.
 
-    ``compliance(f)``: S f, the sum of both bodies' displacements, the only costly operation; ``model``: a
-    symmetric matrix (n, n) like S, which makes the first guess and the preconditioner; ``gap`` >= 0: at
-    rest; ``weights``: areas of the nodes; ``scale``: a gap to measure residuals with;
-    ``progress(iteration, residual)`` is told of each iteration. Raises :class:`FemError` if ``tolerance``
-    is not met.
+    ``compliance(f)``: S f, the sum of both bodies' displacements, the only costly operation; ``gap``: at
+    rest; ``weights``: areas of the nodes; ``constraints`` (m, n), the first row ones, and ``wanted`` (m,): the
+    load and its moment; ``model``: a symmetric matrix (n, n) like S, which makes the first guess and the
+    preconditioner; ``scale``: a gap to measure residuals with; ``progress(iteration, residual)`` is told of each
+    iteration. Raises :class:`FemError` if ``tolerance`` is not met.
     """
     if compliance is None:
-        forces = np.where(gap <= np.quantile(gap, 0.5), weights, 0.0)
-        forces *= load / forces.sum()
+        start = np.where(gap <= np.quantile(gap, 0.5), weights, 0.0)
+        forces = _balanced(start, constraints, wanted)
 
         def compliance(values):
             return model @ values
     else:
         forces = solve_contact(
-            None, gap, weights, load, model, scale, max(1e-6, tolerance), 1000, lambda i, r: None
+            None, gap, weights, constraints, wanted, model, scale, max(1e-6, tolerance), 1000, lambda i, r: None
         ).forces
     applications = 0
 
@@ -267,27 +309,28 @@ def solve_contact(compliance, gap, weights, load, model, scale, tolerance, max_i
     touching = forces > 0.0
     inverse = None
     for iteration in range(1, max_iterations + 1):
-        area = weights[touching]
-        approach = np.sum(area * opening[touching]) / np.sum(area)
-        left = opening - approach
+        area, rows = weights[touching], constraints[:, touching]
+        # The rigid motion that fits the opening best; it is the multipliers once nothing is left.
+        multipliers = np.linalg.solve((rows * area) @ rows.T, rows @ (area * opening[touching]))
+        left = opening - multipliers @ constraints
         residual = np.sqrt(np.sum(area * left[touching] ** 2) / np.sum(area)) / scale
         smallest = left.min() / scale
         progress(iteration, residual)
         if residual <= tolerance and smallest >= -10.0 * tolerance:
-            return ContactSolution(forces, approach, residual, smallest, iteration, applications)
+            return ContactSolution(forces, multipliers, residual, smallest, iteration, applications)
         entering = ~touching & (left < -2.0 * scale * residual)
         if entering.any():
             touching = touching | entering
             inverse = None
-            area = weights[touching]
+            rows = constraints[:, touching]
         if inverse is None:
             inverse = np.linalg.inv(model[np.ix_(touching, touching)])
-            # Removes the part of a direction that changes the load.
-            lift = inverse.sum(axis=1) / inverse.sum()
-            direction, old = np.zeros(len(area)), 0.0
+            # Removes the part of a direction that changes what is constrained.
+            lift = np.linalg.solve(rows @ inverse @ rows.T, rows @ inverse)
+            direction, old = np.zeros(rows.shape[1]), 0.0
         rest = left[touching]
         descent = inverse @ rest
-        descent -= descent.sum() * lift
+        descent -= (rows @ descent) @ lift
         new = rest @ descent
         direction = descent + (new / old if old > 0.0 else 0.0) * direction
         old = new
@@ -303,7 +346,8 @@ def solve_contact(compliance, gap, weights, load, model, scale, tolerance, max_i
         moved[leaving] = 0.0
         touching = touching & ~leaving
         inverse = None
-        forces = moved * load / moved.sum()
+        forces = _balanced(moved, constraints, wanted)
+        touching = touching & (forces > 0.0)
         opening = deflection(forces) + gap
     raise FemError(
         f"contact did not converge in {max_iterations} iterations: residual {residual:.2e}, smallest gap "

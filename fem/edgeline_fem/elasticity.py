@@ -38,14 +38,15 @@ class Body:
 
     ``domain``: its mesh; ``young`` (units of p0) and ``poisson``: its material; ``fixed``: pairs
     ``(component, on)`` that hold a displacement component at zero where ``on(x)`` is true, x being of
-    shape (3, n), on the body's surface. Together they must exclude rigid motion, so that the stiffness is
-    positive definite. ``linear`` is ``direct`` or ``iterative``, ``tolerance`` the latter's.
+    shape (3, n), on the body's surface; ``pinned``: the same for single nodes anywhere. Together they must
+    exclude rigid motion, so that the stiffness is positive definite. ``linear`` is ``direct`` or
+    ``iterative``, ``tolerance`` the latter's.
 
     Attributes: ``seconds`` by stage; ``factorised_by``, the direct solver's name or ``None``; ``iterations``
     and ``solves`` so far.
     """
 
-    def __init__(self, domain, young, poisson, fixed, linear="direct", tolerance=1e-10):
+    def __init__(self, domain, young, poisson, fixed, linear="direct", tolerance=1e-10, pinned=()):
         self.domain = domain
         self.comm = domain.comm
         self.young, self.poisson = young, poisson
@@ -67,6 +68,9 @@ class Body:
             conditions.append(fem.dirichletbc(PETSc.ScalarType(0), dofs, self.space.sub(component)))
             held = self._held.setdefault(component, set())
             held.update(int(d) for d in dofs if d < 3 * self._owned)
+        for component, on in pinned:
+            dofs = (3 * np.flatnonzero(on(self.nodes.T)) + component).astype(np.int32)
+            conditions.append(fem.dirichletbc(PETSc.ScalarType(0), dofs, self.space.sub(component)))
         trial, test = ufl.TrialFunction(self.space), ufl.TestFunction(self.space)
         volume = ufl.Measure("dx", domain=domain, metadata=_QUADRATURE)
         energy = ufl.inner(self._stress(trial), self._strain(test)) * volume
@@ -80,7 +84,7 @@ class Body:
         self.solves = 0
         self._load = self.matrix.createVecRight()
         self._answer = self.matrix.createVecRight()
-        self._contact = None
+        self._contact = self._tilt = None
 
     def _strain(self, u):
         return ufl.sym(ufl.grad(u))
@@ -124,39 +128,57 @@ class Body:
             raise FemError("MUMPS failed to factor a stiffness matrix (out of memory?)")
         return solver
 
-    def number_contact_nodes(self, count, find, slope=None):
-        """Tell the body its contact nodes.
+    def _numbered(self, count, find):
+        """This rank's own nodes among ``count`` that ``find`` numbers: (their rows, their numbers, ``count``).
 
         ``find(nodes)`` maps coordinates (n, 3) to numbers in [0, ``count``), or -1 for nodes that are not
-        in the contact. Every number must be found exactly once over all ranks. ``slope(x)`` is dz/dx of the
-        unloaded surface at coordinates x (n,); left out for a plane surface z = 0. Raises
-        :class:`FemError` for numbers that are missing or found twice.
+        meant. Raises :class:`FemError` for numbers that are missing or found twice, over all ranks.
         """
         numbers = find(self.nodes[: self._owned])
-        local = np.flatnonzero(numbers >= 0)
-        tilt = np.zeros(len(local)) if slope is None else slope(self.nodes[local, 0])
-        self._contact = (3 * local, numbers[local], count)
-        self._tilt = tilt
+        rows = np.flatnonzero(numbers >= 0)
         found = np.zeros(count, dtype=np.int64)
-        np.add.at(found, numbers[local], 1)
+        np.add.at(found, numbers[rows], 1)
         self.comm.Allreduce(found.copy(), found)
         if np.any(found != 1):
             raise FemError(
-                f"{np.count_nonzero(found != 1)} of {count} contact nodes are missing from the mesh or "
-                "stand twice in it"
+                f"{np.count_nonzero(found != 1)} of {count} nodes are missing from the mesh or stand twice in it"
             )
+        return rows, numbers[rows], count
 
-    def _at_contact(self, values):
-        """A whole array over the contact nodes from this rank's values, one for each of its own."""
-        _, numbers, count = self._contact
+    def _gathered(self, numbered, values):
+        """A whole array over ``numbered`` nodes from this rank's values, one for each of its own."""
+        _, numbers, count = numbered
         whole = np.zeros(count)
         whole[numbers] = values
         self.comm.Allreduce(whole.copy(), whole)
         return whole
 
+    def number_contact_nodes(self, count, find, slope=None):
+        """Tell the body its contact nodes, of which ``find(nodes)`` gives the numbers in [0, ``count``).
+
+        ``slope(x)`` is dz/dx of the unloaded surface at coordinates x (n,); left out for a plane surface
+        z = 0. Raises :class:`FemError` for numbers that are missing or found twice.
+        """
+        self._contact = self._numbered(count, find)
+        rows = self._contact[0]
+        self._tilt = np.zeros(len(rows)) if slope is None else slope(self.nodes[rows, 0])
+
     def contact_coordinates(self, axis):
         """Coordinate ``axis`` of every contact node."""
-        return self._at_contact(self.nodes[self._contact[0] // 3, axis])
+        return self._gathered(self._contact, self.nodes[self._contact[0], axis])
+
+    def displacement_at(self, component, places):
+        """Displacement component of the last solve at nodes at the ``places`` (n, 3); they must exist."""
+        def find(nodes):
+            near = [np.flatnonzero(np.abs(nodes - place).max(axis=1) < 1e-7 * (1.0 + np.abs(place).max()))
+                    for place in places]
+            numbers = np.full(len(nodes), -1)
+            for number, rows in enumerate(near):
+                numbers[rows] = number
+            return numbers
+
+        numbered = self._numbered(len(places), find)
+        return self._gathered(numbered, self._answer.array[3 * numbered[0] + component])
 
     def press(self, forces):
         """Sinking of the surface at its contact nodes (units of C) under nodal ``forces`` normal to it.
@@ -165,7 +187,8 @@ class Body:
         normal to the unloaded surface z = h(x), and its sinking is that of the surface at fixed x,
         u_z - h'(x) u_x. The two are conjugate, so that the compliance is symmetric.
         """
-        first, numbers, _ = self._contact
+        rows, numbers, _ = self._contact
+        first = 3 * rows
         self._load.set(0.0)
         self._load.array[first] = -self._tilt * forces[numbers]
         self._load.array[first + 2] = forces[numbers]
@@ -178,7 +201,7 @@ class Body:
         self.iterations += self._solver.getIterationNumber()
         self.solves += 1
         answer = self._answer.array
-        return self._at_contact(answer[first + 2] - self._tilt * answer[first])
+        return self._gathered(self._contact, answer[first + 2] - self._tilt * answer[first])
 
     def keep(self):
         """Make the last solve the body's state; returns the force that its supports carry along z."""

@@ -22,6 +22,7 @@ import numpy as np
 
 from .lifetime import die_with_parent
 from .request import FemError
+from .scene import BODIES, Scene
 
 # The roller's quarter disc is three patches that meet at one inner point, as an O-grid. Radii are
 # relative to the roller's: where the axis x = 0 is cut, measured from the disc's centre, and the radius of
@@ -56,8 +57,8 @@ class Axes:
 
     ``arc``: arc length along the roller's surface to 45 degrees; its first ``contact_elements`` elements
     lie within the strip where contact is looked for. ``roller_depth``: on x = 0 from the surface to the
-    core. ``core``: number of elements across the core's frame. ``x``, ``z``: the block's. ``y``: the
-    block's, whose first ``shared_y`` elements are the roller's as well.
+    core. ``core``: number of elements across the core's frame. ``x``, ``z``: the block's. ``y``: for each body,
+    its own; ``overlap``: those that both have.
     """
 
     arc: np.ndarray
@@ -66,20 +67,50 @@ class Axes:
     core: int
     x: np.ndarray
     z: np.ndarray
-    y: np.ndarray
-    shared_y: int
+    y: dict
+    overlap: np.ndarray
 
-    @property
-    def roller_y(self):
-        """The roller's nodes along y."""
-        return self.y[: self.shared_y + 1]
+
+def _along(scene, options):
+    """Nodes along y: ``({body: its own}, those of the overlap)``."""
+    scale = options.size
+    sizes = [options.end if end.longer is None else options.corner for end in scene.ends]
+    largest = options.along if scene.profiled else np.inf
+
+    def within(v):
+        grown = (size + options.growth * abs(end.y - v) for size, end in zip(sizes, scene.ends))
+        return min(largest, *grown)
+
+    overlap = graded_axis(scene.middle, scene.stop, within, scale)
+    if not scene.symmetric:
+        # Halves of their own: where both ends are alike, the mesh is as well.
+        other = 2.0 * scene.middle - graded_axis(
+            scene.middle, scene.stop, lambda v: within(2.0 * scene.middle - v), scale
+        )
+        overlap = np.concatenate((other[:0:-1], overlap))
+        overlap[0] = scene.start
+    nodes = dict.fromkeys(BODIES, overlap)
+    for size, end in zip(sizes, scene.ends):
+        if end.longer is None:
+            continue
+        low, high = scene.spans[end.longer]
+        side, length = (-1.0, end.y - low) if end.y == scene.start else (1.0, high - end.y)
+        # Stresses change over the ledge's length where that is short.
+        free_end = min(options.free_end, 0.25 * length)
+
+        def outward(s):
+            return min(size + options.beyond * s, free_end + options.beyond * (length - s))
+
+        ledge = end.y + side * graded_axis(0.0, length, outward, scale)[1:]
+        own = nodes[end.longer]
+        nodes[end.longer] = np.concatenate((own, ledge) if side > 0.0 else (ledge[::-1], own))
+    return nodes, overlap
 
 
 def make_axes(case, options):
     """The :class:`Axes` of a case under :class:`~edgeline_fem.request.MeshOptions`."""
-    radius = case.scales().radius
-    length, block_length = case.roller_half_length(), case.block_half_length()
-    scale = options.size
+    scene = Scene.of(case)
+    radius, scale = scene.radius, options.size
 
     def grown(size, distance, growth=options.growth):
         far = max(0.0, distance - options.far_from)
@@ -109,19 +140,7 @@ def make_axes(case, options):
     core_depth = (1.0 - _CORE_SIDE) * radius
     core = max(2, round(4.0 / scale))
 
-    longer = block_length > length * (1.0 + 1e-9)
-    end = options.corner if longer else options.end
-    y = graded_axis(0.0, length, lambda v: end + options.growth * (length - v), scale)
-    shared_y = len(y) - 1
-    if longer:
-        # Stresses change over the ledge's length where that is short.
-        free_end = min(options.free_end, 0.25 * (block_length - length))
-
-        def outward(v):
-            return min(end + options.beyond * (v - length),
-                       free_end + options.beyond * (block_length - v))
-
-        y = np.concatenate((y, graded_axis(length, block_length, outward, scale)[1:]))
+    y, overlap = _along(scene, options)
     return Axes(
         arc=arc,
         contact_elements=len(near) - 1,
@@ -130,15 +149,16 @@ def make_axes(case, options):
         x=x,
         z=graded_axis(0.0, options.block_depth, deep, scale),
         y=y,
-        shared_y=shared_y,
+        overlap=overlap,
     )
 
 
 class Section:
-    """A cross-section under construction, as text of a .geo file."""
+    """A cross-section under construction in the plane of ``y``, as text of a .geo file."""
 
-    def __init__(self):
+    def __init__(self, y=0.0):
         self.lines = []
+        self._y = y
         self._points = {}
         self._curves = 0
         self._chains = {}
@@ -149,7 +169,7 @@ class Section:
         key = (round(x, 9), round(z, 9))
         if key not in self._points:
             self._points[key] = len(self._points) + 1
-            self.lines.append(f"Point({self._points[key]}) = {{{x:.16g}, 0, {z:.16g}}};")
+            self.lines.append(f"Point({self._points[key]}) = {{{x:.16g}, {self._y:.16g}, {z:.16g}}};")
         return self._points[key]
 
     def chain(self, name, points, centre=None):
@@ -187,15 +207,17 @@ class Section:
         ]
 
     def geo(self, body, y, groups):
-        """The whole .geo text: the section extruded through the nodes ``y`` (from 0).
+        """The whole .geo text: the section extruded through the nodes ``y``, from its own plane on.
 
         ``groups`` maps names of physical surfaces to ``(chain, first, last)``, the curves of a chain
-        whose extrusions make up the group. The planes y = 0 and the body's end are groups as well.
+        whose extrusions make up the group. The section's plane and the body's end are groups as well.
         """
-        heights = ", ".join(f"{v:.16g}" for v in y[1:] / y[-1])
+        length = y[-1] - y[0]
+        heights = ", ".join(f"{v:.16g}" for v in (y[1:] - y[0]) / length)
+        first, model = ("symmetry-y", "quarter") if y[0] == 0.0 else ("other-end", "half")
         ones = ", ".join("1" for _ in y[1:])
         text = [
-            f"// {body}: quarter model, lengths in units of the Hertz half-width C",
+            f"// {body}: {model} model, lengths in units of the Hertz half-width C",
             "General.Terminal = 1;",
             *self.lines,
             "Transfinite Curve {:} = 2;",
@@ -205,15 +227,15 @@ class Section:
         for number, layout in enumerate(self._patches, 1):
             out = f"e{number}"
             text.append(
-                f"{out}[] = Extrude {{0, {y[-1]:.16g}, 0}} {{ Surface{{{number}}}; "
+                f"{out}[] = Extrude {{0, {length:.16g}, 0}} {{ Surface{{{number}}}; "
                 f"Layers{{ {{{ones}}}, {{{heights}}} }}; Recombine; }};"
             )
             ends.append(f"{out}[0]")
             position = 2  # entries 0 and 1 are the far end and the volume
             for chain, count, backwards in layout:
-                for name, (wanted, first, last) in groups.items():
+                for name, (wanted, begin, end) in groups.items():
                     if wanted == chain:
-                        picked = range(first, count if last is None else last)
+                        picked = range(begin, count if end is None else end)
                         members[name] += [
                             f"{out}[{position + (count - 1 - i if backwards else i)}]" for i in picked
                         ]
@@ -221,7 +243,7 @@ class Section:
         volumes = ", ".join(f"e{n}[1]" for n in range(1, len(self._patches) + 1))
         sections = ", ".join(str(n) for n in range(1, len(self._patches) + 1))
         text.append(f'Physical Volume("{body}") = {{{volumes}}};')
-        text.append(f'Physical Surface("symmetry-y") = {{{sections}}};')
+        text.append(f'Physical Surface("{first}") = {{{sections}}};')
         text.append(f'Physical Surface("end") = {{{", ".join(ends)}}};')
         for name, surfaces in members.items():
             text.append(f'Physical Surface("{name}") = {{{", ".join(surfaces)}}};')
@@ -235,11 +257,11 @@ class Section:
 
 
 def box_geo(body, x, y, z, contact_elements):
-    """The .geo text of a box with nodes ``x``, ``y``, ``z``, each ascending from 0.
+    """The .geo text of a box with nodes ``x``, ``y``, ``z``, each ascending, x and z from 0.
 
     The first ``contact_elements`` elements of x form the physical surface ``contact`` at z = 0.
     """
-    section = Section()
+    section = Section(y[0])
     section.chain("top", [(v, 0.0) for v in x])
     section.chain("side", [(x[-1], v) for v in z])
     section.chain("bottom", [(v, z[-1]) for v in x])
@@ -256,7 +278,7 @@ def box_geo(body, x, y, z, contact_elements):
 
 
 def roller_geo(radius, axes):
-    """The .geo text of a quarter of a roller's lower half: 0 <= z <= R, 0 <= x <= sqrt(R^2 - (R-z)^2)."""
+    """The .geo text of a quarter of a roller's disc, extruded: 0 <= z <= R, 0 <= x <= sqrt(R^2 - (R-z)^2)."""
 
     def at(relative, degrees):
         angle = math.radians(degrees)
@@ -272,7 +294,7 @@ def roller_geo(radius, axes):
         a, b = np.asarray(a), np.asarray(b)
         return [tuple(a + t * (b - a)) for t in fractions]
 
-    section = Section()
+    section = Section(axes.y["roller"][0])
     section.chain("contact-arc", [tuple(at(1.0, 45.0 * t)) for t in along], centre)
     section.chain("side-arc", [tuple(at(1.0, 45.0 * (1.0 + t))) for t in even], centre)
     section.chain("axis", straight((0.0, 0.0), at(_CORE_SIDE, 0.0), down))
@@ -294,7 +316,7 @@ def roller_geo(radius, axes):
         "support": ("equator", 0, None),
         "support-core": ("core-equator", 0, None),
     }
-    return section.geo("roller", axes.roller_y, groups)
+    return section.geo("roller", axes.y["roller"], groups)
 
 
 def read_msh(path):
@@ -438,12 +460,12 @@ def make_meshes(request, folder):
     version = gmsh_version(request.gmsh)
     axes = make_axes(request.case, request.mesh)
     texts = {
-        "block": box_geo("block", axes.x, axes.y, axes.z, axes.contact_elements),
+        "block": box_geo("block", axes.x, axes.y["block"], axes.z, axes.contact_elements),
         "roller": roller_geo(request.case.scales().radius, axes),
     }
     sizes = {
-        "x": axes.x[1], "y": float(np.diff(axes.y).min()), "z": axes.z[1],
-        "roller_end_y": axes.roller_y[-1] - axes.roller_y[-2],
+        "x": axes.x[1], "y": min(np.diff(y).min() for y in axes.y.values()), "z": axes.z[1],
+        "roller_end_y": np.diff(axes.y["roller"])[-1],
     }
     summary = {
         "gmsh": version,
@@ -451,7 +473,8 @@ def make_meshes(request, folder):
         "smallest_c": {name: float(value) for name, value in sizes.items()},
         "axes_c": {
             "x_contact": axes.x[: axes.contact_elements + 1].tolist(),
-            "y_contact": axes.roller_y.tolist(),
+            "y_contact": axes.overlap.tolist(),
+            "z_block": axes.z.tolist(),
         },
         "bodies": {},
         "seconds": {},

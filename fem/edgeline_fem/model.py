@@ -2,7 +2,6 @@
 
 import csv
 import dataclasses
-import functools
 import io
 import json
 import os
@@ -14,27 +13,36 @@ from pathlib import Path
 import numpy as np
 
 from . import compat
-from .contact import ContactGrid, half_space_compliance, solve_contact
+from .contact import (
+    ContactGrid, ContactSolution, half_space_compliance, interpolation, solve_contact, with_middles,
+)
 from .elasticity import Body, load_mesh
 from .meshing import processor_seconds, write_atomically
-from .recovery import around_the_arc, enforce_tractions, hertz_stress, invariants
+from .recovery import invariants
 from .request import FemError
+from .sampling import Sampler
+from .scene import BODIES, Scene, surface_depth, surface_slope
 
 CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m",
                 *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")), "von_mises_pa", "tau_max_pa")
 PRESSURE_HEADER = ("line", "x_m", "y_m", "p_pa", "p_lumped_pa", "p_stress_pa")
 
-# Nearer than this to a roller's end on a longer block (units of C), stresses belong to the mesh.
-SINGULAR_RANGE = 0.099
 
-BOUNDARY_CONDITIONS = {
-    "block": "x = 0 and y = 0: symmetry planes; bottom z = block_depth: u_z = 0, free of shear; far side "
-    "x = block_width, end face and surface: free of traction",
-    "roller": "x = 0 and y = 0: symmetry planes; mid-plane z = R: u_z uniform (the approach), free of "
-    "shear; end face and surface: free of traction",
-    "contact": "frictionless; nodal gaps along z, at fixed x, are never negative, nodal forces are normal to "
-    "the unloaded surfaces and never pull, the sum of their z components is the load",
-}
+
+def boundary_conditions(scene):
+    """What holds the bodies of a ``scene``, in words."""
+    planes = "x = 0 and y = 0: symmetry planes" if scene.symmetric else (
+        "x = 0: symmetry plane; one node pinned along y")
+    tilt = "" if scene.moment is None else ", that of their moments the load's"
+    return {
+        "block": f"{planes}; bottom z = block_depth: u_z = 0, free of shear; far side x = block_width, end faces "
+        "and surface: free of traction",
+        "roller": f"{planes}; mid-plane z = R: u_z uniform (the approach"
+        f"{'' if scene.symmetric else ') or linear in y (the tilt'}), free of shear; end faces and surface: free of "
+        "traction",
+        "contact": "frictionless; nodal gaps along z, at fixed x, are never negative, nodal forces are normal to "
+        f"the unloaded surfaces and never pull, the sum of their z components is the load{tilt}",
+    }
 
 
 def processor():
@@ -59,17 +67,17 @@ def blas():
     return kept[0] if kept else "unknown"
 
 
-def build_bodies(comm, folder, request, plane_strain=False):
+def build_bodies(comm, folder, request, y_contact, plane_strain=False):
     """Both bodies as ``{"block": Body, "roller": Body}`` from the meshes in ``folder``.
 
-    ``plane_strain`` also holds the end faces along y. Returns the bodies and the seconds spent reading.
+    ``y_contact``: the meshes' element boundaries along the overlap. ``plane_strain`` also holds the end faces
+    along y. Returns the bodies and the seconds spent reading.
     """
-    case, options = request.case, request.mesh
+    case, scene = request.case, Scene.of(request.case)
     scales = case.scales()
-    supports = {"block": options.block_depth, "roller": scales.radius}
-    ends = {"block": case.block_half_length(), "roller": case.roller_half_length()}
+    supports = {"block": request.mesh.block_depth, "roller": scales.radius}
     bodies, seconds = {}, 0.0
-    for name in ("block", "roller"):
+    for name in BODIES:
         began = time.perf_counter()
         domain = load_mesh(comm, Path(folder) / f"{name}.msh")
         seconds += time.perf_counter() - began
@@ -78,72 +86,50 @@ def build_bodies(comm, folder, request, plane_strain=False):
         def on(axis, value, tolerance=1e-7 * supports[name]):
             return lambda x: np.abs(x[axis] - value) < tolerance
 
-        fixed = [(0, on(0, 0.0)), (1, on(1, 0.0)), (2, on(2, supports[name]))]
+        fixed = [(0, on(0, 0.0)), (2, on(2, supports[name]))]
+        pinned = []
+        if scene.symmetric:
+            fixed.insert(1, (1, on(1, 0.0)))
+        else:
+            middle = y_contact[len(y_contact) // 2]
+            pinned.append((1, lambda x: on(0, 0.0)(x) & on(1, middle)(x) & on(2, supports[name])(x)))
         if plane_strain:
-            fixed.append((1, on(1, ends[name])))
+            fixed += [(1, on(1, end)) for end in scene.free_ends(name)]
         bodies[name] = Body(
             domain, material.young_pa / scales.p0_pa, material.poisson, fixed,
-            request.solver.linear, request.solver.linear_tolerance,
+            request.solver.linear, request.solver.linear_tolerance, pinned,
         )
     return bodies, seconds
 
 
-def surface_depth(name, x, radius):
-    """z of a body's unloaded surface at ``x`` (units of C): 0 on the block, the arc on the roller."""
-    x = np.asarray(x, dtype=float)
-    return np.zeros_like(x) if name == "block" else x**2 / (radius + np.sqrt(radius**2 - x**2))
+def far_slope(block, grid, z_nodes, radius):
+    """Slope along y of the block's sinking on the line x = 0 one ``radius`` below its surface.
 
-
-def surface_slope(name, x, radius):
-    """dz/dx of a body's unloaded surface at ``x`` (units of C)."""
-    x = np.asarray(x, dtype=float)
-    return np.zeros_like(x) if name == "block" else x / np.sqrt(radius**2 - x**2)
-
-
-def near_singularity(points, case):
-    """Whether ``points`` (n, 3: x, y, depth) lie where no polynomial over several elements holds.
-
-    That is around the roller's end face, where the block goes on beyond it.
+    Least squares over the overlap, of the last solve. ``z_nodes``: the block's element boundaries. The tilt between
+    the far supports is larger than that of the lines by it: the roller's line lies on its support.
     """
-    longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)
-    return longer & (np.hypot(points[:, 1] - case.roller_half_length(), points[:, 2]) < SINGULAR_RANGE)
+    z = with_middles(np.asarray(z_nodes))
+    first = min(2 * max(np.searchsorted(z[::2], radius) - 1, 0), len(z) - 3)
+    weights = interpolation(z, [radius])[0, first : first + 3]
+    sinking = sum(
+        weight * block.displacement_at(2, np.array([(0.0, y, depth) for y in grid.y]))
+        for weight, depth in zip(weights, z[first : first + 3])
+    )
+    return np.polyfit(grid.y, sinking, 1, w=np.sqrt(grid.lengths))[0]
 
 
-def steep_parts(points, case, grid, pressure, poisson, radius):
-    """What :meth:`StressField.sample` takes as ``known`` at ``points`` (n, 3: x, y, depth).
+@dataclasses.dataclass(frozen=True)
+class Pressed:
+    """A solved contact: its :class:`~edgeline_fem.contact.ContactSolution`, the ``tilt`` between the lines
+    x = 0 one roller radius below both surfaces, and the relative error of the supports' reactions, the larger of both
+    bodies."""
 
-    Under the contact line it is the Hertz field that falls to 0 across the contact as ``pressure`` does, which
-    is given at the ``grid``'s Gauss points: stresses have a vertical tangent there that no polynomial follows.
-    On a longer block the pressure at the roller's end has no limit, so there it is that of 0.5 C from the end;
-    in the block, where the load stops, half of that as far as 0.5 C beyond, and then nothing.
-    """
-    length = case.roller_half_length()
-    longer = case.block_length_m > case.roller_length_m * (1.0 + 1e-9)
-    last = max(length - 0.5, 0.5 * length) if longer else length
-    attached = longer and np.isinf(radius)
-
-    @functools.lru_cache(maxsize=None)
-    def at(y, share):
-        half_width, peak = grid.hertz_at(pressure, y)
-        return lambda p: hertz_stress(p, half_width, share * peak, poisson, radius)
-
-    def part(y):
-        if attached and y > last:
-            return at(last, 0.5) if y < length + 0.5 else None
-        return at(min(y, last), 1.0)
-
-    return [part(y) for y in points[:, 1]]
+    solution: ContactSolution
+    tilt: float
+    reaction_error: float
 
 
-def press_bodies(bodies, grid, case, solver, log):
-    """Solve the contact of ``bodies`` on ``grid`` under the load of ``case``.
-
-    Leaves the bodies in their final state. Returns the :class:`~edgeline_fem.contact.ContactSolution` and
-    the relative error of the supports' reaction, the larger of both bodies.
-    """
-    radius = case.scales().radius
-    # A quarter of the Hertz pressure's load on the whole contact line, pi/2 * 2 S_l.
-    load = 0.25 * np.pi * case.roller_half_length()
+def _number_contact(bodies, grid, radius):
     for name, body in bodies.items():
         def find(nodes, name=name):
             surface = surface_depth(name, np.minimum(nodes[:, 0], radius), radius)
@@ -151,31 +137,75 @@ def press_bodies(bodies, grid, case, solver, log):
             return np.where(np.abs(nodes[:, 2] - surface) < 1e-6, numbers, -1)
 
         body.number_contact_nodes(len(grid), find, lambda x, name=name: surface_slope(name, x, radius))
-    flush = case.block_length_m <= case.roller_length_m * (1.0 + 1e-9)
-    roller, block = ((1.0 - bodies[n].poisson**2) / bodies[n].young for n in ("roller", "block"))
-    gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2)
-    solution = solve_contact(
-        compliance=lambda forces: bodies["block"].press(forces) + bodies["roller"].press(forces),
-        gap=gap,
-        weights=grid.weights,
-        load=load,
-        model=half_space_compliance(grid, roller + flush * block, (not flush) * block),
-        scale=0.5 / radius,
-        tolerance=solver.tolerance,
-        max_iterations=solver.max_iterations,
-        progress=lambda i, r: log(f"contact iteration {i}, residual {r:.1e}"),
-    )
-    edge = grid.x[-1]
+
+
+def press_bodies(bodies, grid, scene, solver, log, z_nodes=None):
+    """Solve the contact of ``bodies`` on ``grid`` in a ``scene``, and leave them in their final state.
+
+    ``z_nodes``: the block's element boundaries in depth, which tilts are measured with; a symmetric scene does
+    without. Returns the :class:`Pressed`.
+    """
+    radius = scene.radius
+    _number_contact(bodies, grid, radius)
+    softness = {name: (1.0 - body.poisson**2) / body.young for name, body in bodies.items()}
+    model = half_space_compliance(grid, sum(softness.values()), [
+        (end.y, sum(softness[name] for name in BODIES if not end.goes_on(name))) for end in scene.ends
+    ])
+    y = np.tile(grid.y, grid.shape[0])
+    gap = bodies["roller"].contact_coordinates(2) - bodies["block"].contact_coordinates(2) + scene.drop(y)
+    rows, wanted = [np.ones(len(grid))], [scene.load]
+    if scene.moment is not None:
+        rows.append(y)
+        wanted.append(scene.moment)
+
+    def press(held):
+        """The contact between supports held at a tilt; its solution, and the slope of the block's far line."""
+        solution = solve_contact(
+            compliance=lambda forces: bodies["block"].press(forces) + bodies["roller"].press(forces),
+            gap=gap - held * y,
+            weights=grid.weights,
+            constraints=np.array(rows),
+            wanted=np.array(wanted),
+            model=model,
+            scale=0.5 / radius,
+            tolerance=solver.tolerance,
+            max_iterations=solver.max_iterations,
+            progress=lambda i, r: log(f"contact iteration {i}, residual {r:.1e}"),
+        )
+        for body in bodies.values():
+            body.press(solution.forces)
+        return solution, 0.0 if scene.symmetric else far_slope(bodies["block"], grid, z_nodes, radius)
+
+    if scene.symmetric or scene.moment is not None:
+        solution, slope = press(0.0)
+        tilt = 0.0 if scene.symmetric else solution.multipliers[1] - slope
+    else:
+        solution, tilt = _hold(press, scene, solver.tolerance)
     if np.any(solution.forces.reshape(grid.shape)[-1] > 0.0):
         raise FemError(
-            f"contact reaches the edge of the strip where it is looked for, x = {edge:.3g} C: enlarge "
+            f"contact reaches the edge of the strip where it is looked for, x = {grid.x[-1]:.3g} C: enlarge "
             "contact_reach in the request's mesh"
         )
-    worst = 0.0
-    for body in bodies.values():
-        body.press(solution.forces)
-        worst = max(worst, abs(body.keep() / load - 1.0))
-    return solution, worst
+    worst = max(abs(body.keep() / scene.load - 1.0) for body in bodies.values())
+    return Pressed(solution, tilt, worst)
+
+
+def _hold(press, scene, tolerance):
+    """The contact whose far lines are held at the scene's tilt, by a secant on that of the supports.
+
+    Returns the solution and the tilt.
+    """
+    held, previous = scene.tilt, None
+    enough = 10.0 * tolerance * 0.5 / (scene.radius * (scene.stop - scene.start))
+    for _ in range(12):
+        solution, slope = press(held)
+        missing = held - slope - scene.tilt
+        if abs(missing) <= enough:
+            return solution, held - slope
+        rate = 1.0 if previous is None else (missing - previous[1]) / (held - previous[0])
+        previous = held, missing
+        held -= missing / rate
+    raise FemError(f"no tilt of the supports was found that holds tilt_rad = {scene.tilt:g}")
 
 
 def peak_memory(comm):
@@ -188,6 +218,60 @@ def versions():
     """Versions of everything that a result depends on, and the processor."""
     return {**compat.versions(), "blas": blas(), "python": platform.python_version(),
             "processor": processor()}
+
+
+def _table(header, rows):
+    """CSV text of ``rows``: (names, numbers)."""
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(header)
+    writer.writerows([*names, *(f"{v:.9g}" for v in numbers)] for names, numbers in rows)
+    return text.getvalue()
+
+
+def _curves(request, sampler):
+    """The text of curves.csv."""
+    scales, rows = request.case.scales(), []
+    for curve in request.curves:
+        stress = sampler.stress(curve.body, np.array(curve.points_m) / scales.c_m)
+        values = np.hstack([stress, np.stack(invariants(stress), axis=1)]) * scales.p0_pa
+        rows += [((curve.body, curve.name), point + list(row)) for point, row in zip(curve.points_m, values)]
+    return _table(CURVE_HEADER, rows)
+
+
+def _pressures(request, sampler):
+    """The text of pressure.csv."""
+    scales, rows = request.case.scales(), []
+    for line, points in request.pressure_points_m.items():
+        values = sampler.pressures(np.array(points) / scales.c_m) * scales.p0_pa
+        rows += [((line,), point + list(row)) for point, row in zip(points, values)]
+    return _table(PRESSURE_HEADER, rows)
+
+
+def _contact_summary(scene, bodies, grid, pressed, sampler, scales):
+    """What fem.json says of the contact."""
+    solution = pressed.solution
+    along = sampler.pressure([(0.0, y) for y in grid.y])
+    peak = int(np.argmax(along))
+    summary = {
+        "contact_nodes": len(grid),
+        "contact_iterations": solution.iterations,
+        "compliance_applications": solution.applications,
+        "linear_iterations": sum(body.iterations for body in bodies.values()),
+        "complementarity_residual": solution.residual,
+        "smallest_gap_rel": solution.smallest_gap,
+        "load_error_rel": abs(float(solution.forces.sum()) / scene.load - 1.0),
+        "equilibrium_residual": pressed.reaction_error,
+        "approach_m": solution.approach * scales.c_m,
+        "p_centre_pa": float(sampler.pressure([(0.0, scene.middle)])[0]) * scales.p0_pa,
+        "p_max_pa": float(along[peak]) * scales.p0_pa,
+        "p_max_at_m": [0.0, float(grid.y[peak]) * scales.c_m],
+    }
+    if not scene.symmetric:
+        arm = float(solution.forces @ np.tile(grid.y, grid.shape[0])) / scene.load
+        summary["tilt_rad"] = float(pressed.tilt)
+        summary["centre_of_pressure_m"] = [0.0, arm * scales.c_m]
+    return summary
 
 
 def solve_case(request, folder, comm, log):
@@ -208,60 +292,26 @@ def solve_case(request, folder, comm, log):
         raise FemError(f"{folder / 'mesh.json'}: was made for other mesh options; run the mesh stage again")
 
     seconds = {"mesh": sum(meshed["seconds"].values())}
-    grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
-    bodies, seconds["read"] = build_bodies(comm, folder, request)
+    scene, axes = Scene.of(case), meshed["axes_c"]
+    grid = ContactGrid(axes["x_contact"], axes["y_contact"], scene.symmetric)
+    bodies, seconds["read"] = build_bodies(comm, folder, request, axes["y_contact"])
     for stage in ("assemble", "factor"):
         seconds[stage] = sum(body.seconds[stage] for body in bodies.values())
     log(f"stiffness assembled in {seconds['assemble']:.1f} s, solvers set up in {seconds['factor']:.1f} s")
 
     mark = time.perf_counter()
-    solution, reaction_error = press_bodies(bodies, grid, case, request.solver, log)
+    pressed = press_bodies(bodies, grid, scene, request.solver, log, axes["z_block"])
     seconds["contact"] = time.perf_counter() - mark
 
     mark = time.perf_counter()
-    pressure, lumped = grid.pressure(solution.forces), grid.lumped_pressure(solution.forces)
-    fields = {"block": bodies["block"].stress_field(),
-              "roller": bodies["roller"].stress_field(frame=around_the_arc(scales.radius))}
+    sampler = Sampler(scene, bodies, grid, pressed.solution.forces)
     seconds["recover"] = time.perf_counter() - mark
 
     mark = time.perf_counter()
-    ends = {"block": case.block_half_length(), "roller": case.roller_half_length()}
-    radii = {"block": np.inf, "roller": scales.radius}
-    face_errors = {name: {"end": 0.0, "surface": 0.0} for name in bodies}
-    curves = io.StringIO()
-    writer = csv.writer(curves, lineterminator="\n")
-    writer.writerow(CURVE_HEADER)
-    for curve in request.curves:
-        points = np.array(curve.points_m) / scales.c_m
-        inside = points.copy()
-        inside[:, 2] += surface_depth(curve.body, points[:, 0], scales.radius)
-        poisson, radius = bodies[curve.body].poisson, radii[curve.body]
-        steep = steep_parts(points, case, grid, pressure, poisson, radius)
-        stress = fields[curve.body].sample(inside, near_singularity(points, case), steep)
-        end_error, surface_error = enforce_tractions(
-            points, stress, poisson, ends[curve.body], radius, grid.sample(pressure, points[:, :2])
-        )
-        met = face_errors[curve.body]
-        met["end"], met["surface"] = max(met["end"], end_error), max(met["surface"], surface_error)
-        derived = np.stack(invariants(stress), axis=1)
-        for point, row in zip(curve.points_m, np.hstack([stress, derived]) * scales.p0_pa):
-            writer.writerow([curve.body, curve.name, *(f"{v:.9g}" for v in point + list(row))])
-    lines = io.StringIO()
-    writer = csv.writer(lines, lineterminator="\n")
-    writer.writerow(PRESSURE_HEADER)
-    for line, points in request.pressure_points_m.items():
-        at = np.array(points) / scales.c_m
-        at_surface = np.column_stack([at, np.zeros(len(at))])
-        steep = steep_parts(at_surface, case, grid, pressure, bodies["block"].poisson, np.inf)
-        raised = -fields["block"].sample(at_surface, near_singularity(at_surface, case), steep)[:, 2]
-        columns = np.stack([grid.sample(pressure, at), grid.sample(lumped, at), raised], axis=1)
-        for point, row in zip(points, columns * scales.p0_pa):
-            writer.writerow([line, *(f"{v:.9g}" for v in point + list(row))])
+    tables = {"curves.csv": _curves(request, sampler), "pressure.csv": _pressures(request, sampler)}
     seconds["sample"] = time.perf_counter() - mark
     seconds["total"] = time.perf_counter() - began + seconds["mesh"]
 
-    along = grid.sample(pressure, [(0.0, y) for y in grid.y])
-    peak = int(np.argmax(along))
     summary = {
         "schema": 1,
         "case": case.name,
@@ -270,27 +320,16 @@ def solve_case(request, folder, comm, log):
         "hertz": {"c_m": scales.c_m, "p0_pa": scales.p0_pa},
         "mesh": {key: meshed[key] for key in ("options", "smallest_c", "bodies")},
         "solver": {**dataclasses.asdict(request.solver), "factorised_by": bodies["block"].factorised_by},
-        "boundary_conditions": BOUNDARY_CONDITIONS,
+        "boundary_conditions": boundary_conditions(scene),
         "unknowns": sum(body["unknowns"] for body in meshed["bodies"].values()),
-        "contact_nodes": len(grid),
-        "contact_iterations": solution.iterations,
-        "compliance_applications": solution.applications,
-        "linear_iterations": sum(body.iterations for body in bodies.values()),
-        "complementarity_residual": solution.residual,
-        "smallest_gap_rel": solution.smallest_gap,
-        "load_error_rel": abs(4.0 * float(solution.forces.sum()) / (np.pi * case.roller_half_length()) - 1.0),
-        "equilibrium_residual": reaction_error,
-        "approach_m": solution.approach * scales.c_m,
-        "p_centre_pa": float(along[0]) * scales.p0_pa,
-        "p_max_pa": float(along[peak]) * scales.p0_pa,
-        "p_max_at_m": [0.0, grid.y[peak] * scales.c_m],
-        "traction_error_before_enforcing": face_errors,
+        **_contact_summary(scene, bodies, grid, pressed, sampler, scales),
+        "traction_error_before_enforcing": sampler.face_errors,
         "seconds": {key: round(value, 3) for key, value in seconds.items()},
         "cpu_seconds": round(meshed["cpu_seconds"] + comm.allreduce(processor_seconds() - used_before), 3),
         "peak_memory_mib": round(peak_memory(comm), 1),
     }
     if comm.rank == 0:
-        write_atomically(folder / "curves.csv", curves.getvalue())
-        write_atomically(folder / "pressure.csv", lines.getvalue())
+        for name, text in tables.items():
+            write_atomically(folder / name, text)
         write_atomically(folder / "fem.json", json.dumps(summary, indent=1) + "\n")
     return summary

@@ -60,14 +60,14 @@ def read_cases(path):
 def standard_request(case, size, **overrides):
     """The request that records ``case`` on the mesh of ``size``: all standard curves and pressures."""
     c_m = case.scales().c_m
-    length = case.roller_half_length()
+    length = case.contact_half_length()
 
     def metres(points):
         return [[v * c_m for v in point] for point in points]
 
     curves = [
         Curve(body, name, metres(points))
-        for body, own in (("block", case.block_half_length()), ("roller", length))
+        for body, own in (("block", case.block_half_length()), ("roller", case.roller_half_length()))
         for name, points in standard_curves(length, own).items()
     ]
     lines = {name: metres(points) for name, points in pressure_lines(length).items()}
@@ -307,7 +307,6 @@ def _record(case, size, target, log, run, overrides):
     path = target / "record.json"
     request = standard_request(case, size, **overrides)
     request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear))
-    options = request.to_json()["mesh"]
     data = None
     if path.exists():
         check_record(target)
@@ -315,7 +314,8 @@ def _record(case, size, target, log, run, overrides):
         known = data["meshes"].get(f"{size:g}")
         if data["case"] != case.to_json():
             raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
-        if known is not None and known["mesh"]["options"] == options:
+        # Options that are newer than the record had their defaults then.
+        if known is not None and MeshOptions(**known["mesh"]["options"]) == request.mesh:
             return False
     work = target / f".work-{size:g}"
     shutil.rmtree(work, ignore_errors=True)
@@ -334,7 +334,7 @@ def _record(case, size, target, log, run, overrides):
             "hertz": summary["hertz"],
             "dimensionless": {
                 "W": math.pi / (4.0 * scales.radius**2),
-                "S_l": case.roller_half_length(),
+                "S_l": case.contact_half_length(),
                 "L_r": case.roller_length_m / case.block_length_m,
             },
             "edge_range_c": EDGE_RANGE,
@@ -353,7 +353,7 @@ def _record(case, size, target, log, run, overrides):
     new.mkdir()
     for name in ("curves.csv", "pressure.csv"):
         _merge(target / name, size, work / name, new / name)
-    measures = (new, 0.5 * case.roller_length_m, scales.c_m, scales.p0_pa)
+    measures = (new, case.contact_half_length() * scales.c_m, scales.c_m, scales.p0_pa)
     data["orders"] = observed_orders(*measures)
     data["errors"] = estimate_errors(*measures)
     (new / "record.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")

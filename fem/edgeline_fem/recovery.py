@@ -65,16 +65,16 @@ class StressField:
     """Stress anywhere in a body, from its values at the elements' superconvergent points.
 
     ``points`` (m, 8, 3) and ``stress`` (m, 8, 6: xx, yy, zz, xy, xz, yz) are those of m elements, and
-    ``corners`` (m, 8, 3) their vertices; all of the body's elements must be there, in any order. x = 0 and
-    y = 0 are planes of symmetry. ``frame`` maps points (..., 3) to coordinates in which elements are boxes;
-    stresses stay in the axes x, y, z.
+    ``corners`` (m, 8, 3) their vertices; all of the body's elements must be there, in any order. x = 0 is a
+    plane of symmetry, and so is y = 0 if the field is ``even``. ``frame`` maps points (..., 3) to
+    coordinates in which elements are boxes; stresses stay in the axes x, y, z.
     """
 
-    def __init__(self, points, stress, corners, frame=lambda points: points):
+    def __init__(self, points, stress, corners, frame=lambda points: points, even=True):
         points, stress, corners = _mirror(0, (3, 4), points, stress, corners)
-        points, stress, corners = _mirror(1, (3, 5), points, stress, corners)
-        # A fixed order makes results independent of the distribution of elements over
-        # ranks.
+        if even:
+            points, stress, corners = _mirror(1, (3, 5), points, stress, corners)
+        # A fixed order makes results independent of the distribution of elements over ranks.
         centres = corners.mean(axis=1)
         order = np.lexsort(np.round(centres, 9).T)
         self._frame = frame
@@ -197,7 +197,7 @@ def hertz_stress(points, half_width, peak, poisson, radius):
     ], axis=1)
 
 
-def enforce_tractions(points, stress, poisson, end, radius, pressure):
+def enforce_tractions(points, stress, poisson, ends, radius, pressure, even=True):
     """Enforce known tractions on ``stress`` (n, 6) at ``points`` (n, 3), in place.
 
     On a face the tractions are known, and the strains within the face are well resolved. So the normal and
@@ -205,16 +205,16 @@ def enforce_tractions(points, stress, poisson, end, radius, pressure):
     nu / (1 - nu) times the normal stress's change. Where two faces meet the strain along the edge is kept.
     On the planes of symmetry shear stresses are zero.
 
-    ``points`` have z as depth below the body's surface; ``poisson``; ``end``: y of its free end face;
-    ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure, normal to the
-    surface, at the points' x and y. Returns the largest errors of normal traction met on the end face
-    and on the surface.
+    ``points`` have z as depth below the body's surface; ``poisson``; ``ends``: y of its free end
+    faces; ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure, normal to the
+    surface, at the points' x and y; ``even``: whether y = 0 is a plane of symmetry. Returns the
+    largest errors of normal traction met on the end faces and on the surface.
     """
     xx, yy, zz, xy, xz, yz = stress.T
-    for shear, axis in ((xy, 0), (xz, 0), (xy, 1), (yz, 1)):
+    for shear, axis in ((xy, 0), (xz, 0), *(((xy, 1), (yz, 1)) if even else ())):
         shear[np.abs(points[:, axis]) < 1e-9] = 0.0
     share = poisson / (1.0 - poisson)
-    at_end = np.abs(points[:, 1] - end) < 1e-7 * end
+    at_end = np.abs(points[:, 1, None] - np.array(ends)).min(axis=1) < 1e-7 * np.abs(ends).max()
     on_surface = np.abs(points[:, 2]) < 1e-9
     free = at_end & ~on_surface
     end_error = np.abs(yy[free]).max(initial=0.0)

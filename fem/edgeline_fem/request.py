@@ -5,6 +5,8 @@ import json
 import math
 from pathlib import Path
 
+import numpy as np
+
 SCHEMA = 1
 
 
@@ -40,7 +42,13 @@ class Scales:
 
 @dataclasses.dataclass(frozen=True)
 class Case:
-    """Two bodies and the force that presses them together (SI units)."""
+    """Two bodies and what presses them together (SI units).
+
+    A profile is a table of (y, drop): how far the generatrix lies below the straight one, over y from the body's
+    own middle, straight between its points. ``eccentricity_m`` is y of the force's line of action from the
+    roller's middle; the tilt is then what that asks for. Without it the bodies are held at ``tilt_rad``, or parallel.
+    ``offset_m`` is y of the block's middle from the roller's.
+    """
 
     name: str
     radius_m: float
@@ -49,39 +57,59 @@ class Case:
     roller: Material
     block: Material
     force_n: float
+    roller_profile_m: tuple | None = None
+    block_profile_m: tuple | None = None
+    eccentricity_m: float | None = None
+    tilt_rad: float | None = None
+    offset_m: float = 0.0
 
     def scales(self):
-        """The case's :class:`Scales`."""
+        """The case's :class:`Scales`, from the mean load of the shorter body."""
         compliance = sum((1.0 - m.poisson**2) / m.young_pa for m in (self.roller, self.block))
         e_star_pa = 1.0 / compliance
-        w = self.force_n / (e_star_pa * self.radius_m * self.roller_length_m)
+        length_m = min(self.roller_length_m, self.block_length_m)
+        w = self.force_n / (e_star_pa * self.radius_m * length_m)
         c_m = 2.0 * self.radius_m * math.sqrt(w / math.pi)
         return Scales(c_m, e_star_pa * c_m / (2.0 * self.radius_m), self.radius_m / c_m)
 
     def roller_half_length(self):
-        """Half the contact line, S_l (units of C)."""
+        """Half the roller's length (units of C)."""
         return 0.5 * self.roller_length_m / self.scales().c_m
 
     def block_half_length(self):
-        """Half the block's length, S_l / L_r (units of C)."""
+        """Half the block's length (units of C)."""
         return 0.5 * self.block_length_m / self.scales().c_m
 
+    def contact_half_length(self):
+        """Half the shorter body's length, S_l (units of C)."""
+        return min(self.roller_half_length(), self.block_half_length())
+
+    def is_symmetric(self):
+        """Whether y = 0 is a plane of symmetry: parallel axes, no offset, even profiles."""
+        def even(table):
+            if table is None:
+                return True
+            points = np.array(table)
+            unlike = np.abs(points - points[::-1] * [-1.0, 1.0]).max(axis=0)
+            return bool(np.all(unlike <= 1e-9 * np.abs(points).max(axis=0)))
+
+        held = self.eccentricity_m is None and not self.tilt_rad
+        return held and self.offset_m == 0.0 and even(self.roller_profile_m) and even(self.block_profile_m)
+
     def to_json(self):
-        """The ``case`` object of a request."""
+        """The ``case`` object of a request; what is left out there is left out here."""
+        def body(profile, **values):
+            return values if profile is None else {**values, "profile_m": [list(point) for point in profile]}
+
+        position = {"eccentricity_m": self.eccentricity_m, "tilt_rad": self.tilt_rad,
+                    "offset_m": self.offset_m or None}
         return {
             "name": self.name,
-            "roller": {
-                "radius_m": self.radius_m,
-                "length_m": self.roller_length_m,
-                "young_pa": self.roller.young_pa,
-                "poisson": self.roller.poisson,
-            },
-            "block": {
-                "length_m": self.block_length_m,
-                "young_pa": self.block.young_pa,
-                "poisson": self.block.poisson,
-            },
+            "roller": body(self.roller_profile_m, radius_m=self.radius_m, length_m=self.roller_length_m,
+                           **dataclasses.asdict(self.roller)),
+            "block": body(self.block_profile_m, length_m=self.block_length_m, **dataclasses.asdict(self.block)),
             "force_n": self.force_n,
+            **{key: value for key, value in position.items() if value is not None},
         }
 
     @staticmethod
@@ -126,6 +154,8 @@ class MeshOptions:
 
     Along the contact line it holds all the way.
     """
+    along: float = 0.5
+    """Largest element along the contact line of profiled bodies: the contact may end anywhere (size 1)."""
     depth_growth: float = 0.34
     """The same along z."""
     far_growth: float = 1.4
@@ -210,6 +240,29 @@ def _positive(table, key, where):
     return float(value)
 
 
+def _number(table, key, where):
+    """A finite number, or ``None`` where there is none."""
+    value = table.get(key)
+    if value is not None and (not isinstance(value, (int, float)) or isinstance(value, bool)
+                              or not math.isfinite(value)):
+        raise FemError(f"{where}: '{key}' must be a finite number, not {value!r}")
+    return None if value is None else float(value)
+
+
+def _profile(table, length_m, where):
+    """The profile of a body as a tuple of (y, drop), or ``None``."""
+    if "profile_m" not in table:
+        return None
+    points = _points(table["profile_m"], 2, f"{where}.profile_m")
+    y = [point[0] for point in points]
+    if any(b <= a for a, b in zip(y, y[1:])):
+        raise FemError(f"{where}.profile_m: y must ascend")
+    if max(y[0] + 0.5 * length_m, 0.5 * length_m - y[-1]) > 1e-9 * length_m:
+        raise FemError(f"{where}.profile_m: must reach from -{0.5 * length_m:g} to {0.5 * length_m:g} m, the "
+                       f"body's ends; it goes from {y[0]:g} to {y[-1]:g} m")
+    return tuple(map(tuple, points))
+
+
 def _material(table, where):
     young_pa = _positive(table, "young_pa", where)
     poisson = table.get("poisson")
@@ -254,6 +307,37 @@ def _points(points, width, where):
     return [[float(v) for v in p] for p in points]
 
 
+def _case(case, where):
+    """A :class:`Case` from its JSON object."""
+    _only(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m"}, where)
+    roller, block = _table(case, "roller", where), _table(case, "block", where)
+    _only(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m"}, f"{where}.roller")
+    _only(block, {"length_m", "young_pa", "poisson", "profile_m"}, f"{where}.block")
+    lengths = [_positive(body, "length_m", f"{where}.{name}")
+               for name, body in (("roller", roller), ("block", block))]
+    parsed = Case(
+        name=str(case.get("name", "")),
+        radius_m=_positive(roller, "radius_m", f"{where}.roller"),
+        roller_length_m=lengths[0],
+        block_length_m=lengths[1],
+        roller=_material(roller, f"{where}.roller"),
+        block=_material(block, f"{where}.block"),
+        force_n=_positive(case, "force_n", where),
+        roller_profile_m=_profile(roller, lengths[0], f"{where}.roller"),
+        block_profile_m=_profile(block, lengths[1], f"{where}.block"),
+        eccentricity_m=_number(case, "eccentricity_m", where),
+        tilt_rad=_number(case, "tilt_rad", where),
+        offset_m=_number(case, "offset_m", where) or 0.0,
+    )
+    if parsed.eccentricity_m is not None and parsed.tilt_rad is not None:
+        raise FemError(f"{where}: 'eccentricity_m' and 'tilt_rad' exclude each other: leave one out")
+    apart = abs(parsed.offset_m) - 0.5 * sum(lengths)
+    if apart >= -1e-3 * parsed.scales().c_m:
+        raise FemError(f"{where}: the bodies do not overlap: 'offset_m' = {parsed.offset_m:g} leaves them "
+                       f"{max(apart, 0.0):g} m apart")
+    return parsed
+
+
 def parse_request(data, where="request"):
     """A :class:`Request` from a JSON object.
 
@@ -265,23 +349,7 @@ def parse_request(data, where="request"):
     if data.get("schema") != SCHEMA:
         raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
 
-    case = _table(data, "case", where)
-    at = f"{where}: case"
-    _only(case, {"name", "roller", "block", "force_n"}, at)
-    roller, block = _table(case, "roller", at), _table(case, "block", at)
-    _only(roller, {"radius_m", "length_m", "young_pa", "poisson"}, f"{at}.roller")
-    _only(block, {"length_m", "young_pa", "poisson"}, f"{at}.block")
-    parsed = Case(
-        name=str(case.get("name", "")),
-        radius_m=_positive(roller, "radius_m", f"{at}.roller"),
-        roller_length_m=_positive(roller, "length_m", f"{at}.roller"),
-        block_length_m=_positive(block, "length_m", f"{at}.block"),
-        roller=_material(roller, f"{at}.roller"),
-        block=_material(block, f"{at}.block"),
-        force_n=_positive(case, "force_n", at),
-    )
-    if parsed.block_length_m < parsed.roller_length_m * (1.0 - 1e-9):
-        raise FemError(f"{at}: the block is shorter than the roller, which is not modelled")
+    parsed = _case(_table(data, "case", where), f"{where}: case")
 
     solver = _options(SolverOptions, _table(data, "solver", where) if "solver" in data else {},
                       f"{where}: solver")

@@ -60,8 +60,8 @@ def depths():
 def standard_curves(half_length, body_half_length):
     """Curves of one body as ``{name: [(x, y, z), ...]}`` in the order of the running coordinate.
 
-    ``half_length`` is the roller's half-length, ``body_half_length`` (not less) that of the body; a
-    longer body's curves along y continue beyond the roller's end for up to 3 C. z is the depth below the body's
+    ``half_length`` is half the contact's length, ``body_half_length`` (not less) that of the body; a
+    longer body's curves along y continue beyond the contact's end for up to 3 C. z is the depth below the body's
     surface at the point's x.
     """
     y = contact_line(half_length)

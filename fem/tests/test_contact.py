@@ -11,9 +11,10 @@ from mpi4py import MPI
 from conftest import FEM, run_stage, steel_case
 from edgeline_fem.contact import ContactGrid, half_space_compliance, solve_contact
 from edgeline_fem.meshing import make_axes, make_meshes
-from edgeline_fem.model import build_bodies, press_bodies, surface_depth
+from edgeline_fem.model import build_bodies, press_bodies
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError, MeshOptions
+from edgeline_fem.scene import Scene, surface_depth
 
 
 def silent(*_):
@@ -63,7 +64,7 @@ def test_grid_samples_a_hertz_pressure_up_to_its_edge():
 def test_the_half_space_model_is_love_in_the_mean():
     """One cell far from all others: the model's entry against the closed form at its centre."""
     grid = ContactGrid([0.0, 0.1, 0.2], [0.0, 0.1, 0.2])
-    model = half_space_compliance(grid, 0.0, 1.0)
+    model = half_space_compliance(grid, 1.0, [])
     assert model == pytest.approx(model.T, rel=1e-12)
     assert np.linalg.eigvalsh(model).min() > 0.0
     # Corner to corner, with the images of both planes: 1 / (pi r) at sqrt(x^2 + y^2) from all four.
@@ -78,13 +79,14 @@ def test_contact_solver_on_a_small_dense_problem():
     gap = np.linspace(0.0, 2.0, 30) ** 2
     weights = rng.uniform(0.5, 1.5, 30)
     model = np.diag(np.diag(compliance))
-    found = solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 200, silent)
+    one = (np.ones((1, 30)), np.ones(1))
+    found = solve_contact(lambda f: compliance @ f, gap, weights, *one, model, 1.0, 1e-10, 200, silent)
     left = compliance @ found.forces + gap - found.approach
     assert found.forces.sum() == pytest.approx(1.0, rel=1e-12)
     assert found.forces.min() >= 0.0 and left.min() >= -1e-9
     assert np.abs(left * found.forces).max() < 1e-9
     with pytest.raises(FemError, match="did not converge in 2 iterations"):
-        solve_contact(lambda f: compliance @ f, gap, weights, 1.0, model, 1.0, 1e-10, 2, silent)
+        solve_contact(lambda f: compliance @ f, gap, weights, *one, model, 1.0, 1e-10, 2, silent)
 
 
 def plane_slice(load_factor, folder):
@@ -93,8 +95,9 @@ def plane_slice(load_factor, folder):
     request = standard_request(case, 1.0, end=1.0, free_end=1.0)
     meshed = make_meshes(request, folder)
     grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"])
-    bodies, _ = build_bodies(MPI.COMM_SELF, folder, request, plane_strain=True)
-    return bodies, grid, *press_bodies(bodies, grid, case, request.solver, silent)
+    bodies, _ = build_bodies(MPI.COMM_SELF, folder, request, meshed["axes_c"]["y_contact"], plane_strain=True)
+    pressed = press_bodies(bodies, grid, Scene.of(case), request.solver, silent)
+    return bodies, grid, pressed.solution, pressed.reaction_error
 
 
 def test_hertz_line_contact(tmp_path):

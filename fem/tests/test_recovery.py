@@ -107,11 +107,11 @@ def test_tractions_that_hold_are_left_alone_and_others_put_right():
     right = np.array([[-0.4, -0.3, -0.8, 0.02, 0.0, 0.0], [0.1, 0.0, -0.2, 0.0, 0.03, 0.0],
                       [-0.2, 0.0, -0.6, 0.0, 0.0, 0.0]])
     stress = right.copy()
-    assert enforce_tractions(points, stress, 0.3, 1.0, np.inf, pressure) == pytest.approx((0.0, 0.0))
+    assert enforce_tractions(points, stress, 0.3, [1.0], np.inf, pressure) == pytest.approx((0.0, 0.0))
     assert stress == pytest.approx(right)
     stress[0, 2] -= 0.07
     stress[1, 1] += 0.05
-    assert enforce_tractions(points, stress, 0.3, 1.0, np.inf, pressure) == pytest.approx((0.05, 0.07))
+    assert enforce_tractions(points, stress, 0.3, [1.0], np.inf, pressure) == pytest.approx((0.05, 0.07))
     assert stress[:, 2] == pytest.approx([-0.8, -0.2 - 0.05 * 0.3 / 0.7, -0.6])
     assert stress[0, 0] == pytest.approx(-0.4 + 0.07 * 0.3 / 0.7)
     assert stress[1:, 1] == pytest.approx([0.0, 0.0])
@@ -121,7 +121,7 @@ def test_tractions_on_the_arc_are_normal_to_it():
     """On a tilted surface sigma . n is the pressure along the normal, and nothing across."""
     points = np.array([[1.0, 0.5, 0.0]])
     stress = np.array([[-0.3, -0.2, -0.4, 0.05, 0.02, 0.01]])
-    enforce_tractions(points, stress, 0.3, 5.0, 10.0, np.array([0.5]))
+    enforce_tractions(points, stress, 0.3, [5.0], 10.0, np.array([0.5]))
     xx, yy, zz, xy, xz, yz = stress[0]
     normal = np.array([0.1, 0.0, -math.sqrt(0.99)])  # outwards
     tensor = np.array([[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]])

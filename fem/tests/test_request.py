@@ -1,5 +1,6 @@
 """What a request must hold, and the scales that follow from it."""
 
+import dataclasses
 import json
 import math
 
@@ -29,6 +30,29 @@ def test_a_request_survives_its_own_json():
     assert parse_request(sound()) == standard_request(steel_case(5e-4, 5.0, 0.5), 2.0)
 
 
+def test_a_scene_without_symmetry_survives_its_own_json():
+    case = dataclasses.replace(
+        steel_case(5e-4, 5.0, 1.25), eccentricity_m=1e-4, offset_m=-2e-4,
+        roller_profile_m=((-1.0, 1e-6), (0.0, 0.0), (1.0, 2e-6)),
+    )
+    data = json.loads(json.dumps(standard_request(case, 2.0).to_json()))
+    assert data["case"]["roller"]["profile_m"] == [[-1.0, 1e-6], [0.0, 0.0], [1.0, 2e-6]]
+    assert not {"tilt_rad", "profile_m"} & {*data["case"], *data["case"]["block"]}
+    assert parse_request(data) == standard_request(case, 2.0)
+    data["case"]["tilt_rad"] = 1e-4
+    with pytest.raises(FemError, match="'eccentricity_m' and 'tilt_rad' exclude each other"):
+        parse_request(data)
+
+
+def test_what_is_symmetric():
+    case = steel_case(5e-4, 5.0, 0.5)
+    crown = ((-1.0, 1e-6), (-0.5, 0.0), (0.5, 0.0), (1.0, 1e-6))
+    assert dataclasses.replace(case, roller_profile_m=crown, tilt_rad=0.0).is_symmetric()
+    leaning = (*crown[:3], (1.0, 2e-6))
+    for change in ({"block_profile_m": leaning}, {"eccentricity_m": 0.0}, {"tilt_rad": 1e-5}, {"offset_m": 1e-4}):
+        assert not dataclasses.replace(case, **change).is_symmetric(), change
+
+
 def change(data, path, value):
     *parents, last = path
     for key in parents:
@@ -43,7 +67,11 @@ def change(data, path, value):
         (["case", "force_n"], -1.0, "'force_n' must be a finite number above 0"),
         (["case", "force_n"], float("nan"), "'force_n' must be a finite number above 0"),
         (["case", "roller", "poisson"], 0.5, r"'poisson' must lie in \[0, 0.5\)"),
-        (["case", "block", "length_m"], 1e-4, "shorter than the roller"),
+        (["case", "block", "profile_m"], [[-0.1, 0.0], [0.1]], "points of 2 finite numbers"),
+        (["case", "roller", "profile_m"], [[-0.1, 0.0], [0.1, 0.0], [0.1, 0.0]], "y must ascend"),
+        (["case", "roller", "profile_m"], [[0.0, 0.0], [0.1, 0.0]], "must reach from -"),
+        (["case", "offset_m"], 1.0, "the bodies do not overlap: 'offset_m' = 1 leaves them"),
+        (["case", "tilt_rad"], float("inf"), "'tilt_rad' must be a finite number"),
         (["case", "block", "lenght_m"], 1.0, "unknown key 'lenght_m'; known are length_m"),
         (["mesh", "sise"], 1.0, "unknown key 'sise'"),
         (["mesh", "size"], 0, "'size' must be a finite number above 0"),
