@@ -275,13 +275,13 @@ fn live_killed_runs_are_completed_and_equal_undisturbed_ones() {
     for case in ["flush-short", "half-short"] {
         let undisturbed = Bench::new();
         let began = Instant::now();
-        succeeded(undisturbed.live(case).args(["--size", "3"]));
+        succeeded(undisturbed.live(case).args(["--size", "4"]));
         let span = began.elapsed();
         let bench = Bench::new();
         fs::create_dir(bench.out()).unwrap();
         let command = || {
             let mut command = bench.live(case);
-            command.args(["--size", "3"]);
+            command.args(["--size", "4"]);
             command
         };
         let hits = run_under_fire(&bench, &command, span, 5);
@@ -303,7 +303,7 @@ fn live_killed_study_is_completed_and_equals_an_undisturbed_one() {
         fs::write(&file, text).unwrap();
         let mut command = edgeline(bench.folder.path(), &["study", "two.toml", "--fem", "live"]);
         command
-            .args(["--fem-repeats", "1", "--size", "2.5", "--repeats", "0", "--methods", "mirror"])
+            .args(["--fem-repeats", "1", "--size", "4", "--repeats", "0", "--methods", "mirror"])
             .arg("--out")
             .arg(bench.out());
         command
@@ -358,14 +358,14 @@ fn live_killed_study_is_completed_and_equals_an_undisturbed_one() {
 #[ignore = "runs gmsh and FEniCSx"]
 fn live_solvers_and_ranks_agree() {
     let [direct, other] = [Bench::new(), Bench::new()];
-    succeeded(direct.live("flush-short").args(["--size", "4"]));
-    let iterative = ["--size", "4", "--linear", "iterative", "--ranks", "2"];
+    succeeded(direct.live("flush-short").args(["--size", "6"]));
+    let iterative = ["--size", "6", "--linear", "iterative", "--ranks", "2"];
     succeeded(other.live("flush-short").args(iterative));
     let text = fs::read_to_string(other.out().join("fem.json")).unwrap();
     let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
     assert_eq!(summary["ranks"], 2);
     let iterations = summary["linear_iterations"].as_u64().unwrap();
-    assert!(iterations > 1000, "{iterations} iterations are not an iterative solver's");
+    assert!(iterations > 500, "{iterations} iterations are not an iterative solver's");
     let p0_pa = summary["hertz"]["p0_pa"].as_f64().unwrap();
     for (one, two) in direct.results().iter().zip(&other.results()) {
         assert_eq!(one.lines().count(), two.lines().count());
