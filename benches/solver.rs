@@ -4,15 +4,16 @@
 //! stand on a logarithmic scale. `docs/performance.md` has the tables.
 
 use criterion::{BenchmarkId, Criterion, Throughput};
-use edgeline::base::Material;
+use edgeline::base::{Material, Parity};
 use edgeline::body::{Body, EdgeModel, Layer, Resolution, Shape};
 use edgeline::case::{Case, Factors};
-use edgeline::contact::{self, Compliance, ContactSettings};
+use edgeline::contact::{self, Compliance, ContactSettings, Problem, Straight};
 use edgeline::kernels::wave::{Places, WAVES, WaveTable};
 use edgeline::kernels::{deflection, line_load, love};
 use edgeline::solve::{Options, Scene, SolvedScene, solve};
 use edgeline::stress::grid::on_grid;
 use edgeline::stress::{BodyKind, Grid};
+use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Duration;
 
@@ -75,7 +76,7 @@ fn kernels(c: &mut Criterion) {
 fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let block = scene.bodies.block;
     let shape = Shape { contact: scene.half_length, half: block.half, nu: block.nu };
-    let body = Body::new(shape, scene.end(BodyKind::Block), resolution);
+    let body = Body::new(shape, scene.end(BodyKind::Block), Parity::Even, resolution);
     let wavenumbers = resolution.wavenumbers(block.half);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)
@@ -96,6 +97,14 @@ fn compliance_and_contact(c: &mut Criterion) {
         let (_, layers) = layers(&scene, &resolution);
         let matrices: Vec<_> = layers.into_iter().map(|l| l.compliance).collect();
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
+        let problem = Problem {
+            compliance: &compliance,
+            axis: &axis,
+            both_ends: false,
+            gap: &Straight,
+            load: 0.5 * PI * axis.end(),
+            moment: None,
+        };
         let settings = ContactSettings {
             modes: resolution.modes,
             spacing: resolution.spacing,
@@ -104,10 +113,7 @@ fn compliance_and_contact(c: &mut Criterion) {
             soundness: 1e-2,
         };
         c.bench_function(&format!("contact/flush, S_l/{slenderness}"), |b| {
-            b.iter(|| {
-                contact::solve(&compliance, &axis, &contact::Straight, &settings)
-                    .expect("it converges")
-            });
+            b.iter(|| contact::solve(&problem, &settings).expect("it converges"));
         });
     }
     for model in EdgeModel::ALL {

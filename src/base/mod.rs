@@ -9,6 +9,7 @@ mod material;
 #[cfg(feature = "cli")]
 pub(crate) mod number;
 mod panels;
+mod parity;
 mod quadrature;
 mod scales;
 mod tensor;
@@ -18,6 +19,7 @@ pub use bodies::{BodyKind, PerBody};
 pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::Panels;
+pub use parity::Parity;
 pub use quadrature::gauss_legendre;
 pub use scales::HertzScales;
 pub use tensor::StressTensor;

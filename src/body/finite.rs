@@ -8,7 +8,7 @@
 use super::axes::{PLATE_FADES, Resolution};
 use super::end::End;
 use super::stencil::{Image, Peak, Sources, Stencil};
-use crate::base::{Panels, StressTensor, linear};
+use crate::base::{Panels, Parity, StressTensor, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
@@ -26,6 +26,8 @@ pub struct Body {
     pub nu: f64,
     /// The treatment of its end faces.
     pub end: End,
+    /// The part of the loads that it carries.
+    pub parity: Parity,
     /// Axis of the surface pressure P that acts on the half-space: the contact and, for freed end
     /// faces, the surface up to the end face.
     pub surface: Sources,
@@ -82,9 +84,33 @@ pub struct Shape {
     pub nu: f64,
 }
 
+/// A load at s >= 0 and its other half at -s, and their images in the end faces of a body.
+///
+/// Even loads have the period 2 H of the body's length, and strips replace the images beyond the
+/// last. Odd loads change sign from one length to the next; half the last image closes their series.
+fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<Image> {
+    let image = |lengths: i32, weight: f64| {
+        let shift = 2.0 * half * f64::from(lengths);
+        let weight = if lengths % 2 == 0 { weight } else { parity.sign() * weight };
+        [
+            Image { sign: 1.0, shift, weight },
+            Image { sign: -1.0, shift, weight: parity.sign() * weight },
+        ]
+    };
+    let mut images = image(0, 1.0).to_vec();
+    let Some(weight) = end.image_weight else { return images };
+    let closing = end.freed && parity == Parity::Odd;
+    let count = if end.freed { resolution.images as i32 + i32::from(closing) } else { 1 };
+    for n in 1..=count {
+        let weight = if closing && n == count { 0.5 * weight } else { weight };
+        images.extend([-n, n].into_iter().flat_map(|lengths| image(lengths, weight)));
+    }
+    images
+}
+
 impl Body {
-    /// A body of this `shape` with end faces `end`.
-    pub fn new(shape: Shape, end: End, resolution: &Resolution) -> Self {
+    /// A body of this `shape` with end faces `end`, under loads of one `parity`.
+    pub fn new(shape: Shape, end: End, parity: Parity, resolution: &Resolution) -> Self {
         let Shape { contact: half_length, half, nu } = shape;
         let contact_axis = resolution.contact_axis(half_length);
         let contact = contact_axis.len();
@@ -93,28 +119,16 @@ impl Body {
         let ledge = half - half_length;
         let face = Sources::new(resolution.face_axis(ledge, half));
         let surface = Sources::new(surface);
-        let image = |sign: f64, lengths: i32, weight: f64| Image {
-            sign,
-            shift: 2.0 * half * f64::from(lengths),
-            weight,
-        };
-        let mut images = vec![image(1.0, 0, 1.0), image(-1.0, 0, 1.0)];
-        let weight = end.image_weight.unwrap_or(0.0);
-        let count = match end.freed {
-            true => resolution.images as i32,
-            false => i32::from(end.image_weight.is_some()),
-        };
-        for n in 1..=count {
-            for lengths in [-n, n] {
-                images.extend([image(1.0, lengths, weight), image(-1.0, lengths, weight)]);
-            }
-        }
-        let stress_images = images.iter().map(|i| Image { weight: 1.0, ..*i }).collect();
+        let images = images(half, &end, parity, resolution);
+        // An image that the displacement weighs has its full weight in the stresses.
+        let full = End { image_weight: end.image_weight.map(|_| 1.0), ..end };
+        let stress_images = self::images(half, &full, parity, resolution);
         let mut body = Self {
             half,
             stress_images,
             nu,
             end,
+            parity,
             face_wavenumbers: resolution.face_wavenumbers(half),
             resolution: *resolution,
             contact,
@@ -155,14 +169,17 @@ impl Body {
             last *= 2.5;
             breaks.push(last);
         }
-        let strip = Panels::new(breaks, self.resolution.order);
-        self.strips = strip.nodes().iter().copied().zip(strip.weights().iter().copied()).collect();
+        if self.parity == Parity::Even {
+            let strip = Panels::new(breaks, self.resolution.order);
+            let nodes = strip.nodes().iter().copied();
+            self.strips = nodes.zip(strip.weights().iter().copied()).collect();
+        }
         // Everything is even about the face: the images behind it double those before it.
         let before: Vec<Image> = self
             .images
             .iter()
             .filter(|i| i.shift <= 0.0)
-            .map(|i| Image { weight: 2.0, ..*i })
+            .map(|i| Image { weight: 2.0 * i.weight, ..*i })
             .collect();
         let with_places = |from: &Sources, images: &[Image], along: f64, depth: f64| {
             let stencil = Stencil::new(from, images, along, depth, 0.0, Peak::Kink);
@@ -179,13 +196,17 @@ impl Body {
         let offsets: Vec<f64> = self.strips.iter().map(|(s, _)| half + s).collect();
         self.strips_to_face =
             self.face.axis.nodes().iter().map(|&z| WwPlaces::new(&offsets, z)).collect();
-        let both = [Image { sign: 1.0, shift: 0.0, weight: 2.0 }];
+        let both = |load: f64| [Image { sign: 1.0, shift: 0.0, weight: 2.0 * load }];
+        let loads = self.face_loads();
         self.from_faces = self
             .surface
             .axis
             .nodes()
             .iter()
-            .map(|&y| [half - y, half + y].map(|d| with_places(&self.face, &both, 0.0, d)))
+            .map(|&y| {
+                let side = |(depth, load)| with_places(&self.face, &both(load), 0.0, depth);
+                [(half - y, loads[0]), (half + y, loads[1])].map(side)
+            })
             .collect();
         let (face, axis) = (&self.face.axis, &self.face_wavenumbers);
         let order = face.order();
@@ -201,14 +222,21 @@ impl Body {
         }
     }
 
+    /// The loads of the faces at +H and -H in units of q.
+    fn face_loads(&self) -> [f64; 2] {
+        [1.0, self.parity.sign()]
+    }
+
     /// Stencils from the loads of the faces at +H and -H, both even in z, to the point (`y`, `z`).
     pub fn face_stencils(&self, y: f64, z: f64) -> [Stencil; 2] {
-        let image = |sign, weight| Image { sign, shift: 0.0, weight };
-        // At z = 0 both halves of the even load have the same effect.
-        let (one, both) = ([image(1.0, 2.0)], [image(1.0, 1.0), image(-1.0, 1.0)]);
-        let images: &[Image] = if z == 0.0 { &one } else { &both };
-        [self.half - y, self.half + y]
-            .map(|depth| self.stress_stencil(&self.face, images, z, depth))
+        let loads = self.face_loads();
+        [(self.half - y, loads[0]), (self.half + y, loads[1])].map(|(depth, load)| {
+            let image = |sign, weight| Image { sign, shift: 0.0, weight };
+            // At z = 0 both halves of the even load have the same effect.
+            let (one, both) = ([image(1.0, 2.0 * load)], [image(1.0, load), image(-1.0, load)]);
+            let images: &[Image] = if z == 0.0 { &one } else { &both };
+            self.stress_stencil(&self.face, images, z, depth)
+        })
     }
 
     /// Stencil from the load on the surface to the point (`y`, `z`), for stresses.
@@ -383,7 +411,7 @@ impl Body {
         if !self.plate_matters(k) {
             return Vec::new();
         }
-        let wave = |l: &f64| plate::Remainder::new(self.half, self.nu, k, *l);
+        let wave = |l: &f64| plate::Remainder::new(self.parity, self.half, self.nu, k, *l);
         self.face_wavenumbers.nodes().iter().map(wave).collect()
     }
 

@@ -1,9 +1,9 @@
 //! The laws of contact, checked between the collocation points.
 
-use super::gap::Gap;
-use super::operator::{Compliance, LineOperator, Operator};
+use super::operator::{LineOperator, Operator};
+use super::problem::Problem;
 use super::solution::ContactSolution;
-use crate::base::{Error, Panels, Result};
+use crate::base::{Error, Result};
 use crate::kernels::strip;
 
 /// Positions of the check across the contact, in half-widths of each node; none is a collocation
@@ -22,7 +22,7 @@ const END: f64 = 0.2;
 /// [`Error::Unsound`] with the law that is violated most.
 pub(super) fn check(
     operator: &LineOperator,
-    gap: &dyn Gap,
+    problem: &Problem,
     solution: &ContactSolution,
     tolerance: f64,
 ) -> Result<()> {
@@ -31,10 +31,13 @@ pub(super) fn check(
         (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
         (0.0, "the largest tensile traction between the bodies (p0)"),
     ];
-    let axis = operator.axis;
-    let counted = axis.nodes().partition_point(|y| *y <= axis.end() - END).max(1);
-    for (t, gaps) in PLACES.iter().zip(gaps_of(operator, gap, solution, &PLACES)) {
-        for (gap, coefficients) in gaps[..counted].iter().zip(&solution.coefficients) {
+    let nodes = problem.axis.nodes().iter().enumerate();
+    let counted: Vec<usize> = nodes
+        .filter(|(j, y)| *j == 0 && !problem.both_ends || problem.from_end(**y) >= END)
+        .map(|(j, _)| j)
+        .collect();
+    for (t, gaps) in PLACES.iter().zip(gaps_of(operator, problem, solution, &PLACES)) {
+        for (gap, coefficients) in counted.iter().map(|&j| (&gaps[j], &solution.coefficients[j])) {
             // NaN must not pass as small.
             let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
             broken[0].0 = worse(broken[0].0, -gap);
@@ -56,23 +59,18 @@ pub(super) fn check(
     })
 }
 
-/// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes of `axis`, at the distances `places`
-/// from x = 0 in half-widths of each node: a row of all nodes for each place. A node without
+/// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes along the line, at the distances
+/// `places` from x = 0 in half-widths of each node: a row of all nodes for each place. A node without
 /// pressure has the half-width interpolated from its neighbours.
-pub fn gaps(
-    compliance: &Compliance,
-    axis: &Panels,
-    gap: &dyn Gap,
-    solution: &ContactSolution,
-    places: &[f64],
-) -> Vec<Vec<f64>> {
-    gaps_of(&LineOperator::new(compliance, axis, 0.0), gap, solution, places)
+pub fn gaps(problem: &Problem, solution: &ContactSolution, places: &[f64]) -> Vec<Vec<f64>> {
+    let operator = LineOperator::new(problem.compliance, problem.axis, 0.0);
+    gaps_of(&operator, problem, solution, places)
 }
 
 /// [`gaps`] for a given operator.
 fn gaps_of(
     operator: &LineOperator,
-    gap: &dyn Gap,
+    problem: &Problem,
     solution: &ContactSolution,
     places: &[f64],
 ) -> Vec<Vec<f64>> {
@@ -80,7 +78,7 @@ fn gaps_of(
     for (row, t) in gaps.iter_mut().zip(places) {
         let nodes = operator.axis.nodes().iter().zip(&solution.half_widths);
         for (value, (y, a)) in row.iter_mut().zip(nodes) {
-            *value += gap.at(a * t, *y) - solution.approach;
+            *value += problem.gap.at(a * t, *y) - solution.approach - solution.tilt * y;
         }
     }
     gaps
@@ -89,8 +87,8 @@ fn gaps_of(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Wavenumbers;
-    use crate::contact::{ContactSettings, Straight, solve};
+    use crate::base::{Panels, Wavenumbers};
+    use crate::contact::{Compliance, ContactSettings, Straight, solve};
     use nalgebra::DMatrix;
     use std::f64::consts::PI;
 
@@ -114,10 +112,18 @@ mod tests {
             max_iterations: 20,
             soundness: 1e-3,
         };
-        let solution = solve(&compliance, &axis, &Straight, &settings).unwrap();
+        let problem = Problem {
+            compliance: &compliance,
+            axis: &axis,
+            both_ends: false,
+            gap: &Straight,
+            load: 2.0 * PI,
+            moment: None,
+        };
+        let solution = solve(&problem, &settings).unwrap();
         // Hertz: no gap within, and x sqrt(x^2 - 1) - ln(x + sqrt(x^2 - 1)) beyond.
         let places = [0.2, 0.8, 1.1, 3.0];
-        for (x, row) in places.iter().zip(gaps(&compliance, &axis, &Straight, &solution, &places)) {
+        for (x, row) in places.iter().zip(gaps(&problem, &solution, &places)) {
             let root = (x * x - 1.0).max(0.0).sqrt();
             let want = if *x < 1.0 { 0.0 } else { x * root - (x + root).ln() };
             assert!(row.iter().all(|gap| (gap - want).abs() < 1e-4), "at {x}: {row:?}, {want}");
@@ -127,7 +133,7 @@ mod tests {
         let law = |change: &dyn Fn(&mut ContactSolution)| {
             let mut changed = solution.clone();
             change(&mut changed);
-            match check(&all, &Straight, &changed, 1e-3) {
+            match check(&all, &problem, &changed, 1e-3) {
                 Err(Error::Unsound { law, value, .. }) => (law, value),
                 other => panic!("{other:?}"),
             }

@@ -1,8 +1,8 @@
 //! The linear problem of a contact with fixed half-widths.
 
-use super::gap::Gap;
 use super::layout::Layout;
 use super::operator::{LineOperator, screened};
+use super::problem::Problem;
 use crate::base::{Error, Result, linear};
 use crate::kernels::strip;
 use multiversion::{multiversion, target::target_cfg_f};
@@ -18,21 +18,25 @@ type Tile = [f64; TILE];
 /// approach.
 pub(super) struct LinearProblem<'a> {
     pub operator: &'a LineOperator<'a>,
-    pub gap: &'a dyn Gap,
+    pub problem: &'a Problem<'a>,
     pub layout: &'a Layout,
     pub half_widths: &'a [f64],
     pub slopes: &'a [f64],
 }
 
 impl LinearProblem<'_> {
-    /// The unknowns that carry `load` (C p0).
-    pub fn solve(&self, load: f64) -> Result<DVector<f64>> {
-        let size = self.layout.size();
+    /// The unknowns of the nodes, then the rigid motions.
+    pub fn solve(&self) -> Result<DVector<f64>> {
+        let motions = self.problem.motions();
+        let size = self.layout.len() + motions.len();
         let mut matrix = DMatrix::zeros(size, size);
         let mut right = DMatrix::zeros(size, 1);
         self.add_waves(&mut matrix);
         self.add_local(&mut matrix, &mut right);
-        right[size - 1] = load;
+        for (at, (motion, resultant)) in (self.layout.len()..).zip(motions) {
+            self.add_motion(at, motion, &mut matrix);
+            right[at] = resultant;
+        }
         let solution = linear::solve(matrix, right).ok_or_else(|| Error::NotConverged {
             iterations: 0,
             residual: f64::INFINITY,
@@ -107,9 +111,30 @@ impl LinearProblem<'_> {
         tiles
     }
 
-    /// Adds the plane, screened part, the approach, the gap and the equation of the load.
+    /// Adds an unknown rigid motion, whose displacement of a node at y is `motion`, in column `at`.
+    /// Row `at` gets the integral of the pressure times the same function.
+    fn add_motion(&self, at: usize, motion: fn(f64) -> f64, matrix: &mut DMatrix<f64>) {
+        let (layout, axis) = (self.layout, self.operator.axis);
+        for (i, ((&y, w), a)) in
+            axis.nodes().iter().zip(axis.weights()).zip(self.half_widths).enumerate()
+        {
+            let displaced = motion(y);
+            for row in layout.unknowns(i) {
+                matrix[(row, at)] = -displaced;
+            }
+            let carried = w * displaced * a * PI;
+            if let Some(first) = layout.modes(i).next() {
+                matrix[(at, first)] = 0.5 * carried;
+            }
+            for (column, factor) in layout.singular_parts(i, self.slopes) {
+                matrix[(at, column)] += carried * factor;
+            }
+        }
+    }
+
+    /// Adds the plane, screened part and the gap.
     fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
-        let (layout, last) = (self.layout, self.layout.size() - 1);
+        let layout = self.layout;
         let most = layout.counts.iter().copied().max().unwrap_or(0);
         let mut local = vec![0.0; most];
         for (i, &a) in self.half_widths.iter().enumerate() {
@@ -134,14 +159,7 @@ impl LinearProblem<'_> {
                         matrix[(row, *column)] += weight * factor;
                     }
                 }
-                matrix[(row, last)] = -1.0;
-                right[row] = -self.gap.at(a * t, self.operator.axis.nodes()[i]);
-            }
-            if let Some(first) = modes.clone().next() {
-                matrix[(last, first)] = self.operator.axis.weights()[i] * a * 0.5 * PI;
-            }
-            for (column, factor) in &singular {
-                matrix[(last, *column)] += self.operator.axis.weights()[i] * a * PI * factor;
+                right[row] = -self.problem.gap.at(a * t, self.operator.axis.nodes()[i]);
             }
         }
     }

@@ -1,7 +1,7 @@
 //! The unknowns of the nodes along the line.
 
+use super::problem::Problem;
 use super::settings::ContactSettings;
-use crate::base::Panels;
 use crate::kernels::strip;
 use nalgebra::DVector;
 use std::f64::consts::PI;
@@ -38,11 +38,13 @@ pub(super) struct Layout {
 
 impl Layout {
     /// All modes everywhere.
-    pub fn new(axis: &Panels, settings: &ContactSettings) -> Self {
-        let mut limit = axis.end() - settings.spacing;
+    pub fn new(problem: &Problem, settings: &ContactSettings) -> Self {
+        let axis = problem.axis;
+        let mut limit = f64::INFINITY;
         let mut free = Vec::new();
         for (j, &y) in axis.nodes().iter().enumerate().rev() {
-            if y <= limit || j == 0 && free.is_empty() {
+            let apart = y <= limit && problem.from_end(y) >= settings.spacing;
+            if apart || j == 0 && free.is_empty() {
                 free.push(j);
                 limit = y - settings.spacing;
             }
@@ -63,9 +65,10 @@ impl Layout {
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let inner = axis.end() - DISTURBED;
-        let modes_at =
-            |y: &f64| if *y < inner { settings.modes.min(INNER_MODES) } else { settings.modes };
+        let modes_at = |y: &f64| match problem.from_end(*y) > DISTURBED {
+            true => settings.modes.min(INNER_MODES),
+            false => settings.modes,
+        };
         let counts = axis.nodes().iter().map(modes_at).collect();
         let mut layout = Self { free, shares, counts, starts: Vec::new() };
         layout.number();
@@ -103,9 +106,9 @@ impl Layout {
         self.starts[j + 1] - 1
     }
 
-    /// Unknowns in all, the approach included.
-    pub fn size(&self) -> usize {
-        self.starts[self.counts.len()] + 1
+    /// Unknowns of all nodes; those of rigid motions follow.
+    pub fn len(&self) -> usize {
+        self.starts[self.counts.len()]
     }
 
     /// The amplitude of node `j`'s singular mode in terms of those of the free nodes: columns and
@@ -141,10 +144,11 @@ impl Layout {
     /// Removes modes from nodes that are not free and whose pressure is tensile somewhere across
     /// the contact: all of them if the mean is tensile, otherwise the higher ones. Returns whether
     /// there was such a node.
-    pub fn release(&mut self, unknowns: &DVector<f64>) -> bool {
+    pub fn release(&mut self, both_ends: bool, unknowns: &DVector<f64>) -> bool {
         let mut released = false;
-        let last = *self.free.last().expect("at least one");
-        for j in last + 1..self.counts.len() {
+        let [first, last] = [0, self.free.len() - 1].map(|at| self.free[at]);
+        let behind = (0..first).filter(|_| both_ends).chain(last + 1..self.counts.len());
+        for j in behind {
             let c = &unknowns.as_slice()[self.modes(j)];
             let is_tensile = |modes: &[f64]| {
                 (0..=SHAPE_POINTS).any(|i| {

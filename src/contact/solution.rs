@@ -13,6 +13,8 @@ pub struct ContactSolution {
     /// Approach in units of C^2 / (2 R), relative to points at a distance set by the smallest
     /// wavenumber; subtract [`super::reference`] for a given depth.
     pub approach: f64,
+    /// Tilt in units of C / (2 R): the growth of the approach per C along y.
+    pub tilt: f64,
     /// Number of iterations.
     pub iterations: usize,
     /// [`ContactSettings::spacing`] with which it converged.

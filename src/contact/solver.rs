@@ -2,15 +2,14 @@
 
 use super::check::check;
 use super::collocation::LinearProblem;
-use super::gap::Gap;
 use super::layout::Layout;
-use super::operator::{Compliance, LineOperator};
+use super::operator::LineOperator;
+use super::problem::Problem;
 use super::settings::ContactSettings;
 use super::solution::ContactSolution;
-use crate::base::{Error, Panels, Result};
+use crate::base::{Error, Result};
 use crate::kernels::strip;
 use nalgebra::DVector;
-use std::f64::consts::PI;
 
 /// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance
 /// of the singularity.
@@ -22,7 +21,7 @@ const ATTEMPT: usize = 26;
 /// Smallest half-width in the iteration (C).
 const NARROWEST: f64 = 0.05;
 
-/// Solves for the pressure whose mean over the axis is the Hertz line load pi/2.
+/// Solves for the pressure that carries the problem's load.
 ///
 /// For fixed half-widths the problem is linear: collocation determines the modes at every node, and
 /// the load determines the approach. Nodes whose half-width is unknown also have the amplitude b of
@@ -33,20 +32,16 @@ const NARROWEST: f64 = 0.05;
 /// # Errors
 /// [`Error::NotConverged`] if the boundary does not converge, [`Error::Unsound`] if the solution
 /// violates a law of contact.
-pub fn solve(
-    compliance: &Compliance,
-    axis: &Panels,
-    gap: &dyn Gap,
-    settings: &ContactSettings,
-) -> Result<ContactSolution> {
-    let operator = LineOperator::new(compliance, axis, NEGLIGIBLE * settings.tolerance);
+pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSolution> {
+    let negligible = NEGLIGIBLE * settings.tolerance;
+    let operator = LineOperator::new(problem.compliance, problem.axis, negligible);
     // A pressure that is singular at the end, as a half-space's, may need fewer unknown
     // half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
     let checked = |attempt: &ContactSettings| {
-        let solution = solve_once(&operator, gap, attempt)?;
-        check(&operator, gap, &solution, settings.soundness)?;
+        let solution = solve_once(&operator, problem, attempt)?;
+        check(&operator, problem, &solution, settings.soundness)?;
         Ok(solution)
     };
     for _ in 0..3 {
@@ -63,14 +58,11 @@ pub fn solve(
 /// [`solve`] with the given spacing.
 fn solve_once(
     operator: &LineOperator,
-    gap: &dyn Gap,
+    problem: &Problem,
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
-    let axis = operator.axis;
-    let n = axis.len();
-    let length: f64 = axis.weights().iter().sum();
-    let load = 0.5 * PI * length;
-    let mut layout = Layout::new(axis, settings);
+    let n = problem.axis.len();
+    let mut layout = Layout::new(problem, settings);
     let mut half_widths = vec![1.0; n];
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
@@ -78,12 +70,12 @@ fn solve_once(
     for iteration in 1..=settings.max_iterations {
         let held = LinearProblem {
             operator,
-            gap,
+            problem,
             layout: &layout,
             half_widths: &half_widths,
             slopes: &slopes,
         };
-        let unknowns = held.solve(load)?;
+        let unknowns = held.solve()?;
         for (j, slope) in slopes.iter_mut().enumerate() {
             let own = &unknowns.as_slice()[layout.modes(j)];
             *slope = own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
@@ -101,8 +93,8 @@ fn solve_once(
             })
             .collect();
         last = worst;
-        if worst <= settings.tolerance && !layout.release(&unknowns) {
-            let solution = carrying(load, axis, &layout, half_widths, &unknowns);
+        if worst <= settings.tolerance && !layout.release(problem.both_ends, &unknowns) {
+            let solution = carrying(problem, &layout, half_widths, &unknowns);
             return Ok(ContactSolution {
                 iterations: iteration,
                 spacing: settings.spacing,
@@ -126,32 +118,49 @@ fn solve_once(
 }
 
 /// The solution from the `unknowns`. The share of the load in the singular modes, which is below
-/// the tolerance, is redistributed so that the regular modes carry `load`.
+/// the tolerance, is redistributed so that the regular modes carry the load and its moment.
 fn carrying(
-    load: f64,
-    axis: &Panels,
+    problem: &Problem,
     layout: &Layout,
     half_widths: Vec<f64>,
     unknowns: &DVector<f64>,
 ) -> ContactSolution {
+    let axis = problem.axis;
     let n = axis.len();
     let mut coefficients: Vec<Vec<f64>> =
         (0..n).map(|j| unknowns.as_slice()[layout.modes(j)].to_vec()).collect();
-    let carried = |coefficients: &[Vec<f64>]| -> f64 {
-        let line = |j: usize| {
+    // Load and its first two moments about y = 0.
+    let carried = |coefficients: &[Vec<f64>]| -> [f64; 3] {
+        let mut sums = [0.0; 3];
+        for (j, (y, w)) in axis.nodes().iter().zip(axis.weights()).enumerate() {
             let a = half_widths[j];
-            axis.weights()[j] * strip::cumulative(a, &coefficients[j], a)
-        };
-        (0..n).map(line).sum()
+            let line = w * strip::cumulative(a, &coefficients[j], a);
+            sums.iter_mut().zip([1.0, *y, y * y]).for_each(|(sum, arm)| *sum += line * arm);
+        }
+        sums
     };
-    let scale = load / carried(&coefficients);
-    coefficients.iter_mut().flatten().for_each(|c| *c *= scale);
-    let load_error = (carried(&coefficients) / load - 1.0).abs();
-    let approach = unknowns[layout.size() - 1];
+    let [load, first, second] = carried(&coefficients);
+    // Factors c + d y that give back both resultants.
+    let (constant, slope) = match problem.moment {
+        None => (problem.load / load, 0.0),
+        Some(moment) => {
+            let determinant = load * second - first * first;
+            (
+                (problem.load * second - moment * first) / determinant,
+                (load * moment - first * problem.load) / determinant,
+            )
+        }
+    };
+    for (own, y) in coefficients.iter_mut().zip(axis.nodes()) {
+        own.iter_mut().for_each(|c| *c *= constant + slope * y);
+    }
+    let load_error = (carried(&coefficients)[0] / problem.load - 1.0).abs();
+    let motions = &unknowns.as_slice()[layout.len()..];
     ContactSolution {
         half_widths,
         coefficients,
-        approach,
+        approach: motions[0],
+        tilt: motions.get(1).copied().unwrap_or(0.0),
         load_error,
         iterations: 0,
         spacing: 0.0,

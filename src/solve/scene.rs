@@ -1,12 +1,13 @@
 //! A contact in units of C and p0: a case without its scales.
 
-use crate::base::{Error, Material, PerBody, Result, Wavenumbers};
+use crate::base::{Error, Material, Panels, Parity, PerBody, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
 use crate::case::{Accuracy, Block, Case, Load, Roller};
-use crate::contact::{self, Compliance, ContactSettings, ContactSolution};
+use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Straight};
 use crate::stress::{BodyKind, Field, Pressure};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::f64::consts::PI;
 use std::time::Instant;
 
 /// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
@@ -196,7 +197,7 @@ impl SolvedScene {
             .map(|&kind| {
                 let SceneBody { half, nu, .. } = scene.bodies[kind];
                 let shape = Shape { contact: scene.half_length, half, nu };
-                let body = Body::new(shape, scene.end(kind), resolution);
+                let body = Body::new(shape, scene.end(kind), Parity::Even, resolution);
                 let layers = coarse.nodes().par_iter().map(|&k| body.layer(k)).collect();
                 (body, layers)
             })
@@ -217,7 +218,7 @@ impl SolvedScene {
             soundness: SOUNDNESS * scene.tolerance.max(Resolution::FINEST),
         };
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
-        let contact = contact::solve(&compliance, &axis, &contact::Straight, &settings)?;
+        let contact = contact::solve(&straight(&compliance, &axis), &settings)?;
         let pressure =
             Pressure::new(axis, contact.half_widths.clone(), contact.coefficients.clone());
         let moments = pressure.moments(&wavenumbers);
@@ -276,13 +277,9 @@ impl SolvedScene {
     /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of
     /// `places`, which are distances from x = 0 in half-widths of each node.
     pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
-        contact::gaps(
-            &self.compliance(),
-            self.pressure.axis(),
-            &contact::Straight,
-            &self.contact,
-            places,
-        )
+        let compliance = self.compliance();
+        let problem = straight(&compliance, self.pressure.axis());
+        contact::gaps(&problem, &self.contact, places)
     }
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
@@ -308,4 +305,16 @@ fn checked_condition(bodies: &[(Body, Vec<Layer>)]) -> Result<f64> {
         limit: WORST_CONDITION,
         remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
     })
+}
+
+/// The contact of a straight roller that is pressed on the block in its middle: one half of it.
+fn straight<'a>(compliance: &'a Compliance<'a>, axis: &'a Panels) -> Problem<'a> {
+    Problem {
+        compliance,
+        axis,
+        both_ends: false,
+        gap: &Straight,
+        load: 0.5 * PI * axis.end(),
+        moment: None,
+    }
 }

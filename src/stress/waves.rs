@@ -301,6 +301,7 @@ fn upon(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Parity;
     use crate::body::{EdgeModel, Resolution, Shape};
 
     #[test]
@@ -317,6 +318,7 @@ mod tests {
         let body = Body::new(
             Shape { contact: 5.0, half: 5.0 + ledge, nu: 0.3 },
             EdgeModel::QuarterSpace.end(0.3, None),
+            Parity::Even,
             &resolution,
         );
         let numbers = resolution.wavenumbers(body.half).resolving(1.0);

@@ -2,7 +2,7 @@
 //! in units of C, stresses in units of p0.
 
 use crate::common::{apart, at, half_of, near, small, solved, table, worse};
-use edgeline::base::{Material, Panels, StressTensor};
+use edgeline::base::{Material, Panels, Parity, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
@@ -43,7 +43,7 @@ fn both_bodies_are_right_at_the_rollers_end_face() {
 fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
     let resolution = Resolution::for_tolerance(1e-3);
     let shape = Shape { contact: 3.0, half: 4.0, nu: 0.3 };
-    let body = Body::new(shape, EdgeModel::QuarterSpace.end(0.3, None), &resolution);
+    let body = Body::new(shape, EdgeModel::QuarterSpace.end(0.3, None), Parity::Even, &resolution);
     let wavenumbers = resolution.wavenumbers(4.0);
     let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     let axis = resolution.contact_axis(3.0);

@@ -2,6 +2,7 @@
 
 mod analytic;
 mod common;
+mod eccentric;
 mod ends;
 mod fields;
 mod imports;

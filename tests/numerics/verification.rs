@@ -1,7 +1,7 @@
 //! The solver against known solutions, an independent one, and the laws that any contact keeps. Lengths are in units of C, stresses in units of p0.
 
 use crate::common::{apart, at, case, curve_points, half_of, near, scene, small, solved, worse};
-use edgeline::base::{Panels, StressTensor};
+use edgeline::base::{Panels, Parity, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::case::Case;
 use edgeline::kernels::{hertz, love, strip};
@@ -228,8 +228,12 @@ fn compliance_is_reciprocal() {
         (5.5, EdgeModel::QuarterSpace),
         (10.0, EdgeModel::QuarterSpace),
     ] {
-        let body =
-            Body::new(Shape { contact: 5.0, half, nu: 0.3 }, model.end(0.3, None), &resolution);
+        let body = Body::new(
+            Shape { contact: 5.0, half, nu: 0.3 },
+            model.end(0.3, None),
+            Parity::Even,
+            &resolution,
+        );
         let axis = resolution.contact_axis(5.0);
         let (nodes, weights) = (axis.nodes(), axis.weights());
         let shapes: [&dyn Fn(f64) -> f64; 4] =
@@ -264,7 +268,9 @@ fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
     let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
         let shape = Shape { contact: slenderness, half, nu };
-        Body::new(shape, EdgeModel::QuarterSpace.end(nu, None), resolution).layer(k).condition
+        Body::new(shape, EdgeModel::QuarterSpace.end(nu, None), Parity::Even, resolution)
+            .layer(k)
+            .condition
     };
     let say = |what: &str, values: Vec<f64>| {
         println!(
@@ -320,7 +326,7 @@ fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f
     let resolution = Resolution::for_tolerance(1e-2);
     let half = slenderness / length_ratio;
     let shape = Shape { contact: slenderness, half, nu: 0.3 };
-    let body = Body::new(shape, model.end(0.3, Some(psi)), &resolution);
+    let body = Body::new(shape, model.end(0.3, Some(psi)), Parity::Even, &resolution);
     let axis = resolution.contact_axis(slenderness);
     let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
     let wavenumbers = resolution.wavenumbers(half);
