@@ -33,7 +33,7 @@ pub(super) fn check(
     ];
     let nodes = problem.axis.nodes().iter().enumerate();
     let counted: Vec<usize> = nodes
-        .filter(|(j, y)| *j == 0 && !problem.both_ends || problem.from_end(**y) >= END)
+        .filter(|(j, y)| *j == 0 && !problem.both_ends || problem.distance_to_end(**y) >= END)
         .map(|(j, _)| j)
         .collect();
     for (t, gaps) in PLACES.iter().zip(gaps_of(operator, problem, solution, &PLACES)) {

@@ -2,7 +2,7 @@
 
 use super::layout::Layout;
 use super::operator::{LineOperator, screened};
-use super::problem::Problem;
+use super::problem::{Motion, Problem};
 use crate::base::{Error, Result, linear};
 use crate::kernels::strip;
 use multiversion::{multiversion, target::target_cfg_f};
@@ -33,9 +33,9 @@ impl LinearProblem<'_> {
         let mut right = DMatrix::zeros(size, 1);
         self.add_waves(&mut matrix);
         self.add_local(&mut matrix, &mut right);
-        for (at, (motion, resultant)) in (self.layout.len()..).zip(motions) {
+        for (at, motion) in (self.layout.len()..).zip(&motions) {
             self.add_motion(at, motion, &mut matrix);
-            right[at] = resultant;
+            right[at] = motion.resultant;
         }
         let solution = linear::solve(matrix, right).ok_or_else(|| Error::NotConverged {
             iterations: 0,
@@ -111,14 +111,14 @@ impl LinearProblem<'_> {
         tiles
     }
 
-    /// Adds an unknown rigid motion, whose displacement of a node at y is `motion`, in column `at`.
-    /// Row `at` gets the integral of the pressure times the same function.
-    fn add_motion(&self, at: usize, motion: fn(f64) -> f64, matrix: &mut DMatrix<f64>) {
+    /// Adds an unknown rigid motion in column `at`. Row `at` gets the integral of the pressure times its
+    /// displacement.
+    fn add_motion(&self, at: usize, motion: &Motion, matrix: &mut DMatrix<f64>) {
         let (layout, axis) = (self.layout, self.operator.axis);
         for (i, ((&y, w), a)) in
             axis.nodes().iter().zip(axis.weights()).zip(self.half_widths).enumerate()
         {
-            let displaced = motion(y);
+            let displaced = (motion.displacement)(y);
             for row in layout.unknowns(i) {
                 matrix[(row, at)] = -displaced;
             }

@@ -43,7 +43,7 @@ impl Layout {
         let mut limit = f64::INFINITY;
         let mut free = Vec::new();
         for (j, &y) in axis.nodes().iter().enumerate().rev() {
-            let apart = y <= limit && problem.from_end(y) >= settings.spacing;
+            let apart = y <= limit && problem.distance_to_end(y) >= settings.spacing;
             if apart || j == 0 && free.is_empty() {
                 free.push(j);
                 limit = y - settings.spacing;
@@ -65,7 +65,7 @@ impl Layout {
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let modes_at = |y: &f64| match problem.from_end(*y) > DISTURBED {
+        let modes_at = |y: &f64| match problem.distance_to_end(*y) > DISTURBED {
             true => settings.modes.min(INNER_MODES),
             false => settings.modes,
         };

@@ -23,19 +23,24 @@ pub struct Problem<'a> {
     pub moment: Option<f64>,
 }
 
+/// An unknown rigid motion.
+pub(super) struct Motion {
+    /// Displacement of a node at y.
+    pub displacement: fn(f64) -> f64,
+    /// The integral of the pressure times this displacement.
+    pub resultant: f64,
+}
+
 impl Problem<'_> {
-    /// Rigid motions that are unknown, as displacements at y, each with the integral of p times it:
-    /// the approach, and the tilt.
-    pub(super) fn motions(&self) -> Vec<(fn(f64) -> f64, f64)> {
-        let mut motions: Vec<(fn(f64) -> f64, f64)> = vec![(|_| 1.0, self.load)];
-        if let Some(moment) = self.moment {
-            motions.push((|y| y, moment));
-        }
-        motions
+    /// The unknown rigid motions: the approach, and the tilt if it is free.
+    pub(super) fn motions(&self) -> Vec<Motion> {
+        let approach = Motion { displacement: |_| 1.0, resultant: self.load };
+        let tilt = self.moment.map(|moment| Motion { displacement: |y| y, resultant: moment });
+        std::iter::once(approach).chain(tilt).collect()
     }
 
     /// Distance of `y` from the nearer end of the contact.
-    pub(super) fn from_end(&self, y: f64) -> f64 {
+    pub(super) fn distance_to_end(&self, y: f64) -> f64 {
         let before = if self.both_ends { y - self.axis.breaks()[0] } else { f64::INFINITY };
         before.min(self.axis.end() - y)
     }
