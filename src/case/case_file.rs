@@ -17,6 +17,14 @@ impl Case {
         Case::parse(&read_text(path)?, path)
     }
 
+    /// Takes a case from the text of a case file.
+    ///
+    /// # Errors
+    /// [`crate::base::Error::File`] as [`Case::read`].
+    pub fn from_toml(text: &str) -> Result<Case> {
+        Case::parse(text, Path::new("the case"))
+    }
+
     /// Parses the text of a case file; `path` is only named in errors.
     ///
     /// # Errors
