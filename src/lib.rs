@@ -4,6 +4,33 @@
 //! solves the frictionless contact and the stress fields of both bodies semi-analytically and
 //! holds the harness that compares them with finite elements.
 //!
+//! # From a case to pressures and stresses
+//!
+//! ```
+//! use edgeline::base::BodyKind;
+//! use edgeline::body::EdgeModel;
+//! use edgeline::case::Case;
+//! use edgeline::solve::{Options, SolvedCase};
+//!
+//! let case = Case::from_toml(
+//!     "name = 'roller'
+//!      roller = { radius_m = 10e-3, length_m = 10e-3, young_pa = 210e9, poisson = 0.3 }
+//!      block = { length_m = 20e-3, young_pa = 210e9, poisson = 0.3 }
+//!      load = { force_n = 10e3 }",
+//! )?;
+//! let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace))?;
+//! let end = 0.5 * case.roller.length_m / solved.hertz().c_m;
+//! let pressure = solved.pressure(0.0, end - 0.5);
+//! let stress = solved.stress(BodyKind::Block, &[[0.0, end - 0.5, 0.78]])?[0];
+//! assert!(pressure > 1.0, "{pressure} p0: it rises towards the end of the shorter body");
+//! assert!(stress.zz < 0.0 && stress.von_mises() > 0.5, "{stress:?} p0");
+//! # Ok::<(), edgeline::base::Error>(())
+//! ```
+//!
+//! Places are x, y, z in units of C, results in units of p0. [`solve::solve`] also gives the standard
+//! curves, the pressure in cells and a summary in SI units. With `default-features = false` the crate is
+//! the numerics alone, without the program and what it needs.
+//!
 //! # Conventions
 //!
 //! - Axes: `x` across the contact, `y` along the contact line, `z` into the body at hand; the
