@@ -26,20 +26,7 @@ fn main() -> Result<()> {
         std::fs::write(path, figure.draw().to_svg()).expect("docs can be written");
     };
     let case = builtin_case("flush-short").expect("a case of that name")?;
-    let mut panels: Vec<Panel> = [
-        ("Pressure on x = 0", "distance from the roller's end (C)", 5.0, "p / p0"),
-        ("Along x = 0, z = 0.5 C", "distance from the roller's end (C)", 5.0, "σyy / p0"),
-        ("Down the end face, x = 0", "depth (C)", 3.0, "σyy / p0"),
-    ]
-    .into_iter()
-    .map(|(title, x_label, reach, y_label)| Panel {
-        title: title.into(),
-        x_label: x_label.into(),
-        y_label: y_label.into(),
-        x_range: Some((0.0, reach)),
-        ..Panel::default()
-    })
-    .collect();
+    let mut panels = panels();
     for model in EdgeModel::ALL {
         let scene = Scene::new(&case, model, None);
         let solved = SolvedScene::new(&scene)?;
@@ -80,4 +67,22 @@ fn main() -> Result<()> {
     };
     write("models", &figure);
     Ok(())
+}
+
+/// The panels of the four models' curves, still empty.
+fn panels() -> Vec<Panel> {
+    [
+        ("Pressure on x = 0", "distance from the roller's end (C)", 5.0, "p / p0"),
+        ("Along x = 0, z = 0.5 C", "distance from the roller's end (C)", 5.0, "σyy / p0"),
+        ("Down the end face, x = 0", "depth (C)", 3.0, "σyy / p0"),
+    ]
+    .into_iter()
+    .map(|(title, x_label, reach, y_label)| Panel {
+        title: title.into(),
+        x_label: x_label.into(),
+        y_label: y_label.into(),
+        x_range: Some((0.0, reach)),
+        ..Panel::default()
+    })
+    .collect()
 }

@@ -63,15 +63,12 @@ fn lines(value: &Value, depth: usize, text: &mut String) {
     }
 }
 
-/// Points whose times may be compared with each other, as one group has them.
-const GROUPS: [Origin; 3] = [Origin::Model, Origin::LiveFem, Origin::RecordedFem];
-
 /// Time and error of a point, where it has both.
 fn pair(point: &Point, against: Against) -> Option<(f64, f64)> {
     Some((point.seconds()?, point.error(against)?))
 }
 
-/// The front of a group in a case.
+/// The front in a case of the points whose times may be compared with each other.
 fn front_of(case: &CaseBench, origin: Origin, against: Against) -> Vec<(f64, f64)> {
     let points = case.points.iter().filter(|p| p.origin == origin);
     front(points.filter_map(|p| pair(p, against)).collect())
@@ -93,58 +90,55 @@ fn table(bench: &Bench) -> Table {
     }
     let mut table = Table::new(header);
     for case in &bench.cases {
-        let fronts = [Against::Fem, Against::Limit]
-            .map(|against| GROUPS.map(|origin| front_of(case, origin, against)));
         for point in &case.points {
-            let group = GROUPS.iter().position(|g| *g == point.origin).expect("all groups");
-            let of = |on: [&[(f64, f64)]; 2], against: Against, i: usize| -> &'static str {
-                match pair(point, against) {
-                    Some(p) if on[i].contains(&p) => "yes",
-                    Some(_) => "no",
-                    None => "",
-                }
-            };
-            let on = [&fronts[0][group][..], &fronts[1][group][..]];
-            let time = point.timing.as_ref();
-            let text = |v: Option<String>| v.unwrap_or_default();
-            let mut row = vec![
-                case.case.name.clone(),
-                point.source.to_string(),
-                match point.origin {
-                    Origin::Model => "model",
-                    Origin::LiveFem => "live-fem",
-                    Origin::RecordedFem => "recorded-fem",
-                }
-                .to_string(),
-                number(point.setting),
-                text(point.unknowns.map(|u| u.to_string())),
-                text(point.err.clone()),
-                optional(time.map(|t| t.median_s)),
-                optional(time.filter(|t| t.repeats > 1).map(|t| t.spread_s())),
-                text(time.map(|t| t.repeats.to_string())),
-                text(time.map(|t| t.threads.to_string())),
-                optional(time.and_then(|t| t.cold_s)),
-                optional(point.all_threads.map(|t| t.median_s)),
-                text(point.all_threads.map(|t| t.threads.to_string())),
-                point.machine.clone().unwrap_or_else(|| "this machine".to_string()),
-            ];
-            for (i, (accuracy, against)) in
-                [(point.to_fem, Against::Fem), (point.to_limit, Against::Limit)].iter().enumerate()
-            {
-                let get = |f: fn(&Accuracy) -> f64| optional(accuracy.as_ref().map(f));
-                row.extend([
-                    get(|a| a.worst_rms),
-                    get(|a| a.pressure_rms),
-                    get(|a| a.pressure_max),
-                    get(|a| a.stress_rms),
-                    get(|a| a.stress_max),
-                    of(on, *against, i).to_string(),
-                ]);
-            }
-            table.push(row);
+            table.push(row(case, point));
         }
     }
     table
+}
+
+/// The cells of a point in the table's order.
+fn row(case: &CaseBench, point: &Point) -> Vec<String> {
+    let time = point.timing.as_ref();
+    let text = |v: Option<String>| v.unwrap_or_default();
+    let origin = match point.origin {
+        Origin::Model => "model",
+        Origin::LiveFem => "live-fem",
+        Origin::RecordedFem => "recorded-fem",
+    };
+    let mut row = vec![
+        case.case.name.clone(),
+        point.source.to_string(),
+        origin.to_string(),
+        number(point.setting),
+        text(point.unknowns.map(|u| u.to_string())),
+        text(point.err.clone()),
+        optional(time.map(|t| t.median_s)),
+        optional(time.filter(|t| t.repeats > 1).map(|t| t.spread_s())),
+        text(time.map(|t| t.repeats.to_string())),
+        text(time.map(|t| t.threads.to_string())),
+        optional(time.and_then(|t| t.cold_s)),
+        optional(point.all_threads.map(|t| t.median_s)),
+        text(point.all_threads.map(|t| t.threads.to_string())),
+        point.machine.clone().unwrap_or_else(|| "this machine".to_string()),
+    ];
+    for (accuracy, against) in [(point.to_fem, Against::Fem), (point.to_limit, Against::Limit)] {
+        let get = |f: fn(&Accuracy) -> f64| optional(accuracy.as_ref().map(f));
+        let on_front = match pair(point, against) {
+            Some(p) if front_of(case, point.origin, against).contains(&p) => "yes",
+            Some(_) => "no",
+            None => "",
+        };
+        row.extend([
+            get(|a| a.worst_rms),
+            get(|a| a.pressure_rms),
+            get(|a| a.pressure_max),
+            get(|a| a.stress_rms),
+            get(|a| a.stress_max),
+            on_front.to_string(),
+        ]);
+    }
+    row
 }
 
 /// One entry of a panel: where it belongs, and its time and error.
