@@ -19,6 +19,12 @@ pub fn significant(value: f64, digits: usize) -> String {
     without_trailing_zeros(&format!("{value:.decimals$}")).to_string()
 }
 
+/// As [`significant`], with a sign whichever it is: a change.
+pub fn signed(value: f64, digits: usize) -> String {
+    let sign = if value < 0.0 { "" } else { "+" };
+    format!("{sign}{}", significant(value, digits))
+}
+
 /// A fixed number of digits after the point; a value that rounds to zero has no sign.
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
@@ -86,6 +92,7 @@ mod tests {
         assert_eq!(texts, ["0", "0", "12.5", "123457", "-0.00012346", "100000", "0.3"]);
         let texts = [1e-5, 1.234e-5, -2.5e6, 999_999.9, 0.000_099_999_9].map(|v| significant(v, 3));
         assert_eq!(texts, ["1e-5", "1.23e-5", "-2.5e6", "1e6", "0.0001"]);
+        assert_eq!([0.001_94, -0.139].map(|v| signed(v, 3)), ["+0.00194", "-0.139"]);
         assert_eq!([f64::NAN, f64::INFINITY].map(|v| significant(v, 3)), ["NaN", "inf"]);
     }
 

@@ -3,7 +3,7 @@
 use super::factorial::{self, Analysis, Verdict};
 use super::run::{CaseRun, MethodRun, Role, StudyRun};
 use super::timing::Ratio;
-use crate::base::number::significant;
+use crate::base::number::{signed, significant};
 use crate::body::EdgeModel;
 use crate::stress::Quantity;
 
@@ -166,9 +166,9 @@ pub fn words(run: &StudyRun, effects: &Effects) -> String {
         match e.factors[..] {
             [i] => {
                 let f = &run.factors[i];
-                format!("{name} ({:+.2e} {unit} from {} to {})", e.value, f.low, f.high)
+                format!("{name} ({} {unit} from {} to {})", signed(e.value, 3), f.low, f.high)
             }
-            _ => format!("{name} ({:+.2e} {unit})", e.value),
+            _ => format!("{name} ({} {unit})", signed(e.value, 3)),
         }
     };
     let Some(lenth) = analysis.lenth else {
@@ -185,25 +185,25 @@ pub fn words(run: &StudyRun, effects: &Effects) -> String {
     let (active, likely) = (with(Verdict::Active), with(Verdict::Likely));
     match (active.is_empty(), likely.is_empty()) {
         (true, true) => text.push_str(&format!(
-            "; no effect stands out of the others by Lenth's margin of error ({:.1e}), the largest \
+            "; no effect stands out of the others by Lenth's margin of error ({}), the largest \
              is that of {}",
-            lenth.me,
+            significant(lenth.me, 2),
             describe(ranked[0])
         )),
         (true, false) => text.push_str(&format!(
-            "; beyond Lenth's margin of error ({:.1e}), though not beyond the simultaneous one, is \
+            "; beyond Lenth's margin of error ({}), though not beyond the simultaneous one, is \
              {}",
-            lenth.me,
+            significant(lenth.me, 2),
             likely.join(" and ")
         )),
         (false, _) => {
             text.push_str(&format!(
-                "; beyond Lenth's simultaneous margin of error ({:.1e}): {}",
-                lenth.sme,
+                "; beyond Lenth's simultaneous margin of error ({}): {}",
+                significant(lenth.sme, 2),
                 active.join(", ")
             ));
             if !likely.is_empty() {
-                text.push_str(&format!("; beyond the single one ({:.1e}): ", lenth.me));
+                text.push_str(&format!("; beyond the single one ({}): ", significant(lenth.me, 2)));
                 text.push_str(&likely.join(", "));
             }
         }
@@ -211,8 +211,9 @@ pub fn words(run: &StudyRun, effects: &Effects) -> String {
     if let Some(curvature) = analysis.curvature {
         let beyond = if curvature.abs() > lenth.me { "beyond" } else { "within" };
         text.push_str(&format!(
-            ". The corners' mean less the centre point is {curvature:+.1e} {unit}, {beyond} the \
+            ". The corners' mean less the centre point is {} {unit}, {beyond} the \
              margin of error: {}",
+            signed(curvature, 2),
             if beyond == "beyond" {
                 "the response bends between the levels"
             } else {

@@ -152,7 +152,7 @@ pub struct Panel {
     pub rules: Vec<Rule>,
     /// Bars from zero along x, the first on top; they take the place of series.
     pub bars: Vec<Bar>,
-    /// A scalar as bands of colour with a colour bar; it takes the place of series.
+    /// A scalar as bands of colour below the series, with a colour bar; its limits are the axes'.
     pub map: Option<Map>,
     /// A range of x that is set off from the rest.
     pub shade: Option<Shade>,
