@@ -53,6 +53,7 @@
 //! | [`contact`] | load-controlled contact of two bodies |
 //! | [`stress`] | stresses at points, standard curves, critical points |
 //! | `host` | files that appear whole or not at all, locked folders, memory, child processes |
+//! | [`cells`] | contact and stresses on uniform cells of constant pressure, the published method |
 //! | [`case`](mod@case) | case and study files, their validation and expansion |
 //! | [`solve`](mod@solve) | one case and one method to one [`solve::Solution`] |
 //! | [`fem`] | the driver of gmsh and FEniCSx, and the reader of recorded curves |
@@ -74,6 +75,8 @@ pub mod contact;
 pub mod stress;
 
 mod host;
+
+pub mod cells;
 
 pub mod case;
 

@@ -51,12 +51,12 @@ pub enum Error {
     },
     /// The contact solver did not converge.
     #[error(
-        "contact did not converge after {iterations} iterations (edge residual {residual:.1e} p0); {remedy}"
+        "contact did not converge after {iterations} iterations (residual {residual:.1e}); {remedy}"
     )]
     NotConverged {
         /// Iterations done.
         iterations: usize,
-        /// The remaining edge residual (p0).
+        /// The remaining residual: on the line of the pressure at its edges (p0), on cells the relative one.
         residual: f64,
         /// What to do.
         remedy: String,
@@ -72,6 +72,17 @@ pub enum Error {
         limit: f64,
         /// What to do.
         remedy: String,
+    },
+    /// Cells that do not cover the contact.
+    #[error(
+        "the contact reaches the edge of the cells at x = {half_width:.4} C, with {pressure:.1e} p0 there; \
+         give a larger [cells] half_width_m, or none"
+    )]
+    Uncovered {
+        /// Half-width of the region (C).
+        half_width: f64,
+        /// Largest pressure at its edges (p0).
+        pressure: f64,
     },
     /// A child process that failed, hung or wrote invalid output.
     #[error("{program}: {message}\n{log_tail}\n{remedy}")]

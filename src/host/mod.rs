@@ -4,7 +4,6 @@
 mod files;
 #[cfg(feature = "cli")]
 mod lock;
-#[cfg(feature = "cli")]
 mod memory;
 #[cfg(feature = "cli")]
 mod process;
@@ -18,9 +17,9 @@ mod text;
 pub(crate) use {
     files::{prepare_folder, remove_if_there, write_set, write_whole},
     lock::Lock,
-    memory::check_memory,
     process::{Stage, capture, kill_marked},
     signals::check_interrupt,
 };
 
+pub(crate) use memory::check_memory;
 pub(crate) use text::read_text;

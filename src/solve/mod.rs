@@ -7,6 +7,7 @@ mod grid;
 mod group;
 mod key;
 mod lines;
+mod on_cells;
 mod options;
 mod scene;
 mod solved;

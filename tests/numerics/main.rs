@@ -1,6 +1,7 @@
 //! The numerics: what needs the library alone.
 
 mod analytic;
+mod cells;
 mod common;
 mod eccentric;
 mod ends;

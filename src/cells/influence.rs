@@ -1,0 +1,160 @@
+//! What a cell and its images in the end faces displace, and the spectra of these kernels.
+
+use super::grid::Grid;
+use crate::kernels::deflection;
+use rayon::prelude::*;
+use realfft::RealFftPlanner;
+use rustfft::num_complex::Complex;
+use std::f64::consts::PI;
+
+/// Distances along the line that differ by less than this part of a cell are one.
+const SAME: f64 = 1e-9;
+
+/// Images of every cell in the two end faces of a body.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Images {
+    /// Half-length H of the body (C): the end faces are at y = +-H.
+    pub half: f64,
+    /// Weight of an image in the displacement: the body's share of the compliance times psi, Eq. 3's
+    /// (1 - nu^2) / E in parts of 1 / E*.
+    pub weight: f64,
+}
+
+/// Eq. 3: displacement u at the distance (`x`, `y`) from the centre of a cell of half-sides `a` and `b` under the unit
+/// pressure.
+pub(super) fn influence(x: f64, y: f64, (a, b): (f64, f64)) -> f64 {
+    deflection::rectangle(x, y, a, b) / PI
+}
+
+/// Displacements over the distances i 2a, i <= `mx`, and j 2b, j <= `my`, x fastest.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Table {
+    mx: usize,
+    my: usize,
+    values: Vec<f64>,
+}
+
+impl Table {
+    /// The displacement by the cell itself.
+    pub(super) fn direct(grid: &Grid, mx: usize, my: usize) -> Self {
+        Self::sum(grid, mx, my, &[(0.0, 1.0)])
+    }
+
+    /// The displacements by a pressure that is mirrored in y = 0 and shifted to both faces of every body: an image
+    /// in the face at H of what acts at y' is at 2 H - y'.
+    pub(super) fn images(grid: &Grid, mx: usize, my: usize, images: &[Images]) -> Self {
+        let both = |i: &Images| [(2.0 * i.half, i.weight), (-2.0 * i.half, i.weight)];
+        Self::sum(grid, mx, my, &images.iter().flat_map(both).collect::<Vec<_>>())
+    }
+
+    /// The displacement by an even pressure, whose images are shifted only.
+    pub(super) fn even(grid: &Grid, mx: usize, my: usize, images: &[Images]) -> Self {
+        let mut all = Self::direct(grid, mx, my);
+        let images = Self::images(grid, mx, my, images);
+        all.values.iter_mut().zip(images.values).for_each(|(sum, image)| *sum += image);
+        all
+    }
+
+    /// The weighted sum of the influences of cells at `shifts` along y.
+    fn sum(grid: &Grid, mx: usize, my: usize, shifts: &[(f64, f64)]) -> Self {
+        let (a, b) = grid.half_sides();
+        let place = |j: usize, shift: f64| (2.0 * b * j as f64 - shift).abs();
+        // Images of bodies that are whole numbers of cells long share most distances.
+        let mut places: Vec<f64> =
+            (0..=my).flat_map(|j| shifts.iter().map(move |s| place(j, s.0))).collect();
+        places.sort_by(f64::total_cmp);
+        places.dedup_by(|next, kept| *next - *kept < SAME * b);
+        let row = |y: &f64| -> Vec<f64> {
+            (0..=mx).map(|i| influence(2.0 * a * i as f64, *y, (a, b))).collect()
+        };
+        let rows: Vec<Vec<f64>> = places.par_iter().map(row).collect();
+        let mut values = vec![0.0; (mx + 1) * (my + 1)];
+        for (j, sum) in values.chunks_exact_mut(mx + 1).enumerate() {
+            for &(shift, weight) in shifts {
+                let y = place(j, shift);
+                let row = &rows[places.partition_point(|p| *p + SAME * b <= y).min(rows.len() - 1)];
+                sum.iter_mut().zip(row).for_each(|(sum, f)| *sum += weight * f);
+            }
+        }
+        Self { mx, my, values }
+    }
+
+    /// The transform of the table continued evenly to the periods 2 mx and 2 my, times `scale`: real, and even too. For
+    /// each wavenumber k <= mx in x those l <= my in y.
+    pub(super) fn spectrum(&self, scale: f64) -> Vec<f64> {
+        let (nx, ny) = (self.mx + 1, self.my + 1);
+        let mut along_x = self.values.clone();
+        along_x
+            .par_chunks_mut(nx)
+            .for_each_init(|| EvenTransform::new(self.mx), |t, row| t.apply(row));
+        let mut spectrum = vec![0.0; nx * ny];
+        spectrum.par_chunks_mut(ny).enumerate().for_each_init(
+            || EvenTransform::new(self.my),
+            |transform, (k, row)| {
+                row.iter_mut().enumerate().for_each(|(j, v)| *v = scale * along_x[j * nx + k]);
+                transform.apply(row);
+            },
+        );
+        spectrum
+    }
+}
+
+/// The transform of real sequences x_0 to x_m that are continued evenly to the period 2 m (DCT-I).
+pub(super) struct EvenTransform {
+    plan: std::sync::Arc<dyn realfft::RealToComplex<f64>>,
+    period: Vec<f64>,
+    spectrum: Vec<Complex<f64>>,
+    work: Vec<Complex<f64>>,
+}
+
+impl EvenTransform {
+    /// Of sequences up to x_m.
+    pub(super) fn new(m: usize) -> Self {
+        let plan = RealFftPlanner::new().plan_fft_forward(2 * m);
+        let (period, spectrum, work) =
+            (plan.make_input_vec(), plan.make_output_vec(), plan.make_scratch_vec());
+        Self { plan, period, spectrum, work }
+    }
+
+    /// The transform of `x`, in place.
+    pub(super) fn apply(&mut self, x: &mut [f64]) {
+        let m = x.len() - 1;
+        self.period[..=m].copy_from_slice(x);
+        (1..m).for_each(|i| self.period[2 * m - i] = x[i]);
+        self.plan
+            .process_with_scratch(&mut self.period, &mut self.spectrum, &mut self.work)
+            .expect("lengths are the plan's");
+        x.iter_mut().zip(&self.spectrum).for_each(|(x, s)| *x = s.re);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn images_are_where_the_faces_put_them() {
+        let grid = Grid::new(4, 6, 1.2, 3.0).unwrap();
+        let cell = grid.half_sides();
+        // One body whose ends are the contact's, one that is not a whole number of cells long.
+        let images = [Images { half: 3.0, weight: 0.7 }, Images { half: 4.17, weight: 0.6 }];
+        let table = Table::images(&grid, 4, 6, &images);
+        for (i, j, k) in [(0, 0, 0), (3, 2, 5), (1, 5, 5)] {
+            // From (x, y) = cell (0, k) to cell (i, j).
+            let (x, y, from) = (grid.x(i) - grid.x(0), grid.y(j), grid.y(k));
+            let image = |i: &Images| {
+                let face = |h: f64| influence(x, y - (2.0 * h - from), cell);
+                i.weight * (face(i.half) + face(-i.half))
+            };
+            let want: f64 = images.iter().map(image).sum();
+            // Mirrored in y = 0 it is at -from, in cell ny - 1 - k.
+            let apart = j.abs_diff(grid.ny - 1 - k);
+            let got = table.values[apart * 5 + i];
+            assert!((got / want - 1.0).abs() < 1e-13, "{got} {want}");
+        }
+        let even = Table::even(&grid, 4, 6, &images);
+        let direct = influence(grid.x(3) - grid.x(0), grid.y(4) - grid.y(0), cell);
+        let want = direct + table.values[4 * 5 + 3];
+        assert!((even.values[4 * 5 + 3] / want - 1.0).abs() < 1e-14);
+    }
+}

@@ -1,0 +1,417 @@
+//! A contact on a grid of cells, from the gap to the pressures.
+
+use super::convolution::EvenConvolution;
+use super::cosine::good_length;
+use super::ends::{FreeBody, FreeEnds};
+use super::grid::Grid;
+use super::influence::{Images, Table};
+use super::linear::Linear;
+use super::solver::{Complementarity, State};
+use super::whole::WholeConvolution;
+use crate::base::{Error, Result};
+use crate::contact::Gap;
+use crate::host::check_memory;
+use std::f64::consts::PI;
+
+/// Cells in a direction below which no coarser grid gives a start.
+const COARSEST: usize = 48;
+
+/// Residual to which a coarser grid is solved: its own error is larger.
+const START: f64 = 1e-3;
+
+/// Relative difference of gaps that counts as none.
+const SAME: f64 = 1e-12;
+
+/// Accuracy (p0) of the nodes that carry the free ends: the finest, as contacts of all lengths are few to set up.
+const ENDS_TOLERANCE: f64 = 1e-4;
+
+/// Bytes for each padded cell: spectra, transforms and the vectors of the iteration.
+const BYTES: f64 = 60.0;
+
+/// A contact of two bodies on cells.
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellProblem {
+    /// The cells.
+    pub grid: Grid,
+    /// The images of every cell, for each body that has some.
+    pub images: Vec<Images>,
+    /// The bodies whose ends are free of traction: what this adds to images of full weight. Symmetric contacts only.
+    pub free: Vec<FreeBody>,
+    /// Load (C^2 p0); (pi / 2) times the length of the contact for the Hertz pressure p0.
+    pub load: f64,
+    /// Relative residual of the iteration.
+    pub tolerance: f64,
+    /// Most applications of the compliance on the finest grid.
+    pub most_iterations: usize,
+}
+
+/// The pressures of a [`CellProblem`].
+#[derive(Debug, Clone, PartialEq)]
+pub struct CellPressure {
+    /// The cells.
+    pub grid: Grid,
+    /// Pressure of each cell (p0), x fastest.
+    pub pressure: Vec<f64>,
+    /// Approach of far points (C^2 / (2 R)).
+    pub approach: f64,
+    /// Applications of the compliance on the finest grid.
+    pub iterations: usize,
+    /// Relative residual.
+    pub residual: f64,
+}
+
+/// Whether a field is even in x and y, so that a quarter of it tells all.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Symmetry {
+    Quarter,
+    None,
+}
+
+/// What the grids of one problem share.
+struct Level<'a> {
+    gap: &'a dyn Gap,
+    symmetry: Symmetry,
+    ends: Option<&'a FreeEnds>,
+}
+
+impl CellProblem {
+    /// Solves the contact of bodies with this `gap`.
+    ///
+    /// # Errors
+    /// [`Error::Uncovered`] where the contact reaches the edge of the cells in x, [`Error::NotConverged`],
+    /// and [`Error::Memory`] before anything large is allocated.
+    pub fn solve(&self, gap: &dyn Gap) -> Result<CellPressure> {
+        let grid = &self.grid;
+        let padded = 4.0 * grid.len() as f64;
+        let remedy = "ask for fewer cells";
+        check_memory(
+            &format!("a contact on {} x {} cells", grid.nx, grid.ny),
+            BYTES * padded,
+            remedy,
+        )?;
+        let gaps = grid.sample(|x, y| gap.at(x, y));
+        let symmetry = symmetry(grid, &gaps);
+        if symmetry == Symmetry::None && !self.free.is_empty() {
+            return Err(Error::Value {
+                key: "method".into(),
+                value: "quarter-space".into(),
+                reason: "on cells it takes contacts that are symmetric in x and y only".into(),
+                remedy: "take even numbers of cells, or another method".into(),
+            });
+        }
+        let ends = (!self.free.is_empty()).then(|| {
+            FreeEnds::new(grid.half_length, 4.0 * grid.half_width, &self.free, ENDS_TOLERANCE)
+        });
+        let level = Level { gap, symmetry, ends: ends.as_ref() };
+        let state = self.solve_level(&level, gaps, *grid, self.tolerance)?;
+        let State { pressure, approach, residual, iterations } = state;
+        if residual.is_nan() || residual > self.tolerance {
+            return Err(Error::NotConverged {
+                iterations,
+                residual,
+                remedy: "take a larger [accuracy] tolerance or other cells".into(),
+            });
+        }
+        let pressure = unfold(grid, symmetry, pressure);
+        check_covered(grid, &pressure)?;
+        Ok(CellPressure { grid: *grid, pressure, approach, iterations, residual })
+    }
+
+    /// Solves on `grid`, from what a grid of half as many cells in each direction gives.
+    fn solve_level(
+        &self,
+        level: &Level,
+        gaps: Vec<f64>,
+        grid: Grid,
+        tolerance: f64,
+    ) -> Result<State> {
+        let symmetry = level.symmetry;
+        let Grid { nx, ny, .. } = grid;
+        let start = if nx.min(ny) < COARSEST {
+            vec![1.0; grid.len()]
+        } else {
+            // Even numbers stay symmetric.
+            let half = |n: usize| n.div_ceil(4) * 2;
+            let coarse = Grid { nx: half(nx), ny: half(ny), ..grid };
+            let gaps = coarse.sample(|x, y| level.gap.at(x, y));
+            let state = self.solve_level(level, gaps, coarse, tolerance.max(START))?;
+            let pressure = unfold(&coarse, symmetry, state.pressure);
+            refine(&coarse, &pressure, &grid)
+        };
+        let (a, b) = grid.half_sides();
+        let (mut displacement, mut inverse, share): (Box<dyn Linear>, _, _) = match symmetry {
+            Symmetry::Quarter => (
+                Box::new(self.even(&grid, level.ends)),
+                inverse(&grid, [nx / 2, ny / 2], 0.5),
+                0.25,
+            ),
+            Symmetry::None => (Box::new(self.whole(&grid)), inverse(&grid, [nx, ny], 1.0), 1.0),
+        };
+        let mut problem = Complementarity {
+            displacement: &mut *displacement,
+            inverse: &mut inverse,
+            gap: &fold(&grid, symmetry, gaps),
+            total: share * self.load / (4.0 * a * b),
+        };
+        Ok(problem.solve(fold(&grid, symmetry, start), tolerance, self.most_iterations))
+    }
+
+    /// Eq. 2 for an even pressure.
+    fn even(&self, grid: &Grid, ends: Option<&FreeEnds>) -> EvenConvolution {
+        let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
+        let scale = 1.0 / (mx * my) as f64;
+        let spectrum = Table::even(grid, mx, my, &self.images).spectrum(scale);
+        let ends = ends.map(|ends| ends.on_cells(grid, mx));
+        EvenConvolution::new([grid.nx / 2, grid.ny / 2], [mx, my], spectrum, ends)
+    }
+
+    /// Eq. 2 for any pressure.
+    fn whole(&self, grid: &Grid) -> WholeConvolution {
+        let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
+        let scale = 1.0 / (4 * mx * my) as f64;
+        let direct = Table::direct(grid, mx, my).spectrum(scale);
+        let images = match self.images.is_empty() {
+            true => Vec::new(),
+            false => Table::images(grid, mx, my, &self.images).spectrum(scale),
+        };
+        WholeConvolution::new([grid.nx, grid.ny], [mx, my], direct, images)
+    }
+}
+
+/// An approximate inverse of the compliance on `nx` x `ny` cells, `part` of the grid's width and length, whose edges mirror: u = 2 p / k for waves of
+/// wavenumber k on a half-space. The longest waves are not told from those of half a period over the region's width.
+fn inverse(grid: &Grid, [nx, ny]: [usize; 2], part: f64) -> EvenConvolution {
+    let base = |half: f64| PI / (2.0 * half * part);
+    let (kx, ky) = (base(grid.half_width), base(grid.half_length));
+    let scale = 0.5 / (nx * ny) as f64;
+    let factor = |k: usize, l: usize| scale * (k as f64 * kx).hypot(l as f64 * ky).max(0.5 * kx);
+    let spectrum = (0..=nx).flat_map(|k| (0..=ny).map(move |l| factor(k, l))).collect();
+    EvenConvolution::new([nx, ny], [nx, ny], spectrum, None)
+}
+
+/// The symmetry of `values` over the grid.
+fn symmetry(grid: &Grid, values: &[f64]) -> Symmetry {
+    let Grid { nx, ny, .. } = *grid;
+    let scale = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    let same = |a: f64, b: f64| (a - b).abs() <= SAME * scale;
+    let even = nx.is_multiple_of(2)
+        && ny.is_multiple_of(2)
+        && values.chunks_exact(nx).zip(values.chunks_exact(nx).rev()).all(|(row, opposite)| {
+            let mirrored = || row.iter().zip(row.iter().rev());
+            mirrored().all(|(a, b)| same(*a, *b))
+                && row.iter().zip(opposite).all(|(a, b)| same(*a, *b))
+        });
+    if even { Symmetry::Quarter } else { Symmetry::None }
+}
+
+/// The part of a field that tells all of it.
+fn fold(grid: &Grid, symmetry: Symmetry, field: Vec<f64>) -> Vec<f64> {
+    let Grid { nx, ny, .. } = *grid;
+    match symmetry {
+        Symmetry::Quarter => {
+            field.chunks_exact(nx).skip(ny / 2).flat_map(|row| row[nx / 2..].to_vec()).collect()
+        }
+        Symmetry::None => field,
+    }
+}
+
+/// The inverse of [`fold`].
+fn unfold(grid: &Grid, symmetry: Symmetry, part: Vec<f64>) -> Vec<f64> {
+    if symmetry == Symmetry::None {
+        return part;
+    }
+    let (nx, ny) = (grid.nx / 2, grid.ny / 2);
+    let mirror = |i: usize, n: usize| if i < n { n - 1 - i } else { i - n };
+    let rows = (0..grid.ny).map(|j| &part[mirror(j, ny) * nx..][..nx]);
+    rows.flat_map(|row| (0..grid.nx).map(move |i| row[mirror(i, nx)])).collect()
+}
+
+/// The field over the cells of `coarse` at the centres of those of `fine`, bilinearly between centres.
+fn refine(coarse: &Grid, field: &[f64], fine: &Grid) -> Vec<f64> {
+    let places = |from: usize, to: usize| -> Vec<(usize, f64)> {
+        let place = |i: usize| {
+            let at =
+                ((i as f64 + 0.5) * from as f64 / to as f64 - 0.5).clamp(0.0, (from - 1) as f64);
+            let below = (at as usize).min(from - 2);
+            (below, at - below as f64)
+        };
+        (0..to).map(place).collect()
+    };
+    let (xs, ys) = (places(coarse.nx, fine.nx), places(coarse.ny, fine.ny));
+    let value = |i: usize, j: usize| field[j * coarse.nx + i];
+    let at = |&(i, s): &(usize, f64), &(j, t): &(usize, f64)| {
+        let row = |j| (1.0 - s) * value(i, j) + s * value(i + 1, j);
+        (1.0 - t) * row(j) + t * row(j + 1)
+    };
+    ys.iter().flat_map(|y| xs.iter().map(|x| at(x, y)).collect::<Vec<_>>()).collect()
+}
+
+/// Refuses a contact that reaches the edges of the cells in x, where it would go on.
+fn check_covered(grid: &Grid, pressure: &[f64]) -> Result<()> {
+    let edges = pressure.chunks_exact(grid.nx).flat_map(|row| [row[0], row[grid.nx - 1]]);
+    let largest = edges.fold(0.0, f64::max);
+    if largest > 0.0 {
+        return Err(Error::Uncovered { half_width: grid.half_width, pressure: largest });
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::influence::influence;
+    use super::*;
+    use crate::base::linear;
+    use crate::body::guilbault_psi;
+    use crate::contact::Straight;
+    use nalgebra::DMatrix;
+
+    /// A crowned cylinder, tilted and moved across.
+    struct Skew;
+
+    impl Gap for Skew {
+        fn at(&self, x: f64, y: f64) -> f64 {
+            (x - 0.1).powi(2) + 0.01 * (y + 0.3).powi(2) + 0.02 * y + 0.01 * x * y
+        }
+    }
+
+    fn problem(nx: usize, ny: usize, images: Vec<Images>) -> CellProblem {
+        let grid = Grid::new(nx, ny, 1.6, 3.0).unwrap();
+        let load = 0.5 * PI * 2.0 * grid.half_length;
+        CellProblem { grid, images, free: Vec::new(), load, tolerance: 1e-12, most_iterations: 500 }
+    }
+
+    /// One body that ends with the contact, one that goes on for a while, by Guilbault's psi.
+    fn guilbault() -> Vec<Images> {
+        [(3.0, 0.3, 0.55), (4.37, 0.2, 0.45)]
+            .map(|(half, nu, share)| Images { half, weight: share * guilbault_psi(nu) })
+            .to_vec()
+    }
+
+    /// The flexibility matrix, entry by entry: Eqs. 2 and 3, with the images where they are.
+    fn dense(problem: &CellProblem) -> DMatrix<f64> {
+        let (grid, cell) = (&problem.grid, problem.grid.half_sides());
+        let at = |cell: usize| (grid.x(cell % grid.nx), grid.y(cell / grid.nx));
+        DMatrix::from_fn(grid.len(), grid.len(), |row, column| {
+            let ((x, y), (from_x, from_y)) = (at(row), at(column));
+            let faces =
+                problem.images.iter().flat_map(|i| [(i.half, i.weight), (-i.half, i.weight)]);
+            let image = |(h, weight): (f64, f64)| {
+                weight * influence(x - from_x, y - (2.0 * h - from_y), cell)
+            };
+            influence(x - from_x, y - from_y, cell) + faces.map(image).sum::<f64>()
+        })
+    }
+
+    /// The contact by elimination on sets of cells that change until they are right.
+    fn dense_solution(problem: &CellProblem, gap: &dyn Gap) -> (Vec<f64>, f64) {
+        let matrix = dense(problem);
+        let gaps = problem.grid.sample(|x, y| gap.at(x, y));
+        let (a, b) = problem.grid.half_sides();
+        let mut set: Vec<usize> = (0..gaps.len()).collect();
+        loop {
+            let n = set.len();
+            let mut system = DMatrix::zeros(n + 1, n + 1);
+            let mut right = DMatrix::zeros(n + 1, 1);
+            for (i, &row) in set.iter().enumerate() {
+                set.iter()
+                    .enumerate()
+                    .for_each(|(j, &column)| system[(i, j)] = matrix[(row, column)]);
+                (system[(i, n)], system[(n, i)], right[i]) = (-1.0, 1.0, -gaps[row]);
+            }
+            right[n] = problem.load / (4.0 * a * b);
+            let solution = linear::solve(system, right).unwrap();
+            let mut p = vec![0.0; gaps.len()];
+            set.iter().zip(solution.iter()).for_each(|(cell, value)| p[*cell] = *value);
+            let u = &matrix * DMatrix::from_column_slice(p.len(), 1, &p);
+            let inside = |cell: &usize| match set.binary_search(cell) {
+                Ok(_) => p[*cell] > 0.0,
+                Err(_) => u[*cell] + gaps[*cell] < solution[n] - 1e-13,
+            };
+            let next: Vec<usize> = (0..gaps.len()).filter(inside).collect();
+            if next == set {
+                return (p, solution[n]);
+            }
+            set = next;
+        }
+    }
+
+    fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
+        a.iter().zip(b).fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()))
+    }
+
+    #[test]
+    fn convolutions_are_the_flexibility_matrix() {
+        for (nx, ny) in [(10, 14), (11, 7)] {
+            let problem = problem(nx, ny, guilbault());
+            let skew: Vec<f64> = (0..nx * ny).map(|i| (1.0 + (i * i) as f64).sin()).collect();
+            let mut got = vec![f64::NAN; skew.len()];
+            problem.whole(&problem.grid).apply(&skew, &mut got);
+            let want = dense(&problem) * DMatrix::from_column_slice(nx * ny, 1, &skew);
+            assert!(largest_difference(&got, want.as_slice()) < 1e-12);
+        }
+        let problem = problem(10, 14, guilbault());
+        let even = problem.grid.sample(|x, y| (1.0 + x * x + 3.0 * y * y).sin());
+        let want = dense(&problem) * DMatrix::from_column_slice(even.len(), 1, &even);
+        let want = fold(&problem.grid, Symmetry::Quarter, want.as_slice().to_vec());
+        let mut got = vec![f64::NAN; want.len()];
+        let even = fold(&problem.grid, Symmetry::Quarter, even);
+        problem.even(&problem.grid, None).apply(&even, &mut got);
+        assert!(largest_difference(&got, &want) < 1e-12);
+    }
+
+    #[test]
+    fn contacts_are_those_of_the_dense_equations() {
+        for images in [Vec::new(), guilbault()] {
+            for gap in [&Straight as &dyn Gap, &Skew] {
+                let problem = problem(18, 16, images.clone());
+                let got = problem.solve(gap).unwrap();
+                let (pressure, approach) = dense_solution(&problem, gap);
+                let off = largest_difference(&got.pressure, &pressure);
+                assert!(off < 1e-10, "{off:e} {got:?}");
+                assert!((got.approach - approach).abs() < 1e-10);
+            }
+        }
+    }
+
+    #[test]
+    fn symmetric_contacts_are_told_and_solved_alike_on_the_quarter() {
+        let problem = problem(20, 30, guilbault());
+        let gaps = |gap: &dyn Gap| problem.grid.sample(|x, y| gap.at(x, y));
+        assert_eq!(symmetry(&problem.grid, &gaps(&Straight)), Symmetry::Quarter);
+        assert_eq!(symmetry(&problem.grid, &gaps(&Skew)), Symmetry::None);
+        let [quarter, whole] = [Symmetry::Quarter, Symmetry::None].map(|symmetry| {
+            let level = Level { gap: &Straight, symmetry, ends: None };
+            let all = gaps(&Straight);
+            let state = problem.solve_level(&level, all, problem.grid, 1e-12).unwrap();
+            unfold(&problem.grid, symmetry, state.pressure)
+        });
+        assert!(largest_difference(&quarter, &whole) < 1e-10);
+    }
+
+    #[test]
+    fn coarser_grids_only_give_the_start_and_threads_change_nothing() {
+        for gap in [&Straight as &dyn Gap, &Skew] {
+            let problem = CellProblem { tolerance: 1e-10, ..problem(110, 98, guilbault()) };
+            let [one, three] = [1, 3].map(|threads| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                pool.install(|| problem.solve(gap).unwrap())
+            });
+            assert_eq!(one, three);
+            let (a, b) = problem.grid.half_sides();
+            let load = 4.0 * a * b * one.pressure.iter().sum::<f64>();
+            assert!((load / problem.load - 1.0).abs() < 1e-12);
+            assert!(one.iterations < 60, "{}", one.iterations);
+        }
+    }
+
+    #[test]
+    fn cells_that_do_not_cover_the_contact_are_refused() {
+        let mut problem = problem(40, 40, Vec::new());
+        problem.grid.half_width = 0.8;
+        let said = problem.solve(&Straight).unwrap_err().to_string();
+        assert!(
+            said.starts_with("the contact reaches the edge of the cells at x = 0.8000 C"),
+            "{said}"
+        );
+    }
+}

@@ -1,0 +1,143 @@
+//! Convolutions of fields without symmetry, with their mirror images in y.
+
+use super::convolution::LINES;
+use super::linear::Linear;
+use rayon::prelude::*;
+use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftPlanner};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x and y. One transform of p
+/// serves both: p' has the coefficient of the opposite wavenumber in y, turned by the phase of the mirror.
+pub(super) struct WholeConvolution {
+    nx: usize,
+    ny: usize,
+    /// Half the padded periods.
+    half: [usize; 2],
+    forward_x: Arc<dyn RealToComplex<f64>>,
+    backward_x: Arc<dyn ComplexToReal<f64>>,
+    forward_y: Arc<dyn Fft<f64>>,
+    backward_y: Arc<dyn Fft<f64>>,
+    /// Of K and of M, as [`super::influence::Table::spectrum`] gives them.
+    direct: Vec<f64>,
+    images: Vec<f64>,
+    /// e^(-2 pi i l (ny - 1) / period): the mirror of cell j is cell ny - 1 - j.
+    mirror: Vec<Complex<f64>>,
+    waves: Vec<Complex<f64>>,
+    filtered: Vec<Complex<f64>>,
+}
+
+impl WholeConvolution {
+    /// On `nx` x `ny` cells, padded to the periods 2 `mx` and 2 `my`. `direct` and `images` have the factors of the wavenumbers k <= mx
+    /// in x, for each of them those l <= my in y, and the scale 1 / (4 mx my) in them; `images` is empty without images.
+    pub(super) fn new(
+        [nx, ny]: [usize; 2],
+        [mx, my]: [usize; 2],
+        direct: Vec<f64>,
+        images: Vec<f64>,
+    ) -> Self {
+        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
+        let turn = |l| {
+            let turns = (l * (ny - 1)) % (2 * my);
+            Complex::from_polar(1.0, -PI * turns as f64 / my as f64)
+        };
+        let zero = Complex::default();
+        Self {
+            nx,
+            ny,
+            half: [mx, my],
+            forward_x: real.plan_fft_forward(2 * mx),
+            backward_x: real.plan_fft_inverse(2 * mx),
+            forward_y: complex.plan_fft_forward(2 * my),
+            backward_y: complex.plan_fft_inverse(2 * my),
+            direct,
+            images,
+            mirror: (0..2 * my).map(turn).collect(),
+            waves: vec![zero; ny * (mx + 1)],
+            filtered: vec![zero; (mx + 1) * ny],
+        }
+    }
+
+    /// Convolves the transform along y of wavenumber `k` in x, in place.
+    fn filter(&self, k: usize, transform: &mut [Complex<f64>]) {
+        let my = self.half[1];
+        let row = k * (my + 1)..(k + 1) * (my + 1);
+        let direct = &self.direct[row.clone()];
+        if self.images.is_empty() {
+            let (low, high) = transform.split_at_mut(my + 1);
+            low.iter_mut().zip(direct).for_each(|(v, d)| *v *= d);
+            high.iter_mut().rev().zip(&direct[1..]).for_each(|(v, d)| *v *= d);
+            return;
+        }
+        let images = &self.images[row];
+        for l in 0..=my {
+            let opposite = (2 * my - l) % (2 * my);
+            let (own, other) = (transform[l], transform[opposite]);
+            let [to_own, to_other] =
+                [(l, other), (opposite, own)].map(|(l, mirrored)| self.mirror[l] * mirrored);
+            transform[opposite] = direct[l] * other + images[l] * to_other;
+            transform[l] = direct[l] * own + images[l] * to_own;
+        }
+    }
+}
+
+impl Linear for WholeConvolution {
+    fn apply(&mut self, x: &[f64], out: &mut [f64]) {
+        let (nx, ny, [mx, my]) = (self.nx, self.ny, self.half);
+        let count = mx + 1;
+        let zero = Complex::default();
+        let mut waves = std::mem::take(&mut self.waves);
+        let mut filtered = std::mem::take(&mut self.filtered);
+        let this = &*self;
+        waves.par_chunks_mut(count).zip(x.par_chunks(nx)).for_each_init(
+            || (this.forward_x.make_input_vec(), this.forward_x.make_scratch_vec()),
+            |(line, work), (waves, x)| {
+                line[..nx].copy_from_slice(x);
+                line[nx..].fill(0.0);
+                this.forward_x
+                    .process_with_scratch(line, waves, work)
+                    .expect("lengths are the plan's");
+            },
+        );
+        filtered.par_chunks_mut(LINES * ny).enumerate().for_each_init(
+            || {
+                let (forward, backward) = (&this.forward_y, &this.backward_y);
+                let work =
+                    forward.get_inplace_scratch_len().max(backward.get_inplace_scratch_len());
+                (vec![zero; 2 * my], vec![zero; work])
+            },
+            |(line, work), (block, filtered)| {
+                for (k, filtered) in (block * LINES..).zip(filtered.chunks_exact_mut(ny)) {
+                    (0..ny).for_each(|j| line[j] = waves[j * count + k]);
+                    line[ny..].fill(zero);
+                    this.forward_y.process_with_scratch(line, work);
+                    this.filter(k, line);
+                    this.backward_y.process_with_scratch(line, work);
+                    filtered.copy_from_slice(&line[..ny]);
+                }
+            },
+        );
+        out.par_chunks_mut(LINES * nx).enumerate().for_each_init(
+            || {
+                let backward = &this.backward_x;
+                let vectors = (backward.make_input_vec(), backward.make_output_vec());
+                (vectors, backward.make_scratch_vec())
+            },
+            |((wave, line), work), (block, out)| {
+                for (j, out) in (block * LINES..).zip(out.chunks_exact_mut(nx)) {
+                    (0..count).for_each(|k| wave[k] = filtered[k * ny + j]);
+                    // Real by construction, but for rounding.
+                    wave[0].im = 0.0;
+                    wave[mx].im = 0.0;
+                    this.backward_x
+                        .process_with_scratch(wave, line, work)
+                        .expect("lengths are the plan's");
+                    out.copy_from_slice(&line[..nx]);
+                }
+            },
+        );
+        (self.waves, self.filtered) = (waves, filtered);
+    }
+}
