@@ -274,7 +274,7 @@ impl Resolution {
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
-    /// is negligible beyond [`PLATE_FADES`] / `half` and varies on the scale of the wavenumber
+    /// is negligible beyond `PLATE_FADES` / `half` and varies on the scale of the wavenumber
     /// across the contact, hence panels that grow from `k_min`.
     pub fn face_wavenumbers(&self, half: f64) -> Panels {
         let top = PLATE_FADES / half;

@@ -52,7 +52,7 @@ pub(super) fn plane(k: f64) -> f64 {
 
 impl<'a> LineOperator<'a> {
     /// The operator on the nodes of `axis`; `negligible` is the largest displacement that one entry
-    /// neglects in a sum over [`LineOperator::count`] wavenumbers.
+    /// neglects in a sum over `LineOperator::count` wavenumbers.
     pub fn new(compliance: &'a Compliance<'a>, axis: &'a Panels, negligible: f64) -> Self {
         Self { compliance, axis, remainders: Remainders::new(compliance, axis.len(), negligible) }
     }

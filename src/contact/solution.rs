@@ -17,7 +17,7 @@ pub struct ContactSolution {
     pub tilt: f64,
     /// Number of iterations.
     pub iterations: usize,
-    /// [`ContactSettings::spacing`] with which it converged.
+    /// [`super::ContactSettings::spacing`] with which it converged.
     pub spacing: f64,
     /// Remaining amplitude of the edge singularity (p0).
     pub residual: f64,

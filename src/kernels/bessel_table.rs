@@ -63,7 +63,7 @@ pub(super) fn to_powers<const N: usize>() -> SMatrix<f64, N, N> {
 }
 
 /// J1(s), J3(s), ..., of the first `out.len()` odd orders, s >= 0; returns J0(s). Absolute error
-/// below 1e-12 besides that of [`bessel_j_odd`].
+/// below 1e-12 besides that of `bessel_j_odd`.
 pub fn tabulated_j_odd(s: f64, out: &mut [f64]) -> f64 {
     let around = s / J_WIDTH;
     match J_ROWS.get(around as usize) {

@@ -39,7 +39,7 @@ pub struct Bench {
     pub machine: Machine,
     /// The range of the errors.
     pub range: Range,
-    /// Errors at which FEM and [`BEST`] are compared (p0).
+    /// Errors at which FEM and [`super::BEST`] are compared (p0).
     pub levels: Vec<f64>,
     /// The tolerance of the models' limit (p0).
     pub limit: f64,
