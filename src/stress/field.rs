@@ -182,7 +182,8 @@ impl<'a> Field<'a> {
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
     fn all(&self, farthest: f64) -> Arc<Waves> {
-        let level = farthest.max(1.0).log2().ceil() as i32;
+        // The points beside a place, for its slope, must not take it to another level.
+        let level = (farthest - 2.0 * STEP).max(1.0).log2().ceil() as i32;
         let mut known = self.all.lock().unwrap_or_else(|e| e.into_inner());
         if let Some((_, waves)) = known.iter().find(|(l, _)| *l == level) {
             return waves.clone();
