@@ -70,15 +70,13 @@ fn pressure_error(cells: &CellPressure, line: &SolvedScene) -> f64 {
 
 #[test]
 fn pressures_are_the_line_engines_for_every_edge_model() {
-    for (slenderness, ratio) in [(5.0, 1.0), (5.0, 0.5), (20.0, 1.0)] {
+    for (slenderness, ratio) in [(5.0, 1.0), (5.0, 0.5)] {
         for model in EdgeModel::ALL {
             let scene = scene(slenderness, ratio, 0.3, model);
             let line = SolvedScene::new(&Scene { tolerance: 1e-4, ..scene.clone() }).unwrap();
             let cells = on_cells(&scene, 256, 400, 1e-8);
-            // The half-space's pressure has no bound at the end.
-            let limit = if scene.half_length > 10.0 { 0.006 } else { 0.004 };
             let name = format!("{model}, S_l {slenderness}, L_r {ratio}");
-            small(&name, pressure_error(&cells, &line), limit);
+            small(&name, pressure_error(&cells, &line), 0.004);
         }
     }
 }
@@ -88,7 +86,7 @@ fn stresses_are_the_line_engines_for_the_published_models() {
     for model in [EdgeModel::HalfSpace, EdgeModel::Mirror, EdgeModel::Guilbault] {
         let scene = scene(HALF_LENGTH, 0.5, 0.3, model);
         let line = SolvedScene::new(&Scene { tolerance: 1e-4, ..scene.clone() }).unwrap();
-        let cells = on_cells(&scene, 128, 200, 1e-8);
+        let cells = on_cells(&scene, 256, 400, 1e-8);
         for kind in BodyKind::ALL {
             let field = scene.cell_field(kind, &cells).unwrap();
             let line = line.field(kind);

@@ -83,7 +83,7 @@ fn hanging_children_are_stopped_with_all_that_they_started() {
 fn nonsense_is_refused_and_computed_anew() {
     for (mode, wanted) in [
         ("not-finite", "curves.csv:7: 'nan' is not a finite number"),
-        ("too-few-rows", "curves.csv: the 13 points of roller along-y-0.78C are not the 20"),
+        ("too-few-rows", "curves.csv: the 43 points of roller depth-end-x1.4 are not the 50"),
         ("cut-json", "fem.json:1: is not JSON"),
         ("bad-mesh-json", "mesh.json:1: is not JSON"),
         ("lost-load", "load_error_rel = 1e-3 is more than 1e-6"),
