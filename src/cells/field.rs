@@ -125,7 +125,8 @@ mod tests {
         assert!((mirrored.yy - far.yy - 2.0 * plain.yy).abs() < 1e-12);
         // The other face's correction takes its small share here, too.
         let other = transition(8.0, z, 2.03);
-        assert!(other < 0.02 && (corrected.yy + other * mirrored.yy).abs() < 1e-12);
+        let there = field(true, None).at(x, -4.0, z).yy;
+        assert!(other < 0.02 && (corrected.yy + other * there).abs() < 1e-12);
         assert_eq!([corrected.xx, corrected.zz], [mirrored.xx, mirrored.zz]);
     }
 
