@@ -15,15 +15,6 @@ pub(super) enum FemSource {
     Live,
 }
 
-impl FemSource {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            FemSource::Recorded => "recorded",
-            FemSource::Live => "live",
-        }
-    }
-}
-
 /// The mesh of whatever runs finite elements on one.
 #[derive(Args)]
 pub(super) struct Size {

@@ -8,8 +8,10 @@ use crate::base::{Error, Result};
 use crate::case::Study;
 use crate::host::Lock;
 use crate::report::page;
-use crate::report::study_files::{Context, StudyFiles};
-use crate::study::bench::{Bench, Speedup};
+use crate::report::study_files::StudyFiles;
+use crate::report::study_summary::FemOrigin;
+use crate::report::summarise::Context;
+use crate::study::bench::{Bench, Machine, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::{Range, StudyRun};
 use clap::Args;
@@ -52,8 +54,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         &Context {
             date: &date,
             command: &command_line(),
-            fem: arguments.study.fem.name(),
-            machine: (&processor(), rayon::current_num_threads()),
+            fem: match arguments.study.fem {
+                FemSource::Recorded => FemOrigin::Recorded,
+                FemSource::Live => FemOrigin::Live,
+            },
+            machine: Machine { processor: processor(), threads: rayon::current_num_threads() },
             seconds: began.elapsed().as_secs_f64(),
             gates: &outcomes,
             speedups: &speedups,
@@ -94,13 +99,13 @@ fn speedups(options: &StudyOptions, study: &Study) -> Result<Vec<Speedup>> {
 /// The short summary for a reader.
 fn text(files: &StudyFiles, out: &Path) -> String {
     let mut text = String::new();
-    for line in files.summary["verdict"].as_array().into_iter().flatten() {
-        text.push_str(line.as_str().unwrap_or_default());
+    for line in &files.summary.verdict {
+        text.push_str(line);
         text.push('\n');
     }
-    for line in files.summary["not_done"].as_array().into_iter().flatten() {
+    for line in &files.summary.not_done {
         text.push_str("note: ");
-        text.push_str(line.as_str().unwrap_or_default());
+        text.push_str(line);
         text.push('\n');
     }
     text + &format!("wrote report.html, report.md, tables and plots into {}\n", out.display())

@@ -90,7 +90,7 @@ pub fn junit(outcomes: &[Outcome]) -> String {
          failures=\"{failed}\" errors=\"0\">\n"
     );
     for o in outcomes {
-        let (name, class) = (escape(&format!("{}: {}", o.kind, o.name)), escape(&o.method));
+        let (name, class) = (escape(&format!("{}: {}", o.kind.name(), o.name)), escape(&o.method));
         let state = format!(
             "value {}, limit {}, {} compared; {}",
             number(o.value),
@@ -139,12 +139,13 @@ fn escape(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::gate::Kind;
 
     fn outcomes() -> Vec<Outcome> {
         let good = Outcome {
             name: "pressure, RMS".to_string(),
             method: "quarter-space".to_string(),
-            kind: "limit",
+            kind: Kind::Limit,
             passed: true,
             value: Some(0.00123),
             limit: 0.005,

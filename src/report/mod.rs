@@ -2,12 +2,15 @@
 
 pub mod bench;
 pub mod draw;
+pub mod effects_text;
 pub mod field;
 pub mod gates;
 pub mod page;
 pub mod plots;
 pub mod solution;
 pub mod study_files;
+pub mod study_summary;
+pub mod summarise;
 pub mod sweep;
 pub mod table;
 pub mod verdict;

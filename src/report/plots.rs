@@ -1,9 +1,10 @@
 //! The plots of a study, from the files of its run.
 
 use super::draw::{Bar, Figure, Look, Marker, Note, Panel, Rule, Series, Shade, look};
+use super::effects_text::{TOLD, label};
 use super::study_files::StudyFiles;
 use super::table::Table;
-use crate::study::effects::responses;
+use crate::study::response::Response;
 use std::collections::BTreeMap;
 
 /// Names of the quantities with their symbols, for axes.
@@ -115,7 +116,7 @@ impl<'a> Case<'a> {
 
     /// Up to this distance from the roller's edge nothing is compared (C).
     fn excluded(&self) -> f64 {
-        self.files.summary["range"]["stress_c"].as_f64().unwrap_or(0.0)
+        self.files.summary.range.stress_c
     }
 
     /// The part of an axis that is not compared; the curve meets the edge at its value `edge`.
@@ -231,26 +232,19 @@ impl<'a> Case<'a> {
     }
 }
 
-/// A response in words.
-fn label(response: &str) -> String {
-    let found = responses().into_iter().find(|r| r.name == response);
-    found.map_or_else(|| response.to_string(), |r| r.label)
-}
-
 /// Rows of `effects.csv` of one method and response.
 struct EffectRows<'a> {
     look: Look,
     table: &'a Table,
     rows: Vec<&'a Vec<String>>,
-    unit: &'a str,
+    unit: &'static str,
 }
 
 impl<'a> EffectRows<'a> {
-    fn of(files: &'a StudyFiles, method: &str, response: &str) -> Option<Self> {
+    fn of(files: &'a StudyFiles, method: &str, response: Response) -> Option<Self> {
         let table = &files.effects;
-        let rows = rows(table, &[("method", method), ("response", response)]);
-        let unit = table.text(rows.first()?, "unit");
-        Some(Self { look: look(method), table, rows, unit })
+        let rows = rows(table, &[("method", method), ("response", &response.name())]);
+        (!rows.is_empty()).then(|| Self { look: look(method), table, rows, unit: response.unit() })
     }
 
     fn number(&self, row: &[String], name: &str) -> f64 {
@@ -262,7 +256,7 @@ impl<'a> EffectRows<'a> {
         [(get("me"), "ME".to_string()), (get("sme"), "SME".to_string())]
     }
 
-    fn half_normal(&self, response: &str) -> Panel {
+    fn half_normal(&self, response: Response) -> Panel {
         let points: Vec<(f64, f64)> = self
             .rows
             .iter()
@@ -295,7 +289,7 @@ impl<'a> EffectRows<'a> {
         }
     }
 
-    fn pareto(&self, response: &str) -> Panel {
+    fn pareto(&self, response: Response) -> Panel {
         let mut bars: Vec<Bar> = self
             .rows
             .iter()
@@ -333,10 +327,9 @@ fn ascending<'a>(texts: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
 
 /// Interaction plots of a response: its mean over the corners at each pair of levels of two factors, all in the
 /// same limits.
-fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> {
-    let factors = files.summary["factors"].as_array().into_iter().flatten();
-    let names: Vec<&str> = factors.filter_map(|f| f["name"].as_str()).collect();
-    let unit = EffectRows::of(files, method, response).map_or("", |e| e.unit);
+fn interactions(files: &StudyFiles, method: &str, response: Response) -> Vec<Panel> {
+    let names: Vec<&str> = files.summary.factors.iter().map(|f| f.name.name()).collect();
+    let unit = response.unit();
     let pairs =
         names.iter().enumerate().flat_map(|(i, a)| names[i + 1..].iter().map(move |b| (a, b)));
     let mut panels: Vec<Panel> = pairs
@@ -354,11 +347,12 @@ fn interactions(files: &StudyFiles, method: &str, response: &str) -> Vec<Panel> 
 }
 
 /// Means of a response over the first factor's levels, a line for each level of the second.
-fn interaction(study: &Table, method: &str, response: &str, [a, b]: [&str; 2]) -> Panel {
+fn interaction(study: &Table, method: &str, response: Response, [a, b]: [&str; 2]) -> Panel {
+    let column = response.name();
     // Texts as keys: the levels of one factor are printed alike in every row.
     let mut values: BTreeMap<(&str, &str), Vec<f64>> = BTreeMap::new();
     for row in rows(study, &[("source", method), ("role", "corner")]) {
-        if let Some(value) = study.number(row, response) {
+        if let Some(value) = study.number(row, &column) {
             let key = (study.text(row, b), study.text(row, a));
             values.entry(key).or_default().push(value);
         }
@@ -430,10 +424,6 @@ fn time_and_error(files: &StudyFiles) -> Figure {
     }
 }
 
-/// A response's half-normal plot, Pareto chart and interactions are shown for these.
-pub const SHOWN_RESPONSES: [&str; 4] =
-    ["pressure_rms", "stress_rms", "von_mises_max", "log10_speedup"];
-
 /// All figures of a run by name.
 fn figures(files: &StudyFiles) -> Vec<(String, Figure)> {
     let mut plots: Vec<(String, Figure)> = Vec::new();
@@ -476,12 +466,9 @@ pub fn named(files: &StudyFiles, name: &str) -> Option<String> {
 /// Half-normal, Pareto and interaction plots of each method.
 fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
     let mut plots = Vec::new();
-    let methods = files.summary["methods"].as_array().cloned().unwrap_or_default();
-    for method in methods.iter().filter_map(|m| m.as_str()) {
-        let of: Vec<(&str, EffectRows)> = SHOWN_RESPONSES
-            .iter()
-            .filter_map(|r| Some((*r, EffectRows::of(files, method, r)?)))
-            .collect();
+    for method in files.summary.methods.iter().map(|m| m.name()) {
+        let of: Vec<(Response, EffectRows)> =
+            TOLD.iter().filter_map(|r| Some((*r, EffectRows::of(files, method, *r)?))).collect();
         if of.is_empty() {
             continue;
         }
@@ -497,7 +484,7 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             format!("half-normal-{method}"),
             figure(
                 format!("{method}: half-normal plot of the effects"),
-                of.iter().map(|(r, e)| e.half_normal(r)).collect(),
+                of.iter().map(|(r, e)| e.half_normal(*r)).collect(),
                 columns,
                 (380, 320),
             ),
@@ -506,7 +493,7 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             format!("pareto-{method}"),
             figure(
                 format!("{method}: effects by size"),
-                of.iter().map(|(r, e)| e.pareto(r)).collect(),
+                of.iter().map(|(r, e)| e.pareto(*r)).collect(),
                 columns,
                 (380, 300),
             ),
@@ -515,7 +502,7 @@ fn effects_figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             format!("interactions-{method}"),
             figure(
                 format!("{method}: interactions"),
-                of.iter().flat_map(|(r, _)| interactions(files, method, r)).collect(),
+                of.iter().flat_map(|(r, _)| interactions(files, method, *r)).collect(),
                 3,
                 (380, 270),
             ),

@@ -1,26 +1,24 @@
 //! The files of a study's run: tidy tables and `summary.json`. Plots, page and Markdown are made
 //! from these files alone, so whatever they show can be looked up here.
 
+use super::study_summary::{RoleName, StudySummary};
+use super::summarise::{Context, study_summary};
 use super::table::{self, Table, number, optional};
-use super::verdict;
 use crate::base::number::significant;
 use crate::base::{Error, Result};
 use crate::stress::{Critical, Curves, Quantity};
-use crate::study::bench::Speedup;
 use crate::study::effects::{self, Effects};
 use crate::study::factorial::half_normal_quantile;
-use crate::study::gate::Outcome;
-use crate::study::{BlockForm, CaseRun, MethodRun, Role, RollerForm, Source, StudyRun};
+use crate::study::response::{self, Response};
+use crate::study::{CaseRun, Engine, MethodRun, Source, StudyRun};
 use serde::Serialize;
-use serde_json::value::Serializer;
-use serde_json::{Value, json};
 use std::path::Path;
 
 /// A finished run, as its files hold it.
 #[derive(Debug, Clone)]
 pub struct StudyFiles {
     /// `summary.json`.
-    pub summary: Value,
+    pub summary: StudySummary,
     /// `study.csv`: one row for each case and source.
     pub study: Table,
     /// `curves.csv`: stresses of every source on the standard curves (Pa).
@@ -33,24 +31,6 @@ pub struct StudyFiles {
     pub errors: Table,
     /// `effects.csv`: one row for each method, response and effect.
     pub effects: Table,
-}
-
-/// What the files state about a run beyond its numbers.
-pub struct Context<'a> {
-    /// When it ran (UTC, ISO 8601).
-    pub date: &'a str,
-    /// The command.
-    pub command: &'a str,
-    /// `recorded` or `live`.
-    pub fem: &'a str,
-    /// The processor of this machine, and how many threads it runs.
-    pub machine: (&'a str, usize),
-    /// Wall-clock seconds of the whole run.
-    pub seconds: f64,
-    /// Outcomes of the gates.
-    pub gates: &'a [Outcome],
-    /// Ratios at equal error on record, where FEM did not run now.
-    pub speedups: &'a [Speedup],
 }
 
 /// Columns of a point and its stresses, as everywhere in the program.
@@ -77,10 +57,8 @@ impl StudyFiles {
     /// The tables of a run.
     pub fn of(run: &StudyRun, context: &Context) -> Self {
         let (effects, not_analysed) = effects::analyse(run);
-        let mut summary = summary(run, context, &effects, not_analysed);
-        summary["verdict"] = json!(verdict::sentences(&summary));
         Self {
-            summary,
+            summary: study_summary(run, context, &effects, &not_analysed),
             study: study_table(run),
             curves: curves_table(run),
             pressure: pressure_table(run),
@@ -122,11 +100,8 @@ impl StudyFiles {
             message,
             remedy: "give the folder that `edgeline study --out` wrote".to_string(),
         };
-        let summary: Value =
-            serde_json::from_str(&text).map_err(|e| refuse(Some(e.line()), e.to_string()))?;
-        if summary.get("study").is_none() {
-            return Err(refuse(None, "is not the summary of a study".to_string()));
-        }
+        let summary: StudySummary = serde_json::from_str(&text)
+            .map_err(|e| refuse(Some(e.line()), format!("is not the summary of a study: {e}")))?;
         let [study, curves, pressure, fem_error, errors, effects] =
             Self::TABLES.map(|name| Table::read(&folder.join(name)));
         Ok(Self {
@@ -147,14 +122,6 @@ pub fn pretty(value: &impl Serialize) -> String {
         serde_json::to_string_pretty(value).expect("names and numbers are always written");
     text.push('\n');
     text
-}
-
-fn role_name(role: &Role) -> &'static str {
-    match role {
-        Role::Corner(_) => "corner",
-        Role::Centre => "centre",
-        Role::Extra => "extra",
-    }
 }
 
 /// One row for each case and source. Errors are in p0, depths in C; `seconds` is the median of
@@ -188,8 +155,7 @@ fn study_table(run: &StudyRun) -> Table {
     ]
     .map(String::from)
     .to_vec();
-    let responses = effects::responses();
-    header.extend(responses.iter().map(|r| r.name.clone()));
+    header.extend(Response::all().map(Response::name));
     // The first range is that of pressure_max and pressure_rms.
     for c in run.range.pressure_c.iter().skip(1) {
         header.extend([format!("pressure_max_{c}C"), format!("pressure_rms_{c}C")]);
@@ -216,7 +182,7 @@ fn study_table(run: &StudyRun) -> Table {
     let mut table = Table::new(header);
     for case in &run.cases {
         for m in &case.methods {
-            let row = method_row(&table, run, case, m, &responses);
+            let row = method_row(&table, run, case, m);
             table.push(row);
         }
         let row = fem_row(&table, case);
@@ -232,12 +198,12 @@ struct Row<'a> {
 }
 
 impl<'a> Row<'a> {
-    fn new(table: &'a Table, case: &CaseRun, source: &str) -> Self {
+    fn new(table: &'a Table, case: &CaseRun, source: &Source) -> Self {
         let mut row = Self { table, cells: vec![String::new(); table.header.len()] };
         let (factors, hertz) = (case.case.factors(), case.case.hertz());
         row.set("case", &case.case.name);
-        row.set("source", source);
-        row.set("role", role_name(&case.role));
+        row.set("source", source.name());
+        row.set("role", RoleName::of(&case.role).name());
         row.set("W", &significant(factors.load, FACTOR_DIGITS));
         row.set("S_l", &significant(factors.slenderness, FACTOR_DIGITS));
         row.set("L_r", &significant(factors.length_ratio, FACTOR_DIGITS));
@@ -262,14 +228,8 @@ impl<'a> Row<'a> {
     }
 }
 
-fn method_row(
-    table: &Table,
-    run: &StudyRun,
-    case: &CaseRun,
-    m: &MethodRun,
-    responses: &[effects::Response],
-) -> Vec<String> {
-    let mut row = Row::new(table, case, m.method.name());
+fn method_row(table: &Table, run: &StudyRun, case: &CaseRun, m: &MethodRun) -> Vec<String> {
+    let mut row = Row::new(table, case, &m.method.into());
     let answer = match &m.answer {
         Ok(answer) => answer,
         Err(message) => {
@@ -287,9 +247,8 @@ fn method_row(
     row.set("p_max_x_m", &number(s.p_max_at_m[0]));
     row.set("p_max_y_m", &number(s.p_max_at_m[1]));
     row.set_critical(answer.critical, s.hertz.c_m, s.hertz.p0_pa);
-    for response in responses {
-        let value = effects::response_value(&response.name, case, m);
-        row.set(&response.name, &optional(value));
+    for response in Response::all() {
+        row.set(&response.name(), &optional(response.value(case, m)));
     }
     if let Some(summary) = &answer.summary {
         for (c, [max, rms]) in run.range.pressure_c.iter().zip(&summary.pressure).skip(1) {
@@ -312,7 +271,7 @@ fn method_row(
         row.set("threads", &all.threads.to_string());
     }
     row.set("timed_on", "this machine");
-    if let Some(ratio) = effects::speedup(case, m) {
+    if let Some(ratio) = response::speedup(case, m) {
         row.set("speedup", &number(ratio.value));
         row.set("speedup_spread", &number(ratio.plus_minus));
     }
@@ -320,7 +279,7 @@ fn method_row(
 }
 
 fn fem_row(table: &Table, case: &CaseRun) -> Vec<String> {
-    let mut row = Row::new(table, case, "fem");
+    let mut row = Row::new(table, case, &Source::from(Engine::fenicsx()));
     let reference = match &case.reference {
         Ok(reference) => reference,
         Err(message) => {
@@ -501,8 +460,8 @@ fn effects_table(run: &StudyRun, all: &[Effects]) -> Table {
             let rank = order.iter().position(|&j| j == i).expect("every effect is ranked");
             table.push(vec![
                 e.method.name().to_string(),
-                e.response.name.clone(),
-                e.response.unit.to_string(),
+                e.response.name(),
+                e.response.unit().to_string(),
                 effects::term(&run.factors, &effect.factors),
                 number(effect.value),
                 number(half_normal_quantile(rank, a.effects.len())),
@@ -517,154 +476,4 @@ fn effects_table(run: &StudyRun, all: &[Effects]) -> Table {
         }
     }
     table
-}
-
-fn summary(
-    run: &StudyRun,
-    context: &Context,
-    all_effects: &[Effects],
-    mut not_done: Vec<String>,
-) -> Value {
-    let cases: Vec<Value> = run
-        .cases
-        .iter()
-        .map(|c| {
-            let (factors, hertz) = (c.case.factors(), c.case.hertz());
-            let fem = match &c.reference {
-                Ok(r) => json!(r.provenance),
-                Err(reason) => json!({ "missing": reason }),
-            };
-            let methods: serde_json::Map<String, Value> = c
-                .methods
-                .iter()
-                .map(|m| {
-                    let value = match &m.answer {
-                        Ok(a) => {
-                            json!({ "timing": m.timing, "details": a.solution.summary.details })
-                        }
-                        Err(e) => json!({ "err": e }),
-                    };
-                    (m.method.name().to_string(), value)
-                })
-                .collect();
-            json!({
-                "name": c.case.name,
-                "role": role_name(&c.role),
-                "W": factors.load,
-                "S_l": factors.slenderness,
-                "L_r": factors.length_ratio,
-                "hertz": { "c_m": hertz.c_m, "p0_pa": hertz.p0_pa },
-                "load_n": c.case.load.force_n,
-                "tolerance": c.case.accuracy.tolerance,
-                "roller": RollerForm::serialize(&c.case.roller, Serializer).expect("plain data"),
-                "block": BlockForm::serialize(&c.case.block, Serializer).expect("plain data"),
-                "fem": fem,
-                "methods": methods,
-            })
-        })
-        .collect();
-    for c in &run.cases {
-        if let Err(reason) = &c.reference {
-            not_done.push(format!("{} is not compared with FEM: {reason}", c.case.name));
-        }
-        for m in &c.methods {
-            if let Err(message) = &m.answer {
-                not_done.push(format!("{} by {} failed: {message}", c.case.name, m.method));
-            }
-        }
-    }
-    let told: Vec<Value> = all_effects
-        .iter()
-        .filter(|e| effects::TOLD.contains(&e.response.name.as_str()))
-        .map(|e| {
-            json!({
-                "method": e.method,
-                "response": e.response.name,
-                "text": effects::words(run, e),
-            })
-        })
-        .collect();
-    json!({
-        "program": { "name": env!("CARGO_PKG_NAME"), "version": env!("CARGO_PKG_VERSION") },
-        "study": run.study,
-        "date": context.date,
-        "command": context.command,
-        "fem": context.fem,
-        "machine": { "processor": context.machine.0, "threads": context.machine.1 },
-        "seconds": context.seconds,
-        "methods": run.methods,
-        "range": run.range,
-        "factors": run.factors,
-        "contact_problems_solved": run.solves,
-        "method_summary": method_summary(run, context),
-        "fem_error": fem_error(run),
-        "gates_hold": !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
-        "gates": context.gates,
-        "effects_in_words": told,
-        "speedups": context.speedups,
-        "not_done": not_done,
-        "cases": cases,
-    })
-}
-
-/// The largest error that FEM states of itself over the range of the comparison (p0).
-fn fem_error(run: &StudyRun) -> Value {
-    let summaries = || {
-        let methods = run.cases.iter().flat_map(|c| &c.methods);
-        methods.filter_map(|m| m.answer.as_ref().ok()?.summary.as_ref())
-    };
-    json!({
-        "pressure": summaries().filter_map(|s| s.ref_error_pressure).reduce(f64::max),
-        "stress": summaries().filter_map(|s| s.ref_error_stress).reduce(f64::max),
-    })
-}
-
-/// Lowest and highest ratio of FEM's time to the method's, from their decimal logarithms; null
-/// where there is none.
-fn speedup(decades: &mut dyn Iterator<Item = f64>) -> Value {
-    let range = decades.map(|d| (d, d)).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-    range.map_or(
-        Value::Null,
-        |(low, high)| json!({ "low": 10f64.powf(low), "high": 10f64.powf(high) }),
-    )
-}
-
-/// The worst of each method over all cases, for the head of a report.
-fn method_summary(run: &StudyRun, context: &Context) -> Vec<Value> {
-    let worst = |values: &mut dyn Iterator<Item = f64>| values.reduce(f64::max);
-    run.methods
-        .iter()
-        .map(|&method| {
-            let runs = || {
-                run.cases.iter().flat_map(move |c| {
-                    c.methods.iter().filter(move |m| m.method == method).map(move |m| (c, m))
-                })
-            };
-            let response = |name: &str| {
-                worst(&mut runs().filter_map(|(c, m)| effects::response_value(name, c, m)))
-            };
-            let gates: Vec<&Outcome> =
-                context.gates.iter().filter(|g| g.method == method.name()).collect();
-            json!({
-                "method": method,
-                "cases": runs().count(),
-                "failed": runs().filter(|(_, m)| m.answer.is_err()).count(),
-                "compared": runs().filter(|(_, m)| {
-                    m.answer.as_ref().is_ok_and(|a| a.summary.is_some())
-                }).count(),
-                "pressure_rms": response("pressure_rms"),
-                "pressure_max": response("pressure_max"),
-                "stress_rms": response("stress_rms"),
-                "stress_max": response("stress_max"),
-                "von_mises_rms": response("von_mises_rms"),
-                "von_mises_max": response("von_mises_max"),
-                "seconds": worst(&mut runs().filter_map(|(_, m)| Some(m.timing.first()?.median_s))),
-                "speedup": speedup(&mut runs().filter_map(|(c, m)| {
-                    effects::response_value("log10_speedup", c, m)
-                })),
-                "gates": gates.len(),
-                "gates_passed": gates.iter().filter(|g| g.passed).count(),
-            })
-        })
-        .collect()
 }

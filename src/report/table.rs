@@ -2,6 +2,7 @@
 
 use crate::base::{Error, Result};
 use crate::host::{check_memory, read_text};
+use serde_json::{Value, json};
 use std::path::Path;
 
 /// A CSV table: a header and rows of the same width.
@@ -38,6 +39,11 @@ impl Table {
     /// The cell as a number; `None` where it is empty or is none.
     pub fn number(&self, row: &[String], name: &str) -> Option<f64> {
         self.text(row, name).parse().ok()
+    }
+
+    /// The cell as a JSON number; null where it is empty or is none.
+    pub fn json(&self, row: &[String], name: &str) -> Value {
+        self.number(row, name).map_or(Value::Null, |v| json!(v))
     }
 
     /// The table as CSV.

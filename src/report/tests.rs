@@ -1,7 +1,12 @@
 //! What a study's run leaves behind, made from synthetic solutions.
 
-use super::study_files::{Context, StudyFiles};
+use super::study_files::StudyFiles;
+use super::study_summary::{CaseMethod, FemOrigin};
+use super::summarise::Context;
 use super::*;
+use crate::body::EdgeModel;
+use crate::solve::{Avoided, WorkSummary};
+use crate::study::bench::Machine;
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::synthetic::{self, Twist};
 
@@ -13,8 +18,8 @@ fn files(twist: Twist) -> StudyFiles {
     let context = Context {
         date: "2026-01-01T00:00:00Z",
         command: "edgeline study --out out",
-        fem: "recorded",
-        machine: ("a made-up processor", 2),
+        fem: FemOrigin::Recorded,
+        machine: Machine { processor: "a made-up processor".to_string(), threads: 2 },
         seconds: 1.5,
         gates: &outcomes,
         speedups: &[],
@@ -31,7 +36,7 @@ fn a_run_is_read_back_as_it_was_written() {
     assert_eq!(read.tables().map(|t| t.rows.len()), written.tables().map(|t| t.rows.len()));
     assert_eq!(read.tables(), written.tables());
     assert_eq!(read.summary, written.summary);
-    assert_eq!(read.summary["cases"].as_array().map(Vec::len), Some(9));
+    assert_eq!(read.summary.cases.len(), 9);
     // Nine cases (eight corners and the centre), four methods and FEM.
     assert_eq!(read.study.rows.len(), 45);
     assert!(StudyFiles::read(&folder.path().join("nowhere")).is_err());
@@ -39,7 +44,7 @@ fn a_run_is_read_back_as_it_was_written() {
 
 #[test]
 fn a_failed_case_is_a_row_with_its_reason() {
-    let run = files(Twist::Unsolved(crate::body::EdgeModel::Mirror));
+    let run = files(Twist::Unsolved(EdgeModel::Mirror));
     let of_mirror: Vec<_> =
         run.study.rows.iter().filter(|r| run.study.text(r, "source") == "mirror").collect();
     assert_eq!(of_mirror.len(), 9);
@@ -47,7 +52,7 @@ fn a_failed_case_is_a_row_with_its_reason() {
         assert!(run.study.text(row, "err").contains("did not converge"));
         assert_eq!(run.study.text(row, "stress_rms"), "");
     }
-    let text = run.summary["not_done"].to_string();
+    let text = run.summary.not_done.join("\n");
     assert!(text.contains("by mirror failed"), "{text}");
 }
 
@@ -75,26 +80,36 @@ fn plots_are_well_formed_and_hold_every_source() {
 fn work_done_and_avoided_is_shown_by_reason() {
     let mut run = files(Twist::None);
     assert!(!page::html(&run).unwrap().contains("id=\"work\""));
-    let work = serde_json::json!({
-        "done": 1200,
-        "avoided": { "symmetry in x": 1200, "image too weak": 600 },
-    });
-    for case in run.summary["cases"].as_array_mut().unwrap() {
-        case["methods"]["quarter-space"]["details"]["work"] = work.clone();
-        case["methods"]["mirror"]["details"]["work"] =
-            serde_json::json!({ "done": 7, "avoided": {} });
+    let work = |done, sources, ends| {
+        Some(WorkSummary { done, avoided: Avoided { sources, ends, faded: 0, alike: 0 } })
+    };
+    for case in &mut run.summary.cases {
+        for (method, answer) in &mut case.methods {
+            let CaseMethod::Answer { details, .. } = answer else { panic!("all are solved") };
+            details.work = match method {
+                EdgeModel::QuarterSpace => work(1200, 1200, 600),
+                EdgeModel::Mirror => work(7, 0, 0),
+                _ => None,
+            };
+        }
     }
     let html = page::html(&run).unwrap();
     let table = html.split("id=\"work\"").nth(1).unwrap().split("</table>").next().unwrap();
-    assert!(table.contains("avoided:<br>symmetry in x"), "{table}");
+    assert!(table.contains("avoided:<br>sources beyond a wave"), "{table}");
     // Five problems by two models: cases that differ in load share their rows.
     assert_eq!(table.matches("<tr><td").count(), 10, "{table}");
     let row = "<td class=\"text\">quarter-space</td><td>1200</td><td>1800 (60 %)</td>\
-               <td>1200</td><td>600</td>";
+               <td>1200</td><td>600</td><td>0</td><td>0</td>";
     assert_eq!(table.matches(row).count(), 5, "{table}");
-    assert_eq!(table.matches("<td>7</td><td>0 (0 %)</td><td>0</td><td>0</td>").count(), 5);
+    assert_eq!(
+        table.matches("<td>7</td><td>0 (0 %)</td><td>0</td><td>0</td><td>0</td><td>0</td>").count(),
+        5
+    );
     let markdown = page::markdown(&run).unwrap();
-    assert!(markdown.contains("| quarter-space | 1200 | 1800 (60 %) | 1200 | 600 |"), "{markdown}");
+    assert!(
+        markdown.contains("| quarter-space | 1200 | 1800 (60 %) | 1200 | 600 | 0 | 0 |"),
+        "{markdown}"
+    );
 }
 
 #[test]

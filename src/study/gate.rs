@@ -4,6 +4,7 @@
 //! A gate takes the worst of all numbers that it selects. One that selects nothing fails: a filter
 //! with a slip in it must not look like a pass.
 
+use super::response::Response;
 use super::run::{Role, StudyRun};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -124,15 +125,38 @@ impl Number {
     }
 }
 
+/// What a gate holds to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// An absolute limit.
+    Limit,
+    /// The accepted numbers.
+    Drift,
+    /// Answers to all that was asked.
+    Coverage,
+}
+
+impl Kind {
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Limit => "limit",
+            Kind::Drift => "drift",
+            Kind::Coverage => "coverage",
+        }
+    }
+}
+
 /// The outcome of one gate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Outcome {
     /// What it is called.
     pub name: String,
     /// The method, or `all`.
     pub method: String,
-    /// `limit`, `drift` or `coverage`.
-    pub kind: &'static str,
+    /// What it holds to.
+    pub kind: Kind,
     /// Whether it holds.
     pub passed: bool,
     /// Its worst value, where there is one.
@@ -248,11 +272,11 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
                     value,
                 }));
             };
-            let response = |name| super::effects::response_value(name, case, m);
-            whole("critical_value", response("critical_value").map(f64::abs));
-            whole("critical_depth", response("critical_depth").map(f64::abs));
+            let response = |response: Response| response.value(case, m);
+            whole("critical_value", response(Response::CriticalValue).map(f64::abs));
+            whole("critical_depth", response(Response::CriticalDepth).map(f64::abs));
             whole("load", Some(answer.solution.summary.load_error_rel));
-            whole("speedup", response("log10_speedup").map(|d| 10f64.powf(d)));
+            whole("speedup", response(Response::Log10Speedup).map(|d| 10f64.powf(d)));
         }
     }
     all
@@ -304,7 +328,7 @@ impl Gate {
         Outcome {
             name: self.name.clone(),
             method: self.method.name().to_string(),
-            kind: "limit",
+            kind: Kind::Limit,
             passed: holds,
             value,
             limit: self.limit,
@@ -452,7 +476,7 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
         outcomes.push(Outcome {
             name: "any gate".to_string(),
             method: "all".to_string(),
-            kind: "coverage",
+            kind: Kind::Coverage,
             passed: false,
             value: None,
             limit: 1.0,
@@ -473,7 +497,7 @@ fn coverage(run: &StudyRun) -> Outcome {
     Outcome {
         name: "every case of the design has a FEM answer".to_string(),
         method: "all".to_string(),
-        kind: "coverage",
+        kind: Kind::Coverage,
         passed: missing.is_empty() && compared > 0,
         value: Some((design.len() - missing.len()) as f64),
         limit: design.len() as f64,
@@ -525,7 +549,7 @@ fn drift_gate(
     Outcome {
         name: "drift from the accepted numbers".to_string(),
         method: method.name().to_string(),
-        kind: "drift",
+        kind: Kind::Drift,
         passed: compared > 0 && beyond.is_empty(),
         value: Some(largest),
         limit,

@@ -14,6 +14,7 @@ mod groups;
 pub mod live;
 mod models;
 pub mod reference;
+pub mod response;
 mod run;
 mod source;
 pub mod sweep;
@@ -23,7 +24,8 @@ pub use case_form::{BlockForm, RollerForm};
 pub use errors::{ErrorRow, Range};
 pub use models::{Cold, Models, Solver};
 pub use run::{
-    Answer, CaseRun, Factor, MethodRun, Provenance, Reference, Role, Setup, StudyRun, Timed, run,
+    Answer, CaseRun, Factor, FactorName, MethodRun, Provenance, Reference, Role, Setup, StudyRun,
+    Timed, run,
 };
 pub use source::{Engine, Source};
 

@@ -9,7 +9,7 @@ use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::solve::Solution;
 use crate::stress::{Critical, Curves};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -25,7 +25,7 @@ pub struct Reference {
 }
 
 /// Where a FEM answer comes from. What a record does not state is `None`.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Whether it was computed in this run, on this machine. Only then may its time be divided by
     /// a time of this run.
@@ -52,7 +52,7 @@ pub struct Provenance {
 }
 
 /// Times of FEM and of the models that solved the same case in one run on one machine.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Timed {
     /// When it was.
     pub date: String,
@@ -126,14 +126,49 @@ pub struct CaseRun {
 }
 
 /// A factor of the design that has two levels.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// `W`, `S_l` or `L_r`.
-    pub name: &'static str,
+    /// Which one.
+    pub name: FactorName,
     /// Its low level.
     pub low: f64,
     /// Its high level.
     pub high: f64,
+}
+
+/// A factor of the study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub enum FactorName {
+    /// The load factor W.
+    #[serde(rename = "W")]
+    Load,
+    /// The slenderness S_l.
+    #[serde(rename = "S_l")]
+    Slenderness,
+    /// The length ratio L_r.
+    #[serde(rename = "L_r")]
+    LengthRatio,
+}
+
+impl FactorName {
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            FactorName::Load => "W",
+            FactorName::Slenderness => "S_l",
+            FactorName::LengthRatio => "L_r",
+        }
+    }
+
+    /// Its value for a case.
+    fn of(self, case: &Case) -> f64 {
+        let factors = case.factors();
+        match self {
+            FactorName::Load => factors.load,
+            FactorName::Slenderness => factors.slenderness,
+            FactorName::LengthRatio => factors.length_ratio,
+        }
+    }
 }
 
 /// A study that has been run.
@@ -169,9 +204,9 @@ pub struct Setup<'a> {
 /// factor; with three or more levels of any there is no two-level design.
 fn design(study: &Study) -> Vec<Factor> {
     let levels = [
-        ("W", &study.load_levels),
-        ("S_l", &study.slenderness_levels),
-        ("L_r", &study.length_ratio_levels),
+        (FactorName::Load, &study.load_levels),
+        (FactorName::Slenderness, &study.slenderness_levels),
+        (FactorName::LengthRatio, &study.length_ratio_levels),
     ];
     if levels.iter().any(|(_, l)| l.len() > 2) {
         return Vec::new();
@@ -183,21 +218,11 @@ fn design(study: &Study) -> Vec<Factor> {
         .collect()
 }
 
-/// Value of the factor called `name` for a case.
-fn factor_value(case: &Case, name: &str) -> f64 {
-    let factors = case.factors();
-    match name {
-        "W" => factors.load,
-        "S_l" => factors.slenderness,
-        _ => factors.length_ratio,
-    }
-}
-
 fn role(case: &Case, study: &Study, factors: &[Factor]) -> Role {
     if study.corners.iter().any(|c| c.name == case.name) {
         let code = |f: &Factor| {
             let middle = (f.low * f.high).sqrt();
-            if factor_value(case, f.name) > middle { 1 } else { -1 }
+            if f.name.of(case) > middle { 1 } else { -1 }
         };
         Role::Corner(factors.iter().map(code).collect())
     } else if study.centre.as_ref().is_some_and(|c| c.name == case.name) {

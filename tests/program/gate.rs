@@ -64,13 +64,14 @@ fn flipped_shears_are_named() {
     };
     let outcomes = failed(&run_with(&sign), &accepted);
     for method in METHODS {
-        let drift = outcomes.iter().find(|o| o.kind == "drift" && o.method == method.name());
+        let drift =
+            outcomes.iter().find(|o| o.kind == gate::Kind::Drift && o.method == method.name());
         let named =
             |o: &Outcome| ["sigma_xz", "sigma_yz"].iter().any(|shear| o.note.contains(shear));
         assert!(drift.is_some_and(named), "{method}: {outcomes:?}");
     }
     // The limits alone notice it too, without accepted numbers.
-    assert!(outcomes.iter().any(|o| o.kind == "limit" && o.method == "quarter-space"));
+    assert!(outcomes.iter().any(|o| o.kind == gate::Kind::Limit && o.method == "quarter-space"));
 }
 
 /// Runs `edgeline gate` with the table of the job's summary in the same folder.

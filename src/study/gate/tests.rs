@@ -29,7 +29,7 @@ fn gates() -> Gates {
 
 fn failed(outcomes: &[Outcome]) -> Vec<String> {
     let failed = outcomes.iter().filter(|o| !o.passed);
-    failed.map(|o| format!("{} {} {}: {}", o.kind, o.method, o.name, o.note)).collect()
+    failed.map(|o| format!("{} {} {}: {}", o.kind.name(), o.method, o.name, o.note)).collect()
 }
 
 #[test]

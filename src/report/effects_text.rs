@@ -1,0 +1,146 @@
+//! What the factors of a study do to the errors, in words.
+
+use super::study_summary::EffectText;
+use crate::base::number::{signed, significant};
+use crate::body::EdgeModel;
+use crate::stress::Quantity;
+use crate::study::StudyRun;
+use crate::study::effects::{Effects, NotAnalysed, term};
+use crate::study::factorial::{Effect, Lenth, Verdict};
+use crate::study::response::{Measure, Of, Response};
+
+/// The responses that the report puts into words and plots.
+pub const TOLD: [Response; 4] =
+    [Response::PRESSURE_RMS, Response::STRESS_RMS, Response::VON_MISES_MAX, Response::Log10Speedup];
+
+/// What a response is.
+pub fn label(response: Response) -> String {
+    match response {
+        Response::Error(of, by) => {
+            let by = match by {
+                Measure::Rms => "RMS error",
+                Measure::Max => "largest error",
+            };
+            let of = match of {
+                Of::Pressure => "the pressure",
+                Of::Stress => "the six stresses",
+                Of::Quantity(Quantity::VonMises) => "the von Mises stress",
+                Of::Quantity(Quantity::TauMax) => "the largest shear stress",
+                Of::Quantity(component) => component.name(),
+            };
+            format!("{by} of {of}")
+        }
+        Response::CriticalValue => "error of the largest von Mises stress".to_string(),
+        Response::CriticalDepth => "error of its depth".to_string(),
+        Response::Log10Speedup => "log10 of FEM time over method time".to_string(),
+    }
+}
+
+/// Why there is no analysis.
+pub fn not_analysed(reason: &NotAnalysed) -> String {
+    match reason {
+        NotAnalysed::NoDesign => "Effects: the study is no two-level design (no factor has two \
+                                  levels, or one has more)."
+            .to_string(),
+        NotAnalysed::NothingCompared => {
+            "Effects: no corner or not every one could be compared.".to_string()
+        }
+        NotAnalysed::Response(response, methods) => {
+            let methods: Vec<&str> = methods.iter().copied().map(EdgeModel::name).collect();
+            format!(
+                "Effects on {} ({}): it has no value at one corner or more.",
+                response.name(),
+                methods.join(", ")
+            )
+        }
+    }
+}
+
+/// What the effects on [`TOLD`] say.
+pub fn told(run: &StudyRun, effects: &[Effects]) -> Vec<EffectText> {
+    let told = effects.iter().filter(|e| TOLD.contains(&e.response));
+    told.map(|e| EffectText { method: e.method, response: e.response, text: words(run, e) })
+        .collect()
+}
+
+/// What matters for one response.
+fn words(run: &StudyRun, effects: &Effects) -> String {
+    let (response, analysis) = (effects.response, &effects.analysis);
+    let unit = response.unit();
+    let mut text = format!(
+        "{}: the {} is {} {unit} on average over the {} corners",
+        effects.method,
+        label(response),
+        significant(analysis.mean, 3),
+        effects.corners.len(),
+    );
+    let mut ranked: Vec<_> = analysis.effects.iter().collect();
+    ranked.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
+    let describe = |e: &Effect| {
+        let name = term(&run.factors, &e.factors);
+        match e.factors[..] {
+            [i] => {
+                let f = &run.factors[i];
+                format!("{name} ({} {unit} from {} to {})", signed(e.value, 3), f.low, f.high)
+            }
+            _ => format!("{name} ({} {unit})", signed(e.value, 3)),
+        }
+    };
+    let Some(lenth) = analysis.lenth else {
+        text.push_str(&format!(
+            "; the largest effect is that of {}, with too few effects for Lenth's limits.",
+            describe(ranked[0])
+        ));
+        return text;
+    };
+    text.push_str(&outstanding(&ranked, &lenth, &describe));
+    if let Some(curvature) = analysis.curvature {
+        let (beyond, so) = if curvature.abs() > lenth.me {
+            ("beyond", "the response bends between the levels")
+        } else {
+            ("within", "no sign that the response bends between the levels")
+        };
+        text.push_str(&format!(
+            ". The corners' mean less the centre point is {} {unit}, {beyond} the \
+             margin of error: {so}",
+            signed(curvature, 2)
+        ));
+    }
+    text.push('.');
+    text
+}
+
+/// Which of the effects, largest first, stand out by Lenth's limits.
+fn outstanding(ranked: &[&Effect], lenth: &Lenth, describe: &dyn Fn(&Effect) -> String) -> String {
+    let with = |verdict: Verdict| -> Vec<String> {
+        let chosen = ranked.iter().filter(|e| lenth.verdict(e.value) == verdict);
+        chosen.map(|e| describe(e)).collect()
+    };
+    let (active, likely) = (with(Verdict::Active), with(Verdict::Likely));
+    match (active.is_empty(), likely.is_empty()) {
+        (true, true) => format!(
+            "; no effect stands out of the others by Lenth's margin of error ({}), the largest \
+             is that of {}",
+            significant(lenth.me, 2),
+            describe(ranked[0])
+        ),
+        (true, false) => format!(
+            "; beyond Lenth's margin of error ({}), though not beyond the simultaneous one, is \
+             {}",
+            significant(lenth.me, 2),
+            likely.join(" and ")
+        ),
+        (false, none_likely) => {
+            let text = format!(
+                "; beyond Lenth's simultaneous margin of error ({}): {}",
+                significant(lenth.sme, 2),
+                active.join(", ")
+            );
+            if none_likely {
+                return text;
+            }
+            let me = significant(lenth.me, 2);
+            text + &format!("; beyond the single one ({me}): {}", likely.join(", "))
+        }
+    }
+}

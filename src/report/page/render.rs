@@ -1,0 +1,123 @@
+//! The page and its Markdown from their templates.
+
+use super::{effects, errors, explorer, fem, solves, times};
+use crate::base::number::{
+    duration, duration_with_spread, fixed, rounded, significant, with_minus_signs,
+};
+use crate::base::{Error, Result};
+use crate::report::plots;
+use crate::report::study_files::StudyFiles;
+use minijinja::{Environment, context};
+
+const PAGE: &str = include_str!("page.html");
+const MARKDOWN: &str = include_str!("report.md");
+const STYLE: &str = include_str!("page.css");
+const SCRIPT: &str = include_str!("page.js");
+
+/// What holds for every study, however it comes out.
+const CAVEATS: [&str; 5] = [
+    "W, S_l and L_r are defined here as W = w / (E* R L1), S_l = L1 / (2 C) and L_r = L1 / L2; the \
+     paper names the factors, its formulas and levels are not in the text that we have.",
+    "The stress correction of guilbault is a reconstruction: the formula of its transition factor \
+     is not in the text that we have.",
+    "For L_r < 1 the pressure grows without bound towards the roller's edge. Peaks there are those \
+     of a mesh, so the surroundings of the edge are left out and the rest of the curves compared.",
+    "The models take both bodies for half-spaces with end faces and the gap for a parabola. A real \
+     roller also carries a nearly uniform tension across its diameter of the order of p0 C / (2 R).",
+    "FEM's own error is the difference of its two finest meshes: an estimate, not a bound.",
+];
+
+/// The page.
+///
+/// # Errors
+/// [`Error::File`] when the run's files lack what the page shows.
+pub fn html(files: &StudyFiles) -> Result<String> {
+    // "<" inside the data would let a name end the script element.
+    let data = explorer::data(files).to_string().replace('<', "\\u003c");
+    let time_plot = plots::named(files, "time-error").unwrap_or_default();
+    render("page.html", PAGE, files, context! { data, time_plot, css => STYLE, js => SCRIPT })
+}
+
+/// The same tables as Markdown.
+///
+/// # Errors
+/// As [`html`].
+pub fn markdown(files: &StudyFiles) -> Result<String> {
+    render("report.md", MARKDOWN, files, context! {})
+}
+
+/// Fills a template with what both forms of the page show, and with `more`.
+fn render(
+    name: &str,
+    template: &str,
+    files: &StudyFiles,
+    more: minijinja::Value,
+) -> Result<String> {
+    let mut environment = Environment::new();
+    add_filters(&mut environment);
+    let fault = |e: minijinja::Error| Error::File {
+        path: name.into(),
+        line: None,
+        message: format!("{e:#}"),
+        remedy: "run the study again with this version".to_string(),
+    };
+    environment.add_template(name, template).map_err(fault)?;
+    let base = context! {
+        s => files.summary,
+        caveats => CAVEATS,
+        error_tables => errors::tables(files),
+        times => times::rows(files),
+        any_ratio => files.study.rows.iter().any(|r| !files.study.text(r, "log10_speedup").is_empty()),
+        effects => effects::rows(files),
+        details => solves::details(files),
+        work => solves::work(files),
+        timed => fem::timed(files),
+        equal_error => fem::equal_error(files),
+        fem_versions => fem::versions(files),
+    };
+    environment
+        .get_template(name)
+        .and_then(|t| t.render(context! { ..more, ..base }))
+        .map_err(fault)
+}
+
+/// The forms in which templates write numbers.
+fn add_filters(environment: &mut Environment) {
+    let dash = || "–".to_string();
+    environment.add_filter("p0", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| with_minus_signs(&fixed(v, 4)))
+    });
+    environment
+        .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));
+    environment.add_filter("typeset", |text: String| typeset(&text));
+    environment.add_filter("seconds", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, duration)
+    });
+    environment.add_filter("with_spread", move |v: minijinja::Value, spread: minijinja::Value| {
+        match (as_number(&v), as_number(&spread)) {
+            (Some(v), Some(spread)) => duration_with_spread(v, spread),
+            (Some(v), None) => duration(v),
+            (None, _) => dash(),
+        }
+    });
+    environment.add_filter("short", move |v: minijinja::Value| {
+        as_number(&v).map_or_else(dash, |v| with_minus_signs(&significant(v, 5)))
+    });
+}
+
+/// Minus signs instead of hyphens before digits, which also keeps lines from breaking there.
+fn typeset(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    let mut before = ' ';
+    let mut rest = text.chars().peekable();
+    while let Some(c) = rest.next() {
+        let number = rest.peek().is_some_and(char::is_ascii_digit);
+        out.push(if c == '-' && number && " (e".contains(before) { '−' } else { c });
+        before = c;
+    }
+    out
+}
+
+fn as_number(value: &minijinja::Value) -> Option<f64> {
+    f64::try_from(value.clone()).ok().filter(|v| v.is_finite())
+}

@@ -1,0 +1,254 @@
+//! `summary.json` of a study: what the run states beside its tables.
+
+use crate::base::HertzScales;
+use crate::body::EdgeModel;
+use crate::case::{Block, Roller};
+use crate::solve::Details;
+use crate::study::bench::{Machine, Speedup};
+use crate::study::gate::Outcome;
+use crate::study::response::Response;
+use crate::study::timing::Timing;
+use crate::study::{BlockForm, Factor, Provenance, Range, Role, RollerForm};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Where the FEM answers of a run come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum FemOrigin {
+    /// From records.
+    Recorded,
+    /// Computed in the run.
+    Live,
+}
+
+/// The content of `summary.json`.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct StudySummary {
+    /// The program that ran it.
+    pub program: Program,
+    /// The study's name.
+    pub study: String,
+    /// When it ran (UTC, ISO 8601).
+    pub date: String,
+    /// The command.
+    pub command: String,
+    /// Where FEM's answers come from.
+    pub fem: FemOrigin,
+    /// The machine.
+    pub machine: Machine,
+    /// Wall-clock seconds of the whole run.
+    pub seconds: f64,
+    /// The models, simplest first.
+    pub methods: Vec<EdgeModel>,
+    /// The range of the errors.
+    pub range: Range,
+    /// The factors with two levels.
+    pub factors: Vec<Factor>,
+    /// Number of contact problems solved.
+    pub contact_problems_solved: usize,
+    /// The worst of each model.
+    pub method_summary: Vec<MethodSummary>,
+    /// The largest error that FEM states of itself.
+    pub fem_error: FemError,
+    /// Whether there are gates and all hold.
+    pub gates_hold: bool,
+    /// Outcomes of the gates.
+    pub gates: Vec<Outcome>,
+    /// What the effects say.
+    pub effects_in_words: Vec<EffectText>,
+    /// Ratios at equal error on record.
+    pub speedups: Vec<Speedup>,
+    /// What was left out, one sentence each.
+    pub not_done: Vec<String>,
+    /// The cases, in the study's order.
+    pub cases: Vec<CaseSummary>,
+    /// The verdict, the most important sentence first.
+    pub verdict: Vec<String>,
+}
+
+/// A program and its version.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct Program {
+    /// Its name.
+    pub name: String,
+    /// Its version.
+    pub version: String,
+}
+
+/// The worst of one model over all cases (p0), and its times (s).
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct MethodSummary {
+    /// The model.
+    pub method: EdgeModel,
+    /// Number of cases.
+    pub cases: usize,
+    /// Those without an answer.
+    pub failed: usize,
+    /// Those compared with FEM.
+    pub compared: usize,
+    /// [`Response::PRESSURE_RMS`].
+    pub pressure_rms: Option<f64>,
+    /// [`Response::PRESSURE_MAX`].
+    pub pressure_max: Option<f64>,
+    /// [`Response::STRESS_RMS`].
+    pub stress_rms: Option<f64>,
+    /// [`Response::STRESS_MAX`].
+    pub stress_max: Option<f64>,
+    /// [`Response::VON_MISES_RMS`].
+    pub von_mises_rms: Option<f64>,
+    /// [`Response::VON_MISES_MAX`].
+    pub von_mises_max: Option<f64>,
+    /// Median seconds on one thread of the slowest case.
+    pub seconds: Option<f64>,
+    /// FEM's time over the model's.
+    pub speedup: Option<Span>,
+    /// Number of gates on this model.
+    pub gates: usize,
+    /// Those that hold.
+    pub gates_passed: usize,
+}
+
+/// A lowest and a highest value.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Span {
+    /// The lowest.
+    pub low: f64,
+    /// The highest.
+    pub high: f64,
+}
+
+/// The largest error that FEM states of itself over the range of the comparison (p0).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct FemError {
+    /// Of a pressure.
+    pub pressure: Option<f64>,
+    /// Of a stress component.
+    pub stress: Option<f64>,
+}
+
+/// What the effects on one response of one model say.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct EffectText {
+    /// The model.
+    pub method: EdgeModel,
+    /// The response.
+    pub response: Response,
+    /// The text.
+    pub text: String,
+}
+
+/// One case of a run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CaseSummary {
+    /// Its name.
+    pub name: String,
+    /// Its part in the study.
+    pub role: RoleName,
+    /// W.
+    #[serde(rename = "W")]
+    pub load: f64,
+    /// S_l.
+    #[serde(rename = "S_l")]
+    pub slenderness: f64,
+    /// L_r.
+    #[serde(rename = "L_r")]
+    pub length_ratio: f64,
+    /// The scales.
+    pub hertz: HertzScales,
+    /// Load (N).
+    pub load_n: f64,
+    /// The models' tolerance (p0).
+    pub tolerance: f64,
+    /// The roller.
+    #[serde(with = "RollerForm")]
+    pub roller: Roller,
+    /// The block.
+    #[serde(with = "BlockForm")]
+    pub block: Block,
+    /// FEM's part.
+    pub fem: CaseFem,
+    /// The models' parts.
+    pub methods: BTreeMap<EdgeModel, CaseMethod>,
+}
+
+/// The part that a case plays in its study.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum RoleName {
+    /// A corner of the design.
+    Corner,
+    /// The centre point.
+    Centre,
+    /// A further case.
+    Extra,
+}
+
+/// FEM's part in a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CaseFem {
+    /// There is no answer.
+    Missing {
+        /// Why.
+        missing: String,
+    },
+    /// Where the answer comes from.
+    Answer(Box<Provenance>),
+}
+
+/// A model's part in a case.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum CaseMethod {
+    /// There is no answer.
+    Failed {
+        /// What went wrong.
+        err: String,
+    },
+    /// What the answer took.
+    Answer {
+        /// Repeated timing on one thread and on all.
+        timing: Vec<Timing>,
+        /// How it was resolved.
+        details: Box<Details>,
+    },
+}
+
+impl RoleName {
+    /// The name of a role.
+    pub fn of(role: &Role) -> Self {
+        match role {
+            Role::Corner(_) => RoleName::Corner,
+            Role::Centre => RoleName::Centre,
+            Role::Extra => RoleName::Extra,
+        }
+    }
+
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            RoleName::Corner => "corner",
+            RoleName::Centre => "centre",
+            RoleName::Extra => "extra",
+        }
+    }
+}
+
+impl CaseSummary {
+    /// Where FEM's answer comes from, if there is one.
+    pub fn provenance(&self) -> Option<&Provenance> {
+        match &self.fem {
+            CaseFem::Answer(provenance) => Some(provenance),
+            CaseFem::Missing { .. } => None,
+        }
+    }
+
+    /// How the models that have an answer were resolved.
+    pub fn details(&self) -> impl Iterator<Item = (EdgeModel, &Details)> {
+        self.methods.iter().filter_map(|(method, answer)| match answer {
+            CaseMethod::Answer { details, .. } => Some((*method, &**details)),
+            CaseMethod::Failed { .. } => None,
+        })
+    }
+}

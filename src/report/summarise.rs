@@ -1,0 +1,157 @@
+//! What a run of a study comes to: its `summary.json`.
+
+use super::effects_text;
+use super::study_summary::{
+    CaseFem, CaseMethod, CaseSummary, FemError, FemOrigin, MethodSummary, Program, RoleName, Span,
+    StudySummary,
+};
+use super::verdict;
+use crate::body::EdgeModel;
+use crate::study::bench::{Machine, Speedup};
+use crate::study::effects::{Effects, NotAnalysed};
+use crate::study::gate::Outcome;
+use crate::study::response::Response;
+use crate::study::{CaseRun, MethodRun, StudyRun};
+
+/// What the files state about a run beyond its numbers.
+pub struct Context<'a> {
+    /// When it ran (UTC, ISO 8601).
+    pub date: &'a str,
+    /// The command.
+    pub command: &'a str,
+    /// Where FEM's answers come from.
+    pub fem: FemOrigin,
+    /// This machine.
+    pub machine: Machine,
+    /// Wall-clock seconds of the whole run.
+    pub seconds: f64,
+    /// Outcomes of the gates.
+    pub gates: &'a [Outcome],
+    /// Ratios at equal error on record, where FEM did not run now.
+    pub speedups: &'a [Speedup],
+}
+
+/// The summary of a run.
+pub fn study_summary(
+    run: &StudyRun,
+    context: &Context,
+    effects: &[Effects],
+    not_analysed: &[NotAnalysed],
+) -> StudySummary {
+    let mut summary = StudySummary {
+        program: Program {
+            name: env!("CARGO_PKG_NAME").to_string(),
+            version: env!("CARGO_PKG_VERSION").to_string(),
+        },
+        study: run.study.clone(),
+        date: context.date.to_string(),
+        command: context.command.to_string(),
+        fem: context.fem,
+        machine: context.machine.clone(),
+        seconds: context.seconds,
+        methods: run.methods.clone(),
+        range: run.range.clone(),
+        factors: run.factors.clone(),
+        contact_problems_solved: run.solves,
+        method_summary: run.methods.iter().map(|m| worst(run, *m, context.gates)).collect(),
+        fem_error: fem_error(run),
+        gates_hold: !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
+        gates: context.gates.to_vec(),
+        effects_in_words: effects_text::told(run, effects),
+        speedups: context.speedups.to_vec(),
+        not_done: not_done(run, not_analysed),
+        cases: run.cases.iter().map(case_summary).collect(),
+        verdict: Vec::new(),
+    };
+    summary.verdict = verdict::sentences(&summary);
+    summary
+}
+
+fn case_summary(run: &CaseRun) -> CaseSummary {
+    let (case, factors) = (&run.case, run.case.factors());
+    let method = |m: &MethodRun| {
+        let part = match &m.answer {
+            Ok(a) => CaseMethod::Answer {
+                timing: m.timing.clone(),
+                details: Box::new(a.solution.summary.details.clone()),
+            },
+            Err(err) => CaseMethod::Failed { err: err.clone() },
+        };
+        (m.method, part)
+    };
+    CaseSummary {
+        name: case.name.clone(),
+        role: RoleName::of(&run.role),
+        load: factors.load,
+        slenderness: factors.slenderness,
+        length_ratio: factors.length_ratio,
+        hertz: case.hertz(),
+        load_n: case.load.force_n,
+        tolerance: case.accuracy.tolerance,
+        roller: case.roller,
+        block: case.block,
+        fem: match &run.reference {
+            Ok(reference) => CaseFem::Answer(Box::new(reference.provenance.clone())),
+            Err(reason) => CaseFem::Missing { missing: reason.clone() },
+        },
+        methods: run.methods.iter().map(method).collect(),
+    }
+}
+
+/// What was left out: analyses, then comparisons and solves, one sentence each.
+fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
+    let mut all: Vec<String> = not_analysed.iter().map(effects_text::not_analysed).collect();
+    for c in &run.cases {
+        if let Err(reason) = &c.reference {
+            all.push(format!("{} is not compared with FEM: {reason}", c.case.name));
+        }
+        for m in &c.methods {
+            if let Err(message) = &m.answer {
+                all.push(format!("{} by {} failed: {message}", c.case.name, m.method));
+            }
+        }
+    }
+    all
+}
+
+fn fem_error(run: &StudyRun) -> FemError {
+    let summaries = || {
+        let methods = run.cases.iter().flat_map(|c| &c.methods);
+        methods.filter_map(|m| m.answer.as_ref().ok()?.summary.as_ref())
+    };
+    FemError {
+        pressure: summaries().filter_map(|s| s.ref_error_pressure).reduce(f64::max),
+        stress: summaries().filter_map(|s| s.ref_error_stress).reduce(f64::max),
+    }
+}
+
+/// The worst of one model over all cases.
+fn worst(run: &StudyRun, method: EdgeModel, gates: &[Outcome]) -> MethodSummary {
+    let runs = || {
+        run.cases.iter().flat_map(move |c| {
+            c.methods.iter().filter(move |m| m.method == method).map(move |m| (c, m))
+        })
+    };
+    let values = |response: Response| runs().filter_map(move |(c, m)| response.value(c, m));
+    let largest = |response: Response| values(response).reduce(f64::max);
+    let decades = values(Response::Log10Speedup).map(|d| (d, d));
+    let decades = decades.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let compared = |m: &MethodRun| m.answer.as_ref().is_ok_and(|answer| answer.summary.is_some());
+    let own = || gates.iter().filter(|g| g.method == method.name());
+    MethodSummary {
+        method,
+        cases: runs().count(),
+        failed: runs().filter(|(_, m)| m.answer.is_err()).count(),
+        compared: runs().filter(|(_, m)| compared(m)).count(),
+        pressure_rms: largest(Response::PRESSURE_RMS),
+        pressure_max: largest(Response::PRESSURE_MAX),
+        stress_rms: largest(Response::STRESS_RMS),
+        stress_max: largest(Response::STRESS_MAX),
+        von_mises_rms: largest(Response::VON_MISES_RMS),
+        von_mises_max: largest(Response::VON_MISES_MAX),
+        seconds: runs().filter_map(|(_, m)| Some(m.timing.first()?.median_s)).reduce(f64::max),
+        speedup: decades.map(|(a, b)| Span { low: 10f64.powf(a), high: 10f64.powf(b) }),
+        gates: own().count(),
+        gates_passed: own().filter(|g| g.passed).count(),
+    }
+}
