@@ -208,18 +208,25 @@ impl Body {
                 [(half - y, loads[0]), (half + y, loads[1])].map(side)
             })
             .collect();
+        self.cosines = self.face_cosines();
+    }
+
+    /// Cosine transforms over the depth of the face's loads: a row for each of the face's
+    /// wavenumbers, over its nodes.
+    fn face_cosines(&self) -> DMatrix<f64> {
         let (face, axis) = (&self.face.axis, &self.face_wavenumbers);
         let order = face.order();
-        self.cosines = DMatrix::zeros(axis.len(), face.len());
+        let mut cosines = DMatrix::zeros(axis.len(), face.len());
         let mut moments = vec![0.0; order];
         for (row, &l) in axis.nodes().iter().enumerate() {
             for panel in 0..face.panel_count() {
                 face.cosine_moments(panel, l, &mut moments);
                 for (i, m) in moments.iter().enumerate() {
-                    self.cosines[(row, panel * order + i)] = 2.0 * m;
+                    cosines[(row, panel * order + i)] = 2.0 * m;
                 }
             }
         }
+        cosines
     }
 
     /// The loads of the faces at +H and -H in units of q.
