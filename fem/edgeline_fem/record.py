@@ -24,13 +24,10 @@ import numpy as np
 
 from .meshing import write_atomically
 from .request import Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions
-from .standard_points import pressure_lines, standard_curves
+from .standard_points import EDGE_RANGE, away_from_edge, pressure_lines, standard_curves
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
               "tau_max")
-# Errors exclude points this close to the end of the contact line (units of C): for a
-# longer block the pressure has no limit there.
-EDGE_RANGE = 0.1
 
 
 def read_cases(path):
@@ -128,7 +125,7 @@ def _series(folder, half_length_m, c_m, p0_pa):
     series = {}
 
     def add(key, mesh, y, z, value):
-        if math.hypot(float(y) - half_length_m, float(z)) >= EDGE_RANGE * c_m * 0.999:
+        if away_from_edge(float(y) / c_m, float(z) / c_m, half_length_m / c_m):
             meshes = series.setdefault(key, {})
             meshes.setdefault(float(mesh), []).append(float(value) / p0_pa)
 

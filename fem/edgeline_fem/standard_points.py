@@ -3,6 +3,8 @@
 They are those of the solver's ``standard_curves``; a test on either side pins them.
 """
 
+import math
+
 CURVES = (
     "surface-along-y",
     "surface-along-x",
@@ -28,6 +30,19 @@ _OFF_PLANE = (0.7, 1.4)
 # Lengths within this relative difference are equal: those of a case result from
 # divisions.
 _SAME = 1e-9
+
+
+# Errors exclude points this close to the end of the contact line (units of C): for a longer block the
+# pressure has no limit there.
+EDGE_RANGE = 0.1
+
+
+def away_from_edge(y, z, half_length):
+    """Whether a point at ``y`` and depth ``z`` counts: at least ``EDGE_RANGE`` from the roller's edge.
+
+    The tolerance covers coordinates that were read from files.
+    """
+    return math.hypot(abs(y) - half_length, z) >= EDGE_RANGE * (1.0 - 1e-3)
 
 
 def end_distances(half_length):

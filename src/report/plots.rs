@@ -4,6 +4,7 @@ use super::draw::{Bar, Figure, Look, Marker, Note, Panel, Rule, Series, Shade, l
 use super::effects_text::{TOLD, label};
 use super::study_files::StudyFiles;
 use super::table::Table;
+use crate::stress::away_from_edge;
 use crate::study::response::Response;
 use std::collections::BTreeMap;
 
@@ -134,12 +135,14 @@ impl<'a> Case<'a> {
     fn beyond(&self, table: &Table, filter: &[(&str, &str)]) -> Vec<bool> {
         let mut filter = filter.to_vec();
         filter.push(("case", self.name));
-        let excluded = self.excluded();
+        // Tables round coordinates.
+        let excluded = self.excluded() * (1.0 - 1e-6);
         rows(table, &filter)
             .iter()
             .map(|r| {
-                let get = |name| table.number(r, name).unwrap_or(0.0) / self.c_m;
-                (get("y_m") - self.half_length).hypot(get("z_m")) < excluded * (1.0 - 1e-6)
+                let at =
+                    ["x_m", "y_m", "z_m"].map(|v| table.number(r, v).unwrap_or(0.0) / self.c_m);
+                !away_from_edge(at, self.half_length, excluded)
             })
             .collect()
     }

@@ -6,7 +6,7 @@ use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Scene, SceneBody, SolvedScene};
 use edgeline::stress::curves::standard_curves;
-use edgeline::stress::{BodyKind, Field};
+use edgeline::stress::{BodyKind, Field, away_from_edge};
 use std::path::Path;
 
 /// A contact of equal materials: slenderness, length ratio, Poisson's ratio.
@@ -47,9 +47,8 @@ pub fn half_of(scene: &Scene, kind: BodyKind) -> f64 {
 /// Points of the standard curves of a body, each outside [`CORNER`], named.
 pub fn curve_points(scene: &Scene, kind: BodyKind) -> Vec<(&'static str, [f64; 3])> {
     let curves = standard_curves(kind, scene.half_length, half_of(scene, kind));
-    let away = |at: &[f64; 3]| (at[1] - scene.half_length).hypot(at[2]) > CORNER * 0.999;
     let points = curves.into_iter().flat_map(|c| c.points.into_iter().map(move |p| (c.name, p)));
-    points.filter(|(_, at)| away(at)).collect()
+    points.filter(|(_, at)| away_from_edge(*at, scene.half_length, CORNER)).collect()
 }
 
 pub fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {

@@ -1,12 +1,12 @@
 //! The strength of the contact's end, and the one number of the `guilbault` model that is fitted.
 //! Lengths are in units of C, stresses in units of p0.
 
-use crate::common::scene;
+use crate::common::{CORNER, scene};
 use edgeline::body::{EdgeModel, GAMMA, Resolution, transition};
 use edgeline::solve::edge::{self, EdgeStrength};
 use edgeline::solve::{Scene, SolvedScene};
-use edgeline::stress::BodyKind;
 use edgeline::stress::curves::{CURVE_NAMES, standard_curves};
+use edgeline::stress::{BodyKind, away_from_edge};
 
 /// The strength of the end at a resolution.
 fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
@@ -99,7 +99,7 @@ fn samples((slenderness, length_ratio, nu): (f64, f64, f64)) -> Vec<Sample> {
         let curves = standard_curves(kind, slenderness, body.half).into_iter();
         let central = curves.filter(|c| CURVE_NAMES[..7].contains(&c.name));
         for [x, y, z] in central.flat_map(|c| c.points) {
-            if (y - slenderness).hypot(z) < 0.0999 {
+            if !away_from_edge([x, y, z], slenderness, CORNER) {
                 continue;
             }
             let inside = body.half * (1.0 - 1e-8);

@@ -5,8 +5,8 @@ use crate::common::{CORNER, apart, at, case, curve_points, half_of, scene, small
 use edgeline::base::StressTensor;
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::solve::{Options, Scene, SolvedScene, solve};
-use edgeline::stress::BodyKind;
 use edgeline::stress::curves::standard_curves;
+use edgeline::stress::{BodyKind, away_from_edge};
 
 /// What a resolution changes against a finer one: pressure and stresses outside [`CORNER`].
 fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
@@ -103,7 +103,7 @@ fn points_between_do_not_matter() {
                     name if name.starts_with("depth") => field.down(&[x], y, &run(2)).concat(),
                     _ => field.along(x, z, &run(1)),
                 });
-                let away = |p: &[f64; 3]| (p[1] - slenderness).hypot(p[2]) > CORNER * 0.999;
+                let away = |p: &[f64; 3]| away_from_edge(*p, slenderness, CORNER);
                 for (i, place) in curve.points.iter().enumerate().take(values[0].len()) {
                     let own = direct.each_ref().map(|field| at(field, *place));
                     points += 1.0;
