@@ -2,7 +2,7 @@
 //! promises or an error that names the file. `tests/program/corpora.rs` runs the same on a stable compiler.
 
 use edgeline::case::{Case, Study, Sweep, builtin_case};
-use edgeline::fem::{MeshResult, MeshSummary, Reference, ResultTexts};
+use edgeline::fem::{FemResults, MeshResult, MeshSummary, ResultTexts};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -135,7 +135,7 @@ pub fn mesh(data: &[u8]) {
 /// A recorded result: `record.json`, `curves.csv`, `pressure.csv`.
 pub fn record(data: &[u8]) {
     let Some(texts) = texts(data) else { return };
-    match Reference::parse(texts, Path::new("record")) {
+    match FemResults::parse(texts, Path::new("record")) {
         Ok(reference) => assert!(!reference.meshes.is_empty()),
         Err(e) => refusal(&e, "record/"),
     }

@@ -2,7 +2,7 @@
 
 use super::cold::ColdRuns;
 use super::fem_options::{FemOptions, FemSource};
-use super::output::{Outcome, print, say};
+use super::output::{Exit, print, say};
 use super::progress::{progress_bar, show};
 use super::provenance::{command_line, now, processor};
 use super::records::Records;
@@ -122,7 +122,7 @@ fn descending(values: &[f64]) -> Vec<f64> {
     all
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let date = now();
     let cases = find_cases(&arguments.cases)?;
     let tolerances: Vec<f64> = descending(&arguments.tolerances)
@@ -151,7 +151,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     } else {
         print(&text(&bench, &arguments.out))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Live FEM on each mesh, by its relative element size.

@@ -1,11 +1,11 @@
 //! `edgeline doctor`: what is installed, and what would have to be.
 
-use super::output::{Outcome, print, print_json};
+use super::output::{Exit, print, print_json};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::builtin_case;
-use crate::fem::{Reference, tools};
+use crate::fem::{FemResults, tools};
 use crate::solve::{Options, solve};
 use clap::Args;
 use serde_json::{Value, json};
@@ -31,11 +31,11 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = builtin_case("flush-short").expect("a built-in case")?;
     let solution = solve(&case, &Options::new(EdgeModel::QuarterSpace))?;
     let solver_ms = solution.summary.seconds.total * 1e3;
-    let records = Reference::embedded_names().count();
+    let records = FemResults::embedded_names().count();
 
     let gmsh = tools::version(&arguments.gmsh);
     let mpirun = tools::version(Path::new("mpirun"));
@@ -78,7 +78,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
             remedy: tools::INSTALL.into(),
         });
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// The findings for a reader.

@@ -1,7 +1,7 @@
 //! `edgeline fem`: one case by finite elements, now.
 
 use super::fem_options::{FemOptions, Size};
-use super::output::{Outcome, print, print_json, say};
+use super::output::{Exit, print, print_json, say};
 use super::progress::Progress;
 use crate::base::Result;
 use crate::case::Case;
@@ -34,7 +34,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
     prepare_folder(&arguments.out)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
@@ -59,7 +59,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     } else {
         print(&text(&case, &result, &arguments))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// The short summary for a reader.

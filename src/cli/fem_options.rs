@@ -1,6 +1,6 @@
 //! Options of whatever runs finite elements.
 
-use crate::fem::{Linear, Settings};
+use crate::fem::{FemSettings, LinearSolver};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ pub(super) struct Size {
 pub(super) struct FemOptions {
     /// Linear solver of the finite elements
     #[arg(long, default_value = "direct", value_parser = linear())]
-    linear: Linear,
+    linear: LinearSolver,
     /// MPI processes per finite-element run
     #[arg(long, default_value_t = 1, value_name = "N")]
     ranks: usize,
@@ -54,8 +54,8 @@ pub(super) struct FemOptions {
 
 impl FemOptions {
     /// The settings that they amount to, for a mesh of relative element size `size`.
-    pub fn settings(&self, size: f64) -> Settings {
-        Settings {
+    pub fn settings(&self, size: f64) -> FemSettings {
+        FemSettings {
             size,
             linear: self.linear,
             ranks: self.ranks,
@@ -69,10 +69,10 @@ impl FemOptions {
     }
 }
 
-fn linear() -> impl TypedValueParser<Value = Linear> {
-    PossibleValuesParser::new(Linear::ALL.map(Linear::name)).map(|name| {
-        let named = |linear: &Linear| linear.name() == name;
-        Linear::ALL.into_iter().find(named).expect("only these names pass")
+fn linear() -> impl TypedValueParser<Value = LinearSolver> {
+    PossibleValuesParser::new(LinearSolver::ALL.map(LinearSolver::name)).map(|name| {
+        let named = |linear: &LinearSolver| linear.name() == name;
+        LinearSolver::ALL.into_iter().find(named).expect("only these names pass")
     })
 }
 

@@ -1,6 +1,6 @@
 //! `edgeline gate`: does it still hold?
 
-use super::output::{Outcome, print, print_json};
+use super::output::{Exit, print, print_json};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
 use crate::host::{Lock, write_set, write_whole};
@@ -39,7 +39,7 @@ pub(super) struct Arguments {
 /// Changes that `--accept` lists; more are counted.
 const LISTED: usize = 40;
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let study = arguments.study.find_study()?;
     let thresholds = match &arguments.gates {
         Some(path) => gate::parse(&read(path)?, path)?,
@@ -77,11 +77,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
         print(&format!("{}{}\n", gates::table(&outcomes), gates::headline(&outcomes)))?;
     }
     let hold = outcomes.iter().all(|o| o.passed);
-    Ok(if hold { Outcome::Done } else { Outcome::GateFailed })
+    Ok(if hold { Exit::Done } else { Exit::GateFailed })
 }
 
 /// Writes the numbers of a run as the accepted ones and says what that changes.
-fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Result<Outcome> {
+fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Result<Exit> {
     let places: usize = now.numbers.values().map(|v| v.len()).sum();
     let sound = now.numbers.values().flat_map(|v| v.values()).all(|v| v.is_finite());
     if places == 0 || !sound {
@@ -97,7 +97,7 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
     let mut lines: Vec<String> = changes.iter().map(gate::Change::describe).collect();
     if json {
         return print_json(&serde_json::json!({ "accepted": places, "changes": lines }))
-            .map(|()| Outcome::Done);
+            .map(|()| Exit::Done);
     }
     let more = lines.len().saturating_sub(LISTED);
     lines.truncate(LISTED);
@@ -106,7 +106,7 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
     }
     lines.push(format!("accepted {places} numbers into {}", path.display()));
     print(&(lines.join("\n") + "\n"))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Adds to the end of a file: other steps of a job write there too.

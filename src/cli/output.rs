@@ -6,7 +6,7 @@ use serde::Serialize;
 use std::io::Write;
 
 /// What a subcommand that ran to its end has to say.
-pub(super) enum Outcome {
+pub(super) enum Exit {
     /// All was done.
     Done,
     /// All was done, and an accuracy gate does not hold.

@@ -1,6 +1,6 @@
 //! The program: its subcommands and exit codes.
 
-use super::output::{Outcome, say};
+use super::output::{Exit, say};
 use super::{bench, doctor, fem, gate, report, solve, study, sweep};
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
@@ -53,8 +53,8 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Doctor(arguments) => doctor::run(arguments),
     };
     match outcome {
-        Ok(Outcome::Done) => ExitCode::SUCCESS,
-        Ok(Outcome::GateFailed) => ExitCode::from(1),
+        Ok(Exit::Done) => ExitCode::SUCCESS,
+        Ok(Exit::GateFailed) => ExitCode::from(1),
         Err(e) => {
             say(&format!("error: {e}"));
             ExitCode::from(2)

@@ -6,19 +6,19 @@ use crate::fem;
 use std::path::Path;
 
 /// The recorded FEM curves: those built into the program, or those of a folder.
-pub(super) struct Records(Option<Vec<fem::Reference>>);
+pub(super) struct Records(Option<Vec<fem::FemResults>>);
 
 impl Records {
     /// Those below `folder`; the built-in ones without it.
     pub(super) fn read(folder: Option<&Path>) -> Result<Self> {
-        folder.map(fem::Reference::read_all).transpose().map(Self)
+        folder.map(fem::FemResults::read_all).transpose().map(Self)
     }
 
     /// The record of a case, if there is one.
-    pub(super) fn find(&self, case: &Case) -> Result<Option<fem::Reference>> {
+    pub(super) fn find(&self, case: &Case) -> Result<Option<fem::FemResults>> {
         match &self.0 {
             Some(all) => Ok(all.iter().find(|r| r.is_of(case)).cloned()),
-            None => fem::Reference::embedded_of(case),
+            None => fem::FemResults::embedded_of(case),
         }
     }
 }

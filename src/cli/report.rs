@@ -1,6 +1,6 @@
 //! `edgeline report`: the page of a finished run again.
 
-use super::output::{Outcome, print};
+use super::output::{Exit, print};
 use crate::base::Result;
 use crate::host::Lock;
 use crate::report::page;
@@ -18,10 +18,10 @@ pub(super) struct Arguments {
     run: PathBuf,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let files = StudyFiles::read(&arguments.run)?;
     let _lock = Lock::claim(&arguments.run)?;
     page::write(&files, &arguments.run)?;
     print(&format!("wrote report.html, report.md and plots into {}\n", arguments.run.display()))?;
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }

@@ -1,6 +1,6 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::output::{Outcome, print, print_json};
+use super::output::{Exit, print, print_json};
 use super::values::{checked_tolerance, edge_model};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
@@ -69,7 +69,7 @@ fn count(text: &str) -> std::result::Result<usize, String> {
     }
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let mut case = Case::find(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
@@ -98,7 +98,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     } else {
         print(&text(&case, &found, &arguments))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Memory that a point of the field takes (bytes): its stress, four mirror images of it, and their

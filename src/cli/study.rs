@@ -1,7 +1,7 @@
 //! `edgeline study`: every case by every model, against FEM.
 
 use super::fem_options::FemSource;
-use super::output::{Outcome, print, print_json};
+use super::output::{Exit, print, print_json};
 use super::provenance::{command_line, now, processor};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
     let date = now();
     let study = arguments.study.find_study()?;
@@ -70,7 +70,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     } else {
         print(&text(&files, out))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// The gates built into the program; their thresholds are made for the built-in study, and another one

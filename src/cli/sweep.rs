@@ -1,6 +1,6 @@
 //! `edgeline sweep`: thousands of cases.
 
-use super::output::{Outcome, print, print_json};
+use super::output::{Exit, print, print_json};
 use super::progress::progress_bar;
 use super::values::{checked_tolerance, edge_model};
 use crate::base::Result;
@@ -50,7 +50,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
     let base = arguments.base.as_deref().map(Case::find).transpose()?;
     let sweep = Sweep::read(&arguments.file, base.as_ref())?;
@@ -93,7 +93,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     done?;
     let file = file.into_inner().unwrap_or_else(|e| e.into_inner());
     file.finish()?;
-    let summary = Summary {
+    let summary = SweepSummary {
         rows_of_sweep: sweep.len(),
         rows,
         kept,
@@ -107,7 +107,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Outcome> {
     } else {
         print(&summary.text(&arguments))?;
     }
-    Ok(Outcome::Done)
+    Ok(Exit::Done)
 }
 
 /// Cases solved at a time.
@@ -117,7 +117,7 @@ fn jobs(arguments: &Arguments) -> usize {
 }
 
 /// What was done.
-struct Summary {
+struct SweepSummary {
     rows_of_sweep: usize,
     /// Rows of this part of it.
     rows: usize,
@@ -132,7 +132,7 @@ struct Summary {
     solving: f64,
 }
 
-impl Summary {
+impl SweepSummary {
     /// Rows solved a second.
     fn rate(&self) -> f64 {
         if self.rows > self.kept { (self.rows - self.kept) as f64 / self.solving } else { 0.0 }
@@ -156,7 +156,7 @@ impl Summary {
 
     /// The short summary for a reader.
     fn text(&self, arguments: &Arguments) -> String {
-        let Summary { rows, kept, failed, problems, solving, .. } = self;
+        let SweepSummary { rows, kept, failed, problems, solving, .. } = self;
         let before = if *kept > 0 { format!(", {kept} of them before") } else { String::new() };
         let failures = if *failed > 0 { format!(", {failed} with an err") } else { String::new() };
         format!(

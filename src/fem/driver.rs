@@ -25,30 +25,30 @@ const SOURCES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/fem_sources
 
 /// The linear solver of the finite-element program.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Linear {
+pub enum LinearSolver {
     /// Sparse Cholesky factors, once per body.
     Direct,
     /// Conjugate gradients with algebraic multigrid; needs less memory on large meshes.
     Iterative,
 }
 
-impl Linear {
+impl LinearSolver {
     /// Both, the default first.
-    pub const ALL: [Linear; 2] = [Linear::Direct, Linear::Iterative];
+    pub const ALL: [LinearSolver; 2] = [LinearSolver::Direct, LinearSolver::Iterative];
 
     /// The name in requests and on the command line.
     pub fn name(self) -> &'static str {
         match self {
-            Linear::Direct => "direct",
-            Linear::Iterative => "iterative",
+            LinearSolver::Direct => "direct",
+            LinearSolver::Iterative => "iterative",
         }
     }
 
     /// Memory for the solution of `unknowns` (bytes), from the measured growth in docs/fem.md.
     fn bytes(self, unknowns: f64) -> f64 {
         match self {
-            Linear::Direct => 3.0 * GIB * (unknowns / 250e3).powf(1.3),
-            Linear::Iterative => 1.5 * GIB * (unknowns / 250e3),
+            LinearSolver::Direct => 3.0 * GIB * (unknowns / 250e3).powf(1.3),
+            LinearSolver::Iterative => 1.5 * GIB * (unknowns / 250e3),
         }
     }
 }
@@ -60,11 +60,11 @@ const GIB: f64 = (1u64 << 30) as f64;
 
 /// Settings of finite-element runs.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
-    /// Relative element size, 1 is the production mesh; see [`Settings::SIZE_RANGE`].
+pub struct FemSettings {
+    /// Relative element size, 1 is the production mesh; see [`FemSettings::SIZE_RANGE`].
     pub size: f64,
     /// The linear solver.
-    pub linear: Linear,
+    pub linear: LinearSolver,
     /// Number of MPI ranks, at least 1.
     pub ranks: usize,
     /// The interpreter; searched for if none.
@@ -81,16 +81,16 @@ pub struct Settings {
     pub keep: bool,
 }
 
-impl Settings {
+impl FemSettings {
     /// Legal range of the relative element size.
     pub const SIZE_RANGE: (f64, f64) = (0.1, 10.0);
 }
 
-impl Default for Settings {
+impl Default for FemSettings {
     fn default() -> Self {
         Self {
             size: 1.0,
-            linear: Linear::Direct,
+            linear: LinearSolver::Direct,
             ranks: 1,
             python: None,
             gmsh: "gmsh".into(),
@@ -104,7 +104,7 @@ impl Default for Settings {
 
 /// Runs finite-element models with tools that were found and tested.
 pub struct Driver {
-    settings: Settings,
+    settings: FemSettings,
     interpreter: Interpreter,
 }
 
@@ -114,8 +114,8 @@ impl Driver {
     /// # Errors
     /// [`Error::Missing`] if gmsh, a suitable interpreter or, for several ranks, mpirun is missing;
     /// [`Error::Value`] if a setting is not legal.
-    pub fn new(settings: Settings) -> Result<Self> {
-        let (low, high) = Settings::SIZE_RANGE;
+    pub fn new(settings: FemSettings) -> Result<Self> {
+        let (low, high) = FemSettings::SIZE_RANGE;
         let refuse = |key: &str, value: String, reason: String, remedy: &str| {
             Err(Error::Value { key: key.into(), value, reason, remedy: remedy.into() })
         };

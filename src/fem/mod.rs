@@ -10,8 +10,8 @@ mod sum;
 mod tests;
 pub mod tools;
 
-pub use driver::{Driver, Linear, Settings};
-pub use reference::{ErrorEstimate, Reference};
+pub use driver::{Driver, FemSettings, LinearSolver};
+pub use reference::{ErrorEstimate, FemResults};
 pub use result::{
     FemSummary, LINE_NAMES, MeshResult, MeshSummary, ResultTexts, check_points, wanted_curves,
     wanted_lines,

@@ -76,7 +76,7 @@ pub struct ErrorEstimate {
 
 /// Finite-element results of one case on one or more meshes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Reference {
+pub struct FemResults {
     /// The problem that was solved (its tolerance means nothing here).
     pub case: Case,
     /// `recorded`, or `live` for a run of this program, now.
@@ -97,7 +97,7 @@ struct Record {
     errors: Vec<ErrorEstimate>,
 }
 
-impl Reference {
+impl FemResults {
     /// Names of the cases whose records are built into the program.
     pub fn embedded_names() -> impl Iterator<Item = &'static str> {
         EMBEDDED.iter().map(|(name, _)| *name)
@@ -107,20 +107,20 @@ impl Reference {
     ///
     /// # Errors
     /// [`Error::File`] when the record is damaged.
-    pub fn embedded(name: &str) -> Result<Option<Reference>> {
+    pub fn embedded(name: &str) -> Result<Option<FemResults>> {
         let Some((name, texts)) = EMBEDDED.iter().find(|(known, _)| *known == name) else {
             return Ok(None);
         };
         let folder = Path::new("results/reference").join(name);
-        Reference::parse(*texts, &folder).map(Some)
+        FemResults::parse(*texts, &folder).map(Some)
     }
 
     /// The built-in record that solves the problem `case`, if there is one: the same bodies,
     /// materials and load, whatever the names are.
     ///
     /// # Errors
-    /// As [`Reference::embedded`].
-    pub fn embedded_of(case: &Case) -> Result<Option<Reference>> {
+    /// As [`FemResults::embedded`].
+    pub fn embedded_of(case: &Case) -> Result<Option<FemResults>> {
         // The record of the same name first, because it nearly always matches.
         let same_name = Self::embedded_names().filter(|name| *name == case.name);
         let others = Self::embedded_names().filter(|name| *name != case.name);
@@ -137,8 +137,8 @@ impl Reference {
     ///
     /// # Errors
     /// [`Error::Io`] when a file cannot be read; [`Error::File`] when it is not the file that was
-    /// recorded, and as [`Reference::parse`].
-    pub fn read(folder: &Path) -> Result<Reference> {
+    /// recorded, and as [`FemResults::parse`].
+    pub fn read(folder: &Path) -> Result<FemResults> {
         let read = |name: &str| read_text(&folder.join(name), MAX_FILE_BYTES, RESTORE);
         let sums = read(SUMS)?;
         let mut texts = Vec::new();
@@ -153,8 +153,8 @@ impl Reference {
     /// Reads all records below a folder such as `results/reference`, by name.
     ///
     /// # Errors
-    /// As [`Reference::read`].
-    pub fn read_all(folder: &Path) -> Result<Vec<Reference>> {
+    /// As [`FemResults::read`].
+    pub fn read_all(folder: &Path) -> Result<Vec<FemResults>> {
         let io = |source| Error::Io { action: "list", path: folder.to_path_buf(), source };
         let mut folders: Vec<PathBuf> = Vec::new();
         for entry in std::fs::read_dir(folder).map_err(io)? {
@@ -173,7 +173,7 @@ impl Reference {
     /// # Errors
     /// [`Error::File`] when one is damaged or of another version, when its case is not legal, when
     /// a run did not carry its load, or when the points are not the standard curves'.
-    pub fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<Reference> {
+    pub fn parse([record, curves, lines]: [&str; 3], folder: &Path) -> Result<FemResults> {
         let path = folder.join(FILES[0]);
         let record: Record = serde_json::from_str(record)
             .map_err(|e| nonsense(&path, Some(e.line()), format!("is not a record: {e}")))?;
@@ -203,7 +203,7 @@ impl Reference {
             return Err(nonsense(&path, None, "holds no mesh"));
         }
         meshes.sort_by(|a, b| a.size.total_cmp(&b.size));
-        Ok(Reference { case, source: "recorded", meshes, errors: record.errors })
+        Ok(FemResults { case, source: "recorded", meshes, errors: record.errors })
     }
 
     /// The finest mesh, the one to compare with.

@@ -9,12 +9,12 @@ fn records() -> PathBuf {
 
 #[test]
 fn records_are_read_and_built_in_alike() {
-    let read = Reference::read_all(&records()).unwrap();
-    let embedded: Vec<Reference> = Reference::embedded_names()
-        .map(|name| Reference::embedded(name).unwrap().unwrap())
+    let read = FemResults::read_all(&records()).unwrap();
+    let embedded: Vec<FemResults> = FemResults::embedded_names()
+        .map(|name| FemResults::embedded(name).unwrap().unwrap())
         .collect();
     assert_eq!(read, embedded);
-    assert_eq!(Reference::embedded("no such case").unwrap(), None);
+    assert_eq!(FemResults::embedded("no such case").unwrap(), None);
 }
 
 #[test]
@@ -22,7 +22,7 @@ fn default_study_and_validation_cases_are_on_record() {
     let validation = ["validation-nu025", "validation-nu040", "validation-steel-aluminium"]
         .map(|name| Case::find(Path::new(name)).unwrap());
     for case in Study::built_in().cases().chain(&validation) {
-        let reference = Reference::embedded_of(case).unwrap().expect(&case.name);
+        let reference = FemResults::embedded_of(case).unwrap().expect(&case.name);
         assert_eq!(reference.case.name, case.name);
         assert!(reference.meshes.is_sorted_by(|a, b| a.size < b.size));
         // The estimates' names are those of the curves.
@@ -41,10 +41,10 @@ fn default_study_and_validation_cases_are_on_record() {
 fn a_record_belongs_to_a_problem_not_to_a_name() {
     let case = Case::find(Path::new("validation-nu025")).unwrap();
     let renamed = Case { name: "other".into(), ..case.clone() };
-    let found = Reference::embedded_of(&renamed).unwrap().unwrap();
+    let found = FemResults::embedded_of(&renamed).unwrap().unwrap();
     assert_eq!(found.case.name, "validation-nu025");
     let heavier = Case { load: Load { force_n: case.load.force_n * 1.001 }, ..case };
-    assert_eq!(Reference::embedded_of(&heavier).unwrap(), None);
+    assert_eq!(FemResults::embedded_of(&heavier).unwrap(), None);
 }
 
 #[test]
@@ -56,7 +56,7 @@ fn damaged_records_are_refused_with_their_place() {
             if name == file { change(text) } else { text }
         });
         let texts = texts.each_ref().map(String::as_str);
-        Reference::parse(texts, &source).unwrap_err().to_string()
+        FemResults::parse(texts, &source).unwrap_err().to_string()
     };
     let line_three = |text: String, from: &str, to: &str| {
         let mut lines: Vec<String> = text.lines().map(str::to_string).collect();
@@ -93,10 +93,10 @@ fn files_that_are_not_those_recorded_are_refused() {
             std::fs::copy(source.join(name), folder.path().join(name)).unwrap();
         }
     };
-    let refused = || Reference::read(folder.path()).unwrap_err().to_string();
+    let refused = || FemResults::read(folder.path()).unwrap_err().to_string();
     for name in ["record.json", "curves.csv", "pressure.csv"] {
         copy();
-        Reference::read(folder.path()).unwrap();
+        FemResults::read(folder.path()).unwrap();
         // One digit more, which no reader of numbers would notice.
         let path = folder.path().join(name);
         let text = std::fs::read_to_string(&path).unwrap();

@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::scene::Scene;
-use super::solved::{Solution, SolvedCase, Stresses};
+use super::solved::{SharedStresses, Solution, SolvedCase};
 use crate::base::Result;
 use crate::case::Case;
 
@@ -17,7 +17,7 @@ pub fn solve(case: &Case, options: &Options) -> Result<Solution> {
 /// Solves cases that differ in scale only together: the first one's scene is solved once, and every
 /// case gets its own scales, approach and roller. A case of another scene is solved by itself.
 pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
-    let mut shared: Option<(SolvedCase, Stresses)> = None;
+    let mut shared: Option<(SolvedCase, SharedStresses)> = None;
     cases
         .iter()
         .map(|case| {
@@ -25,7 +25,8 @@ pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
             let key = Scene::new(case, options.method, options.psi).key();
             // Extra points are given in metres, so they are another case's own.
             let own = !options.points.is_empty();
-            let fits = |(first, _): &&(SolvedCase, Stresses)| first.scene().scene.key() == key;
+            let fits =
+                |(first, _): &&(SolvedCase, SharedStresses)| first.scene().scene.key() == key;
             if let Some((first, stresses)) = shared.as_ref().filter(|_| !own).filter(fits) {
                 let solved = SolvedCase::of_scene(case, options, first.scene().clone());
                 return Ok(solved.solution_with(stresses));

@@ -44,7 +44,7 @@ pub struct Solution {
 
 /// The stresses that [`Options`] ask for, of a roller whose radius is still open: cases of one scene
 /// share them.
-pub(super) struct Stresses {
+pub(super) struct SharedStresses {
     specs: Vec<CurveSpec>,
     found: lines::Stresses,
     seconds: f64,
@@ -130,7 +130,7 @@ impl SolvedCase {
     }
 
     /// The stresses that the options ask for.
-    pub(super) fn stresses(&self) -> Stresses {
+    pub(super) fn stresses(&self) -> SharedStresses {
         let start = Instant::now();
         let (scene, options) = (&self.scene.scene, &self.options);
         let mut specs = Vec::new();
@@ -143,11 +143,11 @@ impl SolvedCase {
         let points: Vec<_> =
             options.points.iter().map(|p| (p.body, p.at_m.map(|v| v / self.hertz.c_m))).collect();
         let found = lines::stresses(&self.scene, &specs, &points);
-        Stresses { specs, found, seconds: start.elapsed().as_secs_f64() }
+        SharedStresses { specs, found, seconds: start.elapsed().as_secs_f64() }
     }
 
     /// The solution whose stresses are known.
-    pub(super) fn solution_with(&self, stresses: &Stresses) -> Solution {
+    pub(super) fn solution_with(&self, stresses: &SharedStresses) -> Solution {
         let curves = Curves {
             hertz: self.hertz,
             pressure: self.pressure_lines(),
@@ -189,7 +189,7 @@ impl SolvedCase {
         ]
     }
 
-    fn stress_curves(&self, stresses: &Stresses) -> Vec<StressCurve> {
+    fn stress_curves(&self, stresses: &SharedStresses) -> Vec<StressCurve> {
         let curves = stresses.specs.iter().zip(&stresses.found.curves);
         curves
             .map(|(spec, found)| StressCurve {
@@ -204,7 +204,7 @@ impl SolvedCase {
 
     fn summary(
         &self,
-        stresses: &Stresses,
+        stresses: &SharedStresses,
         critical: Option<Critical>,
         cells: &[PressureCell],
     ) -> Summary {
@@ -235,7 +235,7 @@ impl SolvedCase {
         }
     }
 
-    fn details(&self, stresses: &Stresses) -> Details {
+    fn details(&self, stresses: &SharedStresses) -> Details {
         let solved = &self.scene;
         let alike = solved.bodies_shared() && self.options.bodies.len() > 1;
         Details {

@@ -5,7 +5,7 @@ use super::run::Reference;
 use super::timing::Timing;
 use crate::base::Result;
 use crate::case::Case;
-use crate::fem::{self, Driver, MeshResult, Settings};
+use crate::fem::{self, Driver, FemSettings, MeshResult};
 use std::path::Path;
 
 /// Runs `case` by one driver `repeats` times (at least once), each in a folder of its own below
@@ -47,8 +47,8 @@ impl Live {
     ///
     /// # Errors
     /// As [`Driver::new`].
-    pub fn new(settings: Settings, repeats: usize) -> Result<Self> {
-        let coarser = Settings { size: settings.size * COARSER, ..settings.clone() };
+    pub fn new(settings: FemSettings, repeats: usize) -> Result<Self> {
+        let coarser = FemSettings { size: settings.size * COARSER, ..settings.clone() };
         Ok(Self {
             fine: Driver::new(settings)?,
             coarse: Driver::new(coarser)?,
@@ -64,7 +64,7 @@ impl Live {
         let coarse = self.coarse.run(case, &folder.join("coarser"), progress)?;
         let (fine, timing) = repeated(&self.fine, self.repeats, case, folder, progress)?;
         let meshes = vec![fine, coarse];
-        let mut reference = from_fem(&fem::Reference {
+        let mut reference = from_fem(&fem::FemResults {
             case: case.clone(),
             source: "live",
             meshes,

@@ -10,7 +10,7 @@ use crate::fem::{self, MeshResult};
 /// The error at a point is the difference of the finest mesh to the next; none is stated for a
 /// single mesh. It is not multiplied by Richardson's factor, which is known only where the meshes
 /// converge with an order: a band of the plain difference is there for every curve.
-pub fn from_fem(reference: &fem::Reference) -> Reference {
+pub fn from_fem(reference: &fem::FemResults) -> Reference {
     let finest = reference.finest();
     let curves = match reference.meshes.get(1) {
         Some(next) => finest.curves.clone().with_error_from(&next.curves),
@@ -56,8 +56,8 @@ mod tests {
     #[test]
     fn a_record_is_its_own_reference() {
         let mut seen = 0;
-        for name in fem::Reference::embedded_names() {
-            let record = fem::Reference::embedded(name).unwrap().unwrap();
+        for name in fem::FemResults::embedded_names() {
+            let record = fem::FemResults::embedded(name).unwrap().unwrap();
             let reference = from_fem(&record);
             let half_length = record.case.factors().slenderness;
             let again = (&Source::Engine(reference.engine.clone()), &reference.curves);
@@ -73,6 +73,6 @@ mod tests {
             assert!(!reference.provenance.live);
             seen += 1;
         }
-        assert_eq!(seen, fem::Reference::embedded_names().count());
+        assert_eq!(seen, fem::FemResults::embedded_names().count());
     }
 }

@@ -159,7 +159,7 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
         Mesh { timing: Timing::new(1, &[0.9 * seconds, 1.1 * seconds]), result }
     };
     FemMeshes {
-        recorded: (!recorded.is_empty()).then(|| fem::Reference {
+        recorded: (!recorded.is_empty()).then(|| fem::FemResults {
             case: case.clone(),
             source: "recorded",
             meshes: recorded.iter().rev().map(|&size| mesh(size)).collect(),

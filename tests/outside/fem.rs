@@ -263,7 +263,7 @@ fn live_coarse_model_carries_its_load_and_meets_the_record() {
     let summary = &printed["summary"];
     assert!(summary["load_error_rel"].as_f64().unwrap() <= 1e-6);
     assert!(summary["equilibrium_residual"].as_f64().unwrap() <= 1e-6);
-    let record = edgeline::fem::Reference::embedded_of(case).unwrap().expect("a record");
+    let record = edgeline::fem::FemResults::embedded_of(case).unwrap().expect("a record");
     let recorded = record.finest().summary.p_centre_pa;
     let centre = summary["p_centre_pa"].as_f64().unwrap();
     assert!((centre / recorded - 1.0).abs() <= 0.03, "{centre:e} Pa, recorded {recorded:e} Pa");

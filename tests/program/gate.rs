@@ -21,7 +21,7 @@ const METHODS: [EdgeModel; 2] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 fn run_with(solver: &Solver) -> StudyRun {
     let study = Study::parse(STUDY, Path::new("small.toml")).unwrap();
     let answer = |case: &Case| {
-        let found = fem::Reference::embedded_of(case).map_err(|e| e.to_string())?;
+        let found = fem::FemResults::embedded_of(case).map_err(|e| e.to_string())?;
         found.map(|r| reference::from_fem(&r)).ok_or_else(|| "no record".to_string())
     };
     run(

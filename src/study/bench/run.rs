@@ -24,7 +24,7 @@ pub struct Mesh {
 /// FEM's part in a case.
 pub struct FemMeshes {
     /// The record of the case, if there is one.
-    pub recorded: Option<fem::Reference>,
+    pub recorded: Option<fem::FemResults>,
     /// Meshes of this run, by relative element size, or why one failed.
     pub live: Vec<(f64, std::result::Result<Mesh, String>)>,
 }
@@ -33,7 +33,7 @@ impl FemMeshes {
     /// Runs `case` by each driver `repeats` times in folders below `folder`. A mesh that fails is
     /// kept with its reason.
     pub fn run(
-        recorded: Option<fem::Reference>,
+        recorded: Option<fem::FemResults>,
         drivers: &[(f64, Driver)],
         repeats: usize,
         case: &Case,
