@@ -43,6 +43,7 @@ need python3-pytest /usr/bin/python3 -c 'import pytest'
 need libopenblas0-serial test -e /usr/lib/"$(uname -m)"-linux-gnu/openblas-serial/libblas.so.3
 need openmpi-bin command -v mpirun
 need gcc command -v cc
+need python3-venv /usr/bin/python3 -c 'import ensurepip'
 # The page is tested in a real browser.
 need chromium command -v chromium
 # The fields are read by VTK's own reader.
@@ -72,10 +73,10 @@ if [[ $(id -u) == 0 ]]; then
 fi
 
 step "format"
-cargo fmt --check
+cargo fmt --all --check
 
 step "lints"
-cargo clippy --profile fast --all-targets --quiet -- -D warnings
+cargo clippy --profile fast --workspace --all-targets --quiet -- -D warnings
 
 step "the library without the program"
 cargo check --profile fast --lib --no-default-features --quiet
@@ -112,6 +113,9 @@ step "tests of the finite-element side"
 
 step "tests, those with live finite elements included"
 cargo test --profile fast -- --include-ignored
+
+step "the Python package"
+bash tests/python.sh
 
 step "done"
 printf '%s\n' "${seconds[@]}"

@@ -1,5 +1,6 @@
 use super::end::End;
 use super::{guilbault, half_space, mirror, quarter_space};
+use crate::base::{Error, Result};
 use serde::{Deserialize, Serialize};
 
 /// How a free end face is modelled.
@@ -40,6 +41,20 @@ impl EdgeModel {
             EdgeModel::Guilbault => guilbault::end(nu, psi),
             EdgeModel::QuarterSpace => quarter_space::end(),
         }
+    }
+}
+
+impl std::str::FromStr for EdgeModel {
+    type Err = Error;
+
+    /// The model called `name`.
+    fn from_str(name: &str) -> Result<Self> {
+        EdgeModel::ALL.into_iter().find(|model| model.name() == name).ok_or_else(|| Error::Value {
+            key: "method".into(),
+            value: format!("{name:?}"),
+            reason: "there is no model of this name".into(),
+            remedy: format!("give one of {}", EdgeModel::ALL.map(EdgeModel::name).join(", ")),
+        })
     }
 }
 

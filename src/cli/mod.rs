@@ -17,6 +17,6 @@ mod solve;
 mod study;
 mod study_options;
 mod sweep;
-mod values;
+pub mod values;
 
 pub use program::run;

@@ -20,7 +20,10 @@ pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
 }
 
 /// The tolerance if it is within its legal range.
-pub(super) fn checked_tolerance(tolerance: f64) -> Result<f64> {
+///
+/// # Errors
+/// [`Error::Value`] that names `--tolerance`.
+pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
     let (low, high) = Key::find("accuracy.tolerance").expect("a key of the list").range;
     if (low..=high).contains(&tolerance) {
         return Ok(tolerance);

@@ -1,6 +1,7 @@
 //! One file per form of output.
 
 pub mod bench;
+pub mod columns;
 pub mod draw;
 pub mod effects_text;
 pub mod field;

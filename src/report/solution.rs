@@ -1,14 +1,15 @@
-//! The files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv` and `points.csv`.
+//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv` and
+//! `points.csv`.
 
+use super::columns::{Columns, Values};
 use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
-use crate::host::write_set;
+use crate::host::{Lock, write_set};
 use crate::solve::{Options, Solution};
-use std::fmt::Write;
 use std::path::Path;
 
-/// Writes the files of `solution` into `folder`: `more` by their names, `points.csv` if `options` asked
-/// for points, and `summary.json` last, so that its presence means that all are there.
+/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV, and
+/// `summary.json` last, so that its presence means that all are there.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
@@ -19,74 +20,91 @@ pub fn write(
     folder: &Path,
 ) -> Result<()> {
     let mut files = more;
-    let mut put = |name: &str, text: String| files.push((name.to_string(), text.into_bytes()));
-    put("pressure.csv", pressure_csv(solution));
-    put("curves.csv", curves_csv(solution));
-    if !options.points.is_empty() {
-        put("points.csv", points_csv(solution, options));
+    let mut put = |name: String, text: String| files.push((name, text.into_bytes()));
+    for table in tables(solution, options) {
+        put(format!("{}.csv", table.name), table.to_csv());
     }
-    put("summary.json", pretty(&solution.summary));
+    put("summary.json".into(), pretty(&solution.summary));
     write_set(folder, &files)
 }
 
-/// The contact pressure, one row a cell.
-fn pressure_csv(solution: &Solution) -> String {
-    let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
-    let mut text = String::from("x_m,y_m,dx_m,dy_m,p_pa\n");
-    for cell in &solution.cells {
-        let [x_m, y_m, dx_m, dy_m] = [cell.x, cell.y, cell.dx, cell.dy].map(|v| v * c_m);
-        row(&mut text, "", &[x_m, y_m, dx_m, dy_m, cell.p * p0_pa]);
+/// As [`write`], into a folder that is locked meanwhile, and made if it is not there.
+///
+/// # Errors
+/// As [`write`]; [`crate::base::Error::Busy`] when another run has the folder.
+pub fn write_locked(solution: &Solution, options: &Options, folder: &Path) -> Result<()> {
+    let _lock = Lock::claim(folder)?;
+    write(solution, options, Vec::new(), folder)
+}
+
+/// All tables of `solution`: `pressure`, `curves` and, if `options` asked for points, `points`.
+pub fn tables(solution: &Solution, options: &Options) -> Vec<Columns> {
+    let mut tables = vec![pressure(solution), curves(solution)];
+    if !options.points.is_empty() {
+        tables.push(points(solution, options));
     }
-    text
+    tables
+}
+
+/// The contact pressure, one row a cell.
+fn pressure(solution: &Solution) -> Columns {
+    let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
+    let rows = solution.cells.iter().map(|cell| {
+        let [x_m, y_m, dx_m, dy_m] = [cell.x, cell.y, cell.dx, cell.dy].map(|v| v * c_m);
+        [x_m, y_m, dx_m, dy_m, cell.p * p0_pa]
+    });
+    let columns = numbers(["x_m", "y_m", "dx_m", "dy_m", "p_pa"].map(String::from), rows);
+    Columns { name: "pressure", columns }
 }
 
 /// The standard curves, one row a point.
-fn curves_csv(solution: &Solution) -> String {
+fn curves(solution: &Solution) -> Columns {
     let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
-    let mut text = format!("body,curve,{}\n", stress_columns());
+    let (mut bodies, mut names, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     for curve in &solution.curves.stress {
-        let place = format!("{},{},", curve.body.name(), curve.name);
         for (at, stress) in curve.at.iter().zip(&curve.stress) {
-            row(&mut text, &place, &with_stress(at.map(|v| v * c_m), *stress * p0_pa));
+            bodies.push(curve.body.name().to_string());
+            names.push(curve.name.clone());
+            rows.push(with_stress(at.map(|v| v * c_m), *stress * p0_pa));
         }
     }
-    text
+    let mut columns =
+        vec![("body".into(), Values::Texts(bodies)), ("curve".into(), Values::Texts(names))];
+    columns.extend(numbers(stress_columns(), rows));
+    Columns { name: "curves", columns }
 }
 
 /// The points that were asked for, in their order.
-fn points_csv(solution: &Solution, options: &Options) -> String {
-    let mut text = format!("body,{}\n", stress_columns());
-    for (point, stress) in options.points.iter().zip(&solution.points) {
-        let place = format!("{},", point.body.name());
-        row(&mut text, &place, &with_stress(point.at_m, *stress * solution.curves.hertz.p0_pa));
+fn points(solution: &Solution, options: &Options) -> Columns {
+    let bodies = options.points.iter().map(|point| point.body.name().to_string()).collect();
+    let rows = options.points.iter().zip(&solution.points);
+    let rows = rows.map(|(p, stress)| with_stress(p.at_m, *stress * solution.curves.hertz.p0_pa));
+    let mut columns = vec![("body".into(), Values::Texts(bodies))];
+    columns.extend(numbers(stress_columns(), rows));
+    Columns { name: "points", columns }
+}
+
+/// Columns of numbers from their rows.
+fn numbers<const N: usize>(
+    names: [String; N],
+    rows: impl IntoIterator<Item = [f64; N]>,
+) -> Vec<(String, Values)> {
+    let mut columns = names.map(|name| (name, Vec::new()));
+    for row in rows {
+        columns.iter_mut().zip(row).for_each(|((_, column), value)| column.push(value));
     }
-    text
+    columns.into_iter().map(|(name, column)| (name, Values::Numbers(column))).collect()
 }
 
 /// Names of the columns of a point and its stresses.
-fn stress_columns() -> String {
-    let components = StressTensor::NAMES.map(|name| format!("{name}_pa")).join(",");
-    format!("x_m,y_m,z_m,{components},von_mises_pa,tau_max_pa")
+fn stress_columns() -> [String; 11] {
+    let [xx, yy, zz, xy, xz, yz] = StressTensor::NAMES.map(|name| format!("{name}_pa"));
+    let [x, y, z, mises, tau] =
+        ["x_m", "y_m", "z_m", "von_mises_pa", "tau_max_pa"].map(String::from);
+    [x, y, z, xx, yy, zz, xy, xz, yz, mises, tau]
 }
 
-fn with_stress(at_m: [f64; 3], stress_pa: StressTensor) -> Vec<f64> {
-    let mut values = at_m.to_vec();
-    values.extend(stress_pa.components());
-    values.extend([stress_pa.von_mises(), stress_pa.tau_max()]);
-    values
-}
-
-/// Appends a row; the numbers have as many digits as it takes to read them back exactly.
-fn row(text: &mut String, place: &str, values: &[f64]) {
-    text.push_str(place);
-    for (i, value) in values.iter().enumerate() {
-        let comma = if i == 0 { "" } else { "," };
-        // Many stresses vanish by symmetry.
-        let written = match value {
-            0.0 => write!(text, "{comma}0"),
-            _ => write!(text, "{comma}{value:e}"),
-        };
-        written.expect("a string grows");
-    }
-    text.push('\n');
+fn with_stress([x, y, z]: [f64; 3], stress_pa: StressTensor) -> [f64; 11] {
+    let [xx, yy, zz, xy, xz, yz] = stress_pa.components();
+    [x, y, z, xx, yy, zz, xy, xz, yz, stress_pa.von_mises(), stress_pa.tau_max()]
 }

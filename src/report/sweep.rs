@@ -1,8 +1,10 @@
 //! The CSV file of a sweep: one row a case in the order of the input, written as the rows come, so
 //! that a run that is stopped at any moment goes on where it was.
 
-use super::table::{number, optional};
+use super::columns::Value;
+use super::table::number;
 use crate::base::{Error, Result};
+use crate::case::Case;
 use crate::host::check_memory;
 use crate::solve::{END_DISTANCES, KeyResults};
 use crate::study::sweep::Outcome;
@@ -23,80 +25,54 @@ pub struct RowLabel {
     pub tolerance: Option<f64>,
 }
 
-/// Columns of the results, after `row` and the sweep's own columns.
-fn result_columns() -> Vec<String> {
-    let mut columns: Vec<String> = [
-        "method",
-        "tolerance_p0",
-        "load_factor",
-        "slenderness",
-        "length_ratio",
-        "load_n",
-        "c_m",
-        "p0_pa",
-        "approach_m",
-        "p_centre_pa",
-        "p_centre_p0",
-        "p_max_pa",
-        "p_max_x_m",
-        "p_max_y_m",
-    ]
-    .map(str::to_string)
-    .to_vec();
-    columns.extend(END_DISTANCES.map(|s| format!("p_{s}C_p0")));
-    columns.extend(
-        [
-            "end_to_centre",
-            "critical_body",
-            "critical_von_mises_pa",
-            "critical_von_mises_p0",
-            "critical_x_m",
-            "critical_y_m",
-            "critical_z_m",
-            "err",
-        ]
-        .map(str::to_string),
-    );
-    columns
-}
+/// A number of a row's results.
+type Number = fn(&Case, &KeyResults) -> f64;
 
-/// The cells of the results.
-fn result_cells(outcome: &Outcome) -> Vec<String> {
-    let (case, results) = match outcome {
-        Ok((case, results)) => (case, results),
-        Err(message) => {
-            let mut cells = vec![String::new(); result_columns().len() - 2];
-            cells.push(one_line(message));
-            return cells;
-        }
+/// The numbers of the results as far as the pressure.
+const PRESSURES: [(&str, Number); 13] = [
+    ("tolerance_p0", |case, _| case.accuracy.tolerance),
+    ("load_factor", |case, _| case.factors().load),
+    ("slenderness", |case, _| case.factors().slenderness),
+    ("length_ratio", |case, _| case.factors().length_ratio),
+    ("load_n", |_, found| found.load_n),
+    ("c_m", |_, found| found.hertz.c_m),
+    ("p0_pa", |_, found| found.hertz.p0_pa),
+    ("approach_m", |_, found| found.approach_m),
+    ("p_centre_pa", |_, found| found.p_centre * found.hertz.p0_pa),
+    ("p_centre_p0", |_, found| found.p_centre),
+    ("p_max_pa", |_, found| found.p_max * found.hertz.p0_pa),
+    ("p_max_x_m", |_, found| found.p_max_at[0] * found.hertz.c_m),
+    ("p_max_y_m", |_, found| found.p_max_at[1] * found.hertz.c_m),
+];
+
+/// Those of the critical stress.
+const CRITICAL: [(&str, Number); 5] = [
+    ("critical_von_mises_pa", |_, found| found.critical.value * found.hertz.p0_pa),
+    ("critical_von_mises_p0", |_, found| found.critical.value),
+    ("critical_x_m", |_, found| found.critical.at[0] * found.hertz.c_m),
+    ("critical_y_m", |_, found| found.critical.at[1] * found.hertz.c_m),
+    ("critical_z_m", |_, found| found.critical.at[2] * found.hertz.c_m),
+];
+
+/// The results of a row by their columns, in their order; of a row that failed, only `err` is there.
+pub fn results(outcome: &Outcome) -> Vec<(String, Value)> {
+    let solved = outcome.as_ref().ok();
+    let number = |name: &str, of: &dyn Fn(&Case, &KeyResults) -> f64| {
+        let value = solved.map_or(f64::NAN, |(case, found)| of(case, found));
+        (name.to_string(), Value::Number(value))
     };
-    let KeyResults { p_centre, critical, .. } = results;
-    let (factors, c, p0) = (case.factors(), results.hertz.c_m, results.hertz.p0_pa);
-    let mut cells = vec![number(case.accuracy.tolerance)];
-    cells.extend(
-        [
-            factors.load,
-            factors.slenderness,
-            factors.length_ratio,
-            results.load_n,
-            c,
-            p0,
-            results.approach_m,
-            p_centre * p0,
-            *p_centre,
-            results.p_max * p0,
-            results.p_max_at[0] * c,
-            results.p_max_at[1] * c,
-        ]
-        .map(number),
-    );
-    cells.extend(results.p_at.map(optional));
-    cells.push(optional(results.p_at[0].map(|p| p / p_centre)));
-    cells.push(critical.body.name().to_string());
-    cells.extend([critical.value * p0, critical.value].map(number));
-    cells.extend(critical.at.map(|v| number(v * c)));
-    cells.push(String::new());
-    cells
+    let text = |name: &str, text: &str| (name.to_string(), Value::Text(text.to_string()));
+    let mut row: Vec<_> = PRESSURES.iter().map(|(name, of)| number(name, of)).collect();
+    for (i, s) in END_DISTANCES.iter().enumerate() {
+        row.push(number(&format!("p_{s}C_p0"), &|_, found| found.p_at[i].unwrap_or(f64::NAN)));
+    }
+    row.push(number("end_to_centre", &|_, found| {
+        found.p_at[0].map_or(f64::NAN, |p| p / found.p_centre)
+    }));
+    row.push(text("critical_body", solved.map_or("", |(_, found)| found.critical.body.name())));
+    row.extend(CRITICAL.iter().map(|(name, of)| number(name, of)));
+    row.push(text("err", outcome.as_ref().err().map_or("", String::as_str)));
+    row
 }
 
 /// A text that takes no second line, so that a line of the file is a row.
@@ -163,7 +139,8 @@ impl SweepFile {
         }
         let header: Vec<String> = std::iter::once("row".to_string())
             .chain(columns.iter().map(|c| one_line(c)))
-            .chain(result_columns())
+            .chain(["method".to_string()])
+            .chain(results(&Err(String::new())).into_iter().map(|(name, _)| name))
             .collect();
         let header = line(&header);
         let size = file.metadata().map_err(io("read"))?.len();
@@ -260,7 +237,10 @@ impl SweepFile {
         let mut cells = vec![(row + 1).to_string()];
         cells.extend(label.cells.iter().map(|c| one_line(c)));
         cells.push(label.method.to_string());
-        cells.extend(result_cells(outcome));
+        cells.extend(results(outcome).into_iter().map(|(_, value)| match value {
+            Value::Number(value) => number(value),
+            Value::Text(text) => one_line(&text),
+        }));
         self.failed += usize::from(outcome.is_err());
         self.waiting.insert(row, line(&cells));
         let mut ready = String::new();

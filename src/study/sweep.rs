@@ -35,6 +35,38 @@ impl std::str::FromStr for Shard {
     }
 }
 
+/// Where the cases of a sweep come from.
+pub trait Cases: Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// The case of row `i`.
+    ///
+    /// # Errors
+    /// What is wrong with the row.
+    fn row(&self, i: usize) -> Result<Case>;
+}
+
+impl Cases for Sweep {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn row(&self, i: usize) -> Result<Case> {
+        self.case(i)
+    }
+}
+
+impl Cases for Vec<Case> {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn row(&self, i: usize) -> Result<Case> {
+        Ok(self[i].clone())
+    }
+}
+
 /// How a sweep is solved.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Settings {
@@ -55,8 +87,8 @@ pub struct Group {
 }
 
 /// The case of row `i` under `settings`.
-fn case_of(sweep: &Sweep, i: usize, settings: &Settings) -> std::result::Result<Case, String> {
-    let case = sweep.case(i).map_err(|e| e.to_string())?;
+fn case_of(sweep: &dyn Cases, i: usize, settings: &Settings) -> std::result::Result<Case, String> {
+    let case = sweep.row(i).map_err(|e| e.to_string())?;
     Ok(match settings.tolerance {
         Some(tolerance) => case.with_tolerance(tolerance),
         None => case,
@@ -66,9 +98,9 @@ fn case_of(sweep: &Sweep, i: usize, settings: &Settings) -> std::result::Result<
 /// The sweep's rows by the contact problem that answers them, in the order of their first rows.
 ///
 /// A shard gets every n-th problem with all of its rows, so that no problem is solved by two.
-pub fn groups(sweep: &Sweep, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
+pub fn groups(sweep: &dyn Cases, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
     let key = |case: Case| Scene::new(&case, settings.method, None).key();
-    let keys: Vec<Option<SceneKey>> = (0..sweep.len())
+    let keys: Vec<Option<SceneKey>> = (0..sweep.rows())
         .into_par_iter()
         .map(|i| case_of(sweep, i, settings).ok().map(key))
         .collect();
@@ -83,7 +115,7 @@ pub fn groups(sweep: &Sweep, settings: &Settings, shard: Option<Shard>) -> Vec<G
 /// # Errors
 /// The first error of `done`, which also stops the run; or [`Error::Io`] when threads cannot be had.
 pub fn run(
-    sweep: &Sweep,
+    sweep: &dyn Cases,
     settings: &Settings,
     groups: &[Group],
     jobs: usize,
@@ -126,7 +158,7 @@ pub fn run(
 
 /// Solves the rows of one problem.
 fn solve_rows(
-    sweep: &Sweep,
+    sweep: &dyn Cases,
     settings: &Settings,
     rows: &[usize],
     done: &(dyn Fn(usize, Outcome) -> Result<()> + Sync),

@@ -1,0 +1,122 @@
+"""Many cases."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+import numpy as np
+from numpy.typing import NDArray
+
+from edgeline import _native
+from edgeline._case import Case
+from edgeline._native import Error
+
+if TYPE_CHECKING:
+    import pandas
+    import pyarrow
+
+Progress = bool | Callable[[int, int], object]
+
+
+@overload
+def sweep(
+    cases: Iterable[Case],
+    method: str = ...,
+    tolerance: float | None = ...,
+    *,
+    jobs: int | None = ...,
+    shard: tuple[int, int] | None = ...,
+    progress: Progress = ...,
+    into: Literal["numpy"] = ...,
+) -> dict[str, NDArray[Any]]: ...
+@overload
+def sweep(
+    cases: Iterable[Case],
+    method: str = ...,
+    tolerance: float | None = ...,
+    *,
+    jobs: int | None = ...,
+    shard: tuple[int, int] | None = ...,
+    progress: Progress = ...,
+    into: Literal["pandas"],
+) -> pandas.DataFrame: ...
+@overload
+def sweep(
+    cases: Iterable[Case],
+    method: str = ...,
+    tolerance: float | None = ...,
+    *,
+    jobs: int | None = ...,
+    shard: tuple[int, int] | None = ...,
+    progress: Progress = ...,
+    into: Literal["arrow"],
+) -> pyarrow.Table: ...
+def sweep(
+    cases: Iterable[Case],
+    method: str = "quarter-space",
+    tolerance: float | None = None,
+    *,
+    jobs: int | None = None,
+    shard: tuple[int, int] | None = None,
+    progress: Progress = False,
+    into: str = "numpy",
+) -> Any:
+    """Solves many cases on all processors into one table.
+
+    The table has one row for each case, in their order, and the columns of
+    `edgeline sweep`: `row` (from 0), `case`, `method`, `tolerance_p0`, pressures
+    at the centre and towards the end, approach, the critical stress and its
+    place. The unit ends a column's name; `_p0` is a fraction of the Hertz
+    pressure. A case that cannot be solved is a row of NaN whose `err` says why.
+
+    `method` and `tolerance` are those of `solve`, for all cases. Cases that
+    differ in scale only are solved once. `jobs` is the number of cases solved at
+    a time, as many as there are processors by default. `shard`, a pair (i, n)
+    with i from 1 to n, solves the i-th of n parts, for several machines; all
+    parts together have each case once.
+
+    `progress` is called with the numbers of rows that are done and of all rows,
+    in the calling thread; True shows a bar of tqdm. What it raises ends the sweep.
+
+    `into` is `"numpy"` for a dict of arrays, `"pandas"` for a DataFrame or
+    `"arrow"` for a pyarrow.Table.
+    """
+    if into not in ("numpy", "pandas", "arrow"):
+        raise Error(
+            f"into = {into!r} is not valid: there is no such table; give numpy, pandas or arrow"
+        )
+    natives = [case._native for case in cases]
+    if progress is True:
+        with _Bar(len(natives)) as bar:
+            rows, table = _native.sweep(natives, method, tolerance, jobs, shard, bar.update)
+    else:
+        rows, table = _native.sweep(natives, method, tolerance, jobs, shard, progress or None)
+    if into == "pandas":
+        import pandas
+
+        return pandas.DataFrame({"row": rows, **table})
+    if into == "arrow":
+        import pyarrow
+
+        return pyarrow.table({"row": rows, **table})
+    return {"row": rows, **{name: np.asarray(values) for name, values in table.items()}}
+
+
+class _Bar:
+    """A bar of tqdm."""
+
+    def __init__(self, total: int) -> None:
+        from tqdm.auto import tqdm
+
+        self._bar = tqdm(total=total, unit="case")
+
+    def update(self, done: int, total: int) -> None:
+        self._bar.total = total
+        self._bar.update(done - self._bar.n)
+
+    def __enter__(self) -> _Bar:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._bar.close()

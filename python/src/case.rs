@@ -1,0 +1,123 @@
+//! Cases, read and checked by the command line's own reader.
+
+use crate::errors::raised;
+use edgeline::base;
+use pyo3::exceptions::PyTypeError;
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use std::path::PathBuf;
+use toml::Value;
+
+/// A contact problem that is known to be legal.
+#[pyclass(frozen, module = "edgeline._native")]
+pub struct Case(pub edgeline::case::Case);
+
+#[pymethods]
+impl Case {
+    /// Reads a case file, or takes a built-in case.
+    #[staticmethod]
+    fn from_path(path: PathBuf) -> PyResult<Self> {
+        edgeline::case::Case::find(&path).map(Self).map_err(raised)
+    }
+
+    /// Takes a case from the text of a case file.
+    #[staticmethod]
+    fn from_text(text: &str) -> PyResult<Self> {
+        edgeline::case::Case::from_toml(text).map(Self).map_err(raised)
+    }
+
+    /// Takes a case from what its file would hold.
+    #[staticmethod]
+    fn from_tables(tables: &Bound<'_, PyDict>) -> PyResult<Self> {
+        let text = toml::to_string(&table(tables, "")?).map_err(|e| {
+            PyTypeError::new_err(format!("these tables do not make a case file: {e}"))
+        })?;
+        // The lines are those of a text that nobody has seen.
+        edgeline::case::Case::from_toml(&text).map(Self).map_err(|e| raised(without_line(e)))
+    }
+
+    /// The case file, to the last digit.
+    fn to_toml(&self) -> String {
+        self.0.to_toml()
+    }
+
+    /// The case's name.
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The case file as JSON.
+    fn to_json(&self) -> String {
+        serde_json::to_string(&self.0).expect("a case has the form of its file")
+    }
+
+    /// E* (Pa), C (m) and p0 (Pa) as JSON.
+    fn hertz(&self) -> String {
+        serde_json::to_string(&self.0.hertz()).expect("scales are plain data")
+    }
+
+    /// W, S_l and L_r.
+    fn factors(&self) -> [f64; 3] {
+        let factors = self.0.factors();
+        [factors.load, factors.slenderness, factors.length_ratio]
+    }
+}
+
+/// The same error without a line.
+fn without_line(error: base::Error) -> base::Error {
+    match error {
+        base::Error::File { path, message, remedy, .. } => {
+            base::Error::File { path, line: None, message, remedy }
+        }
+        other => other,
+    }
+}
+
+/// A table of a case file; what is None does not stand there.
+fn table(values: &Bound<'_, PyDict>, path: &str) -> PyResult<toml::Table> {
+    let mut table = toml::Table::new();
+    for (key, given) in values {
+        let key: String = key.extract()?;
+        if !given.is_none() {
+            let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
+            table.insert(key, value(&given, &path)?);
+        }
+    }
+    Ok(table)
+}
+
+/// A value of a case file; `path` is where it stands.
+fn value(given: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+    if given.is_instance_of::<PyBool>() {
+        return given.extract().map(Value::Boolean);
+    }
+    if given.is_instance_of::<PyInt>() {
+        // What is too large for an integer of TOML is a number all the same.
+        return match given.extract() {
+            Ok(value) => Ok(Value::Integer(value)),
+            Err(_) => given.extract().map(Value::Float),
+        };
+    }
+    if given.is_instance_of::<PyFloat>() {
+        return given.extract().map(Value::Float);
+    }
+    if given.is_instance_of::<PyString>() {
+        return given.extract().map(Value::String);
+    }
+    if let Ok(values) = given.cast::<PyDict>() {
+        return table(values, path).map(Value::Table);
+    }
+    if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
+        let items = given.try_iter()?.map(|item| value(&item?, path));
+        return items.collect::<PyResult<_>>().map(Value::Array);
+    }
+    if let Ok(path) = given.extract::<PathBuf>() {
+        return Ok(Value::String(path.to_string_lossy().into_owned()));
+    }
+    // Other numbers: those of numpy.
+    given.extract().map(Value::Float).map_err(|_| {
+        let kind = given.get_type();
+        PyTypeError::new_err(format!("{path} is a {kind}, which a case file cannot hold"))
+    })
+}

@@ -1,0 +1,63 @@
+//! Where work is done: without the interpreter's lock, and with no panic getting out.
+
+use crate::errors::Error;
+use pyo3::prelude::*;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Calls that are at work.
+static AT_WORK: AtomicUsize = AtomicUsize::new(0);
+
+/// Counts a call as at work while it lives.
+struct AtWork;
+
+impl AtWork {
+    /// This call, and whether another one was at work before.
+    fn begin() -> (Self, bool) {
+        (Self, AT_WORK.fetch_add(1, Ordering::Relaxed) > 0)
+    }
+}
+
+impl Drop for AtWork {
+    fn drop(&mut self) {
+        AT_WORK.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// The exception that a panic becomes.
+pub fn panicked() -> PyErr {
+    Error::new_err("the program failed at this case; please report it")
+}
+
+/// Does `work` without the interpreter's lock; it learns whether another call is at work.
+///
+/// # Errors
+/// [`Error`] where `work` panics.
+pub fn guarded<T: Send>(py: Python<'_>, work: impl FnOnce(bool) -> T + Send) -> PyResult<T> {
+    py.detach(|| {
+        let (_at_work, beside) = AtWork::begin();
+        catch_unwind(AssertUnwindSafe(|| work(beside)))
+    })
+    .map_err(|_| panicked())
+}
+
+/// As [`guarded`]. One call has all processors; a call beside another one has a thread of its own, so
+/// that calls of several Python threads do not wait for each other's parts.
+///
+/// # Errors
+/// As [`guarded`].
+pub fn work<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
+    guarded(py, |beside| {
+        match beside.then(|| rayon::ThreadPoolBuilder::new().num_threads(1).build()) {
+            Some(Ok(own)) => own.install(work),
+            // Where no thread is to be had, waiting is what is left.
+            _ => work(),
+        }
+    })
+}
+
+/// Panics where a solve would; for the tests.
+#[pyfunction]
+pub fn fail(py: Python<'_>) -> PyResult<()> {
+    work(py, || panic!("as the tests asked for"))
+}

@@ -1,0 +1,128 @@
+"""Cases: the same reader, the same checks and the same words as the command line's."""
+
+from __future__ import annotations
+
+import pickle
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import edgeline
+
+TEXT = """
+name = "roller"
+[roller]
+radius_m = 10e-3
+length_m = 10e-3
+young_pa = 210e9
+poisson = 0.3
+[block]
+length_m = 20e-3
+young_pa = 210e9
+poisson = 0.3
+[load]
+force_n = 10e3
+"""
+
+
+def tables() -> dict[str, Any]:
+    steel = {"young_pa": 210e9, "poisson": 0.3}
+    return {
+        "name": "roller",
+        "roller": {"radius_m": 10e-3, "length_m": 10e-3, **steel},
+        "block": {"length_m": 20e-3, **steel},
+        "load": {"force_n": 10e3},
+    }
+
+
+def test_text_file_and_tables_are_the_same_case(tmp_path: Path) -> None:
+    path = tmp_path / "roller.toml"
+    path.write_text(TEXT)
+    cases = [
+        edgeline.Case.from_toml(TEXT),
+        edgeline.Case.from_toml(path),
+        edgeline.Case.from_toml(str(path)),
+        edgeline.Case(**tables()),
+        edgeline.Case.from_toml(edgeline.Case.from_toml(TEXT).to_toml()),
+        edgeline.Case(**edgeline.Case.from_toml(TEXT).tables),
+        pickle.loads(pickle.dumps(edgeline.Case.from_toml(TEXT))),
+    ]
+    assert len(set(cases)) == 1
+    assert cases[0].name == "roller" and "roller" in repr(cases[0])
+    assert cases[0].factors["L_r"] == 0.5
+
+
+def test_numbers_of_every_kind_are_taken() -> None:
+    given = tables()
+    given["load"] = {"force_n": np.float32(10e3)}
+    given["roller"]["young_pa"] = np.int64(210_000_000_000)
+    given["block"]["young_pa"] = 210_000_000_000
+    given["accuracy"] = None
+    assert edgeline.Case(**given) == edgeline.Case(**tables())
+    given["load"] = {"force_n": 10**25}
+    with pytest.raises(edgeline.Error, match="force_n = .* is not valid"):
+        edgeline.Case(**given)
+
+
+def test_a_changed_case_keeps_the_rest() -> None:
+    case = edgeline.Case(**tables())
+    heavier = case.changed(name="heavier", load={"force_n": 20e3})
+    assert heavier.tables["load"]["force_n"] == 20e3
+    assert heavier.tables["roller"] == case.tables["roller"]
+    assert heavier.hertz["c_m"] == pytest.approx(np.sqrt(2.0) * case.hertz["c_m"], rel=1e-12)
+    assert heavier != case
+
+
+@pytest.mark.parametrize(
+    ("wrong", "wanted"),
+    [
+        ({"roler": {}}, "unknown key roler; did you mean roller?"),
+        ({"roller": {"radius": 1.0}}, "unknown key roller.radius; did you mean radius_m?"),
+        ({"load": {"force_n": "10"}}, 'load.force_n = "10" is not valid: a number belongs here'),
+        ({"load": {"force_n": float("nan")}}, "load.force_n = nan is not valid"),
+        ({"load": None}, "there is no load"),
+        ({"block": 3}, "block = 3 is not valid: a table belongs here"),
+        ({"name": "a b"}, "name"),
+    ],
+)
+def test_wrong_tables_are_refused(wrong: dict[str, Any], wanted: str) -> None:
+    with pytest.raises(edgeline.Error) as refused:
+        edgeline.Case(**{**tables(), **wrong})
+    assert str(refused.value).startswith("the case: ") and wanted in str(refused.value)
+
+
+def test_what_no_file_holds_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="load.force_n is a <class 'object'>"):
+        edgeline.Case(**{**tables(), "load": {"force_n": object()}})
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        ("poisson = 0.3", "poisson = 0.6"),
+        ("radius_m", "radius"),
+        ("[block]\n", ""),
+        ("10e3", "10e13"),
+        ("name =", "name"),
+        ('"roller"', '"no such name"'),
+    ],
+)
+def test_messages_are_those_of_the_command_line(
+    change: tuple[str, str], tmp_path: Path, program: Any
+) -> None:
+    path = tmp_path / "wrong.toml"
+    path.write_text(TEXT.replace(*change))
+    said = program("solve", path, "--out", tmp_path / "out")
+    with pytest.raises(edgeline.Error) as refused:
+        edgeline.Case.from_toml(path)
+    assert said.returncode == 2
+    assert said.stderr == f"error: {refused.value}\n"
+
+
+def test_a_missing_file_is_told_as_by_the_command_line(tmp_path: Path, program: Any) -> None:
+    said = program("solve", tmp_path / "none.toml", "--out", tmp_path / "out")
+    with pytest.raises(edgeline.Error) as refused:
+        edgeline.Case.from_toml(tmp_path / "none.toml")
+    assert said.stderr == f"error: {refused.value}\n"

@@ -1,0 +1,79 @@
+"""The package as a whole: panics, threads, types and documentation."""
+
+from __future__ import annotations
+
+import inspect
+import os
+import pydoc
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+import edgeline
+from edgeline import _native
+
+PYTHON = Path(__file__).parents[1]
+
+
+def test_a_panic_is_an_error(capfd: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(edgeline.Error, match="please report it"):
+        _native.fail()
+    assert "as the tests asked for" in capfd.readouterr().err
+    # And nothing is left behind.
+    assert edgeline.solve(edgeline.Case.from_toml("half-short"), tolerance=1e-2).summary
+
+
+def test_others_run_while_one_solves(case: edgeline.Case) -> None:
+    """The interpreter's lock is released: a thread counts on while the other one solves."""
+    ticks: list[float] = []
+    stop = threading.Event()
+
+    def tick() -> None:
+        while not stop.wait(1e-3):
+            ticks.append(time.perf_counter())
+
+    ticker = threading.Thread(target=tick)
+    ticker.start()
+    began = time.perf_counter()
+    edgeline.solve(case, tolerance=1e-4)
+    ended = time.perf_counter()
+    stop.set()
+    ticker.join()
+    within = [t for t in ticks if began < t < ended]
+    assert len(within) >= 5, f"{len(within)} ticks in {ended - began:.3f} s"
+
+
+def test_every_public_name_is_documented() -> None:
+    for name in edgeline.__all__:
+        thing = getattr(edgeline, name)
+        if callable(thing):
+            assert inspect.getdoc(thing), name
+            for member, value in vars(thing).items() if inspect.isclass(thing) else ():
+                if not member.startswith("_"):
+                    assert inspect.getdoc(value), f"{name}.{member}"
+    text = pydoc.plain(pydoc.render_doc(edgeline))
+    for wanted in ("class Case", "class Solution", "class Error", "pressure(self, x", "SI units"):
+        assert wanted in text, wanted
+
+
+def test_types_are_strict() -> None:
+    """mypy --strict accepts the package, its stubs and the examples."""
+    pytest.importorskip("mypy")
+    command = [sys.executable, "-m", "mypy", "--strict", "--cache-dir", os.devnull]
+    done = subprocess.run(
+        [*command, "edgeline", "examples"], cwd=PYTHON, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@pytest.mark.parametrize("example", sorted((PYTHON / "examples").glob("*.py")), ids=lambda p: p.stem)
+def test_examples_run(example: Path, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, example], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    assert done.stdout

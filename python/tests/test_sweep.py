@@ -1,0 +1,106 @@
+"""Sweeps: the rows of the command line, progress, shards, and what ends one."""
+
+from __future__ import annotations
+
+import csv
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import edgeline
+
+RATIOS = [0.5, 0.7, 1.0]
+LOADS = [1e-4, 5e-4]
+
+
+@pytest.fixture(scope="module")
+def cases() -> list[edgeline.Case]:
+    steel = {"young_pa": 210e9, "poisson": 0.3}
+    return [
+        edgeline.Case(
+            name=f"row-{len(RATIOS) * i + j + 1}",
+            roller={"radius_m": 10e-3, **steel},
+            block=steel,
+            dimensionless={"W": load, "S_l": 5.0, "L_r": ratio},
+        )
+        for i, load in enumerate(LOADS)
+        for j, ratio in enumerate(RATIOS)
+    ]
+
+
+def test_the_rows_are_those_of_the_command_line(
+    cases: list[edgeline.Case], tmp_path: Path, program: Any
+) -> None:
+    file = tmp_path / "sweep.toml"
+    file.write_text(
+        "[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n"
+        "[block]\nyoung_pa = 210e9\npoisson = 0.3\n"
+        f"[dimensionless]\nW = {LOADS}\nS_l = 5.0\nL_r = {RATIOS}\n"
+    )
+    out = tmp_path / "sweep.csv"
+    done = program("sweep", file, "--tolerance", "1e-2", "--out", out)
+    assert done.returncode == 0, done.stderr
+    with out.open() as opened:
+        rows = list(csv.DictReader(opened))
+    table = edgeline.sweep(cases, tolerance=1e-2)
+    assert table["row"].tolist() == list(range(len(cases)))
+    assert table["case"].tolist() == [case.name for case in cases]
+    shared = [name for name in rows[0] if name in table]
+    assert len(shared) > 25 and shared[-1] == "err"
+    for name in shared[1:]:
+        theirs = [row[name] for row in rows]
+        if table[name].dtype == np.float64:
+            # The file has seven digits.
+            wanted = np.array([float(text or "nan") for text in theirs])
+            assert np.allclose(table[name], wanted, rtol=1e-6, equal_nan=True), name
+        else:
+            assert table[name].tolist() == theirs
+
+
+def test_frames_and_tables_hold_the_same(cases: list[edgeline.Case]) -> None:
+    pytest.importorskip("pandas")
+    pytest.importorskip("pyarrow")
+    own = edgeline.sweep(cases[:2], tolerance=1e-2)
+    frame = edgeline.sweep(cases[:2], tolerance=1e-2, into="pandas")
+    table = edgeline.sweep(cases[:2], tolerance=1e-2, into="arrow")
+    assert list(own) == list(frame.columns) == table.column_names
+    assert frame["p_max_pa"].tolist() == own["p_max_pa"].tolist()
+    assert table["critical_body"].to_pylist() == own["critical_body"].tolist()
+    with pytest.raises(edgeline.Error, match="give numpy, pandas or arrow"):
+        edgeline.sweep(cases, into="polars")  # type: ignore[call-overload]
+
+
+def test_shards_have_each_case_once(cases: list[edgeline.Case]) -> None:
+    whole = edgeline.sweep(cases, tolerance=1e-2)
+    shards = [edgeline.sweep(cases, tolerance=1e-2, shard=(i, 2)) for i in (1, 2)]
+    rows = np.concatenate([shard["row"] for shard in shards])
+    p_max = np.concatenate([shard["p_max_pa"] for shard in shards])
+    assert sorted(rows.tolist()) == list(range(len(cases)))
+    assert np.array_equal(p_max[np.argsort(rows)], whole["p_max_pa"])
+    with pytest.raises(edgeline.Error, match="write i/n"):
+        edgeline.sweep(cases, shard=(3, 2))
+
+
+def test_nothing_to_do_is_done() -> None:
+    assert edgeline.sweep([])["row"].tolist() == []
+
+
+def test_progress_counts_and_can_end_a_sweep(cases: list[edgeline.Case]) -> None:
+    seen: list[tuple[int, int]] = []
+    edgeline.sweep(cases, tolerance=1e-2, progress=lambda done, all: seen.append((done, all)))
+    done = [count for count, _ in seen]
+    assert done == sorted(done) and seen[-1] == (len(cases), len(cases))
+
+    def enough(done: int, total: int) -> None:
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        edgeline.sweep(cases, tolerance=1e-2, progress=enough)
+
+
+def test_a_bar_of_tqdm(cases: list[edgeline.Case], capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("tqdm")
+    edgeline.sweep(cases[:2], tolerance=1e-2, progress=True)
+    assert "2/2" in capsys.readouterr().err
