@@ -1,6 +1,6 @@
 //! A case as a file gives it, before it is known to be one.
 
-use super::model::{Accuracy, Block, Case, Factors, Load, Roller};
+use super::model::{Case, Factors};
 use crate::base::Material;
 
 /// Which of the two ways gives the load and the lengths.
@@ -26,15 +26,9 @@ impl Draft {
     pub fn new(name: impl Into<String>, form: Form) -> Self {
         let missing = f64::NAN;
         let material = Material { young_pa: missing, poisson: missing };
-        let case = Case {
-            name: name.into(),
-            roller: Roller { radius_m: missing, length_m: missing, material },
-            block: Block { length_m: missing, material },
-            load: Load { force_n: missing },
-            accuracy: Accuracy::default(),
-        };
-        let none = Factors { load: missing, slenderness: missing, length_ratio: missing };
-        Self { case, factors: (form == Form::Factors).then_some(none) }
+        let factors = Factors { load: missing, slenderness: missing, length_ratio: missing };
+        let case = Case::from_factors(name, missing, material, material, factors);
+        Self { case, factors: (form == Form::Factors).then_some(factors) }
     }
 
     /// The draft of a case, in the given form.
