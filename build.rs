@@ -1,12 +1,12 @@
-//! Lists the files that are built into the program: the recorded finite-element results and the
-//! sources of the finite-element side. Listing them here keeps the lists complete by themselves.
-//! Evaluates the closed forms that the stresses' tables interpolate, which takes longer than a solve.
+//! Lists the files that are built into the program, the recorded finite-element results and the
+//! Python sources of the finite-element model, so that the lists are always complete. Evaluates the
+//! closed forms for the tables of stresses, which would take longer than a solve.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-// The closed forms as the program has them.
+// The closed forms of the program itself.
 #[allow(dead_code)]
 #[path = "src/kernels"]
 mod kernels {
@@ -25,7 +25,7 @@ fn main() {
     tabulate(&out);
 }
 
-/// Writes the lists of recorded results and of the finite-element side's sources.
+/// Writes the lists of recorded results and of the Python sources.
 fn embed_files(root: &Path, out: &Path) {
     println!("cargo::rerun-if-changed=results/reference");
     let mut records = String::from("&[");
@@ -40,8 +40,8 @@ fn embed_files(root: &Path, out: &Path) {
     records.push(']');
     fs::write(out.join("records.rs"), records).expect("OUT_DIR can be written");
 
-    // The files are watched, not their folder, which also takes the interpreter's cache. A file
-    // that is new is found all the same: another one has to change to import it.
+    // Cargo watches the files, not their folder, which also contains the interpreter's cache. A new
+    // file is found nevertheless, because another one must change to import it.
     let mut sources = String::from("&[");
     for file in children(&root.join("fem/edgeline_fem")) {
         if file.extension().is_some_and(|e| e == "py") {
@@ -80,7 +80,7 @@ fn tabulate(out: &Path) {
     fs::write(out.join("wave_ww.f64"), &bytes).expect("OUT_DIR can be written");
 }
 
-/// What a folder holds, by name; nothing if it is not there.
+/// The names in a folder, sorted; none if there is no folder.
 fn children(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).into_iter().flatten();
     let mut paths: Vec<PathBuf> = entries.filter_map(|e| e.ok()).map(|e| e.path()).collect();

@@ -1,8 +1,8 @@
 //! How time and memory grow with cells, accuracy, points and cases, with fitted exponents.
 //!
 //! `cargo bench --bench growth` prints one Markdown table for each; one thread. Takes a minute or
-//! two. Memory is the largest number of bytes that the work itself had allocated at a time, counted
-//! by the allocator: the process's own size would hide it.
+//! two. Memory is the largest number of bytes that were allocated at one time, counted by the
+//! allocator; the size of the process would hide it.
 
 use edgeline::base::Material;
 use edgeline::body::{EdgeModel, Resolution};
@@ -38,7 +38,7 @@ unsafe impl GlobalAlloc for Counting {
 #[global_allocator]
 static ALLOCATOR: Counting = Counting;
 
-/// Median seconds of some runs after one for nothing, and the most memory that one took (bytes).
+/// Median time (s) of some runs after a first one, and the largest memory of a run (bytes).
 fn cost<T>(work: impl Fn() -> T) -> (f64, usize) {
     drop(black_box(work()));
     let before = NOW.load(Relaxed);

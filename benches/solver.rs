@@ -1,4 +1,5 @@
-//! Where the time goes: kernels, compliance, contact, stresses and the complete solve, on one thread.
+//! Where the time goes: kernels, compliance, contact, stresses and the complete solve, on one
+//! thread.
 //!
 //! `cargo bench --bench solver`; a part by its name: `cargo bench --bench solver -- complete`. Sizes
 //! stand on a logarithmic scale. `docs/performance.md` has the tables.
@@ -17,14 +18,14 @@ use std::f64::consts::PI;
 use std::hint::black_box;
 use std::time::Duration;
 
-/// As the program has it.
+/// The allocator of the program.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 /// Poisson's ratio of steel.
 const NU: f64 = 0.3;
 
-/// The accuracy that the targets are stated for (p0).
+/// The tolerance of the measurements (p0).
 const TOLERANCE: f64 = 5e-3;
 
 /// A steel roller on a steel block, 10 mm in radius.
@@ -39,7 +40,7 @@ fn kernels(c: &mut Criterion) {
     let table = WaveTable::new(NU);
     let mut group = c.benchmark_group("kernels");
     for n in [16usize, 256, 4096] {
-        // Places from a hundredth to ten half-widths away, as a field asks for them.
+        // Distances from a hundredth to ten half-widths, as in a field.
         let places: Vec<f64> = (0..n).map(|i| 0.01 * 1000f64.powf(i as f64 / n as f64)).collect();
         let (seen, loads) = (Places::new(places.clone(), 0.5, true), vec![[1.0; WAVES]; n]);
         group.throughput(Throughput::Elements(n as u64));
@@ -72,7 +73,7 @@ fn kernels(c: &mut Criterion) {
     group.finish();
 }
 
-/// The block of a scene and its layers, one a wavenumber.
+/// The block of a scene and its layers, one per wavenumber.
 fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let block = scene.bodies.block;
     let shape = Shape { contact: scene.half_length, half: block.half, nu: block.nu };
@@ -172,8 +173,8 @@ fn complete(c: &mut Criterion) {
     }
 }
 
-/// The pressure alone of the problem that general contact codes solve; within 1 % at this tolerance
-/// (tests/numerics/verification.rs).
+/// The pressure alone of a half-space contact, the problem of general contact codes; within 1 % at
+/// this tolerance (tests/numerics/verification.rs).
 fn half_space(c: &mut Criterion) {
     let scene = Scene::new(&case(5.0, 1.0).with_tolerance(1e-2), EdgeModel::HalfSpace, None);
     c.bench_function("half-space/pressure, S_l 5", |b| {

@@ -14,8 +14,8 @@ use edgeline::solve::{Scene, SolvedScene};
 use edgeline::stress::BodyKind;
 use std::path::Path;
 
-/// Values of a plane in units of p0 beyond this are drawn as this: half-space and mirror would
-/// otherwise leave no colours for the others.
+/// Largest magnitude of the colour scale (p0). Without it, the large values of half-space and
+/// mirror would leave few colours for the other models.
 const LIMIT: f64 = 1.0;
 
 fn main() -> Result<()> {
@@ -69,7 +69,7 @@ fn main() -> Result<()> {
     Ok(())
 }
 
-/// The panels of the four models' curves, still empty.
+/// The panels of the four models' curves, without curves.
 fn panels() -> Vec<Panel> {
     [
         ("Pressure on x = 0", "distance from the roller's end (C)", 5.0, "p / p0"),

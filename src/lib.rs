@@ -1,8 +1,8 @@
 //! Contact pressure and stresses at the ends of finite line contacts.
 //!
 //! A cylindrical roller is pressed on a rectangular block; both end in free faces. The library
-//! solves the frictionless contact and the stress fields of both bodies semi-analytically and
-//! holds the harness that compares them with finite elements.
+//! solves the frictionless contact and the stress fields of both bodies semi-analytically, and
+//! compares them with finite elements.
 //!
 //! # From a case to pressures and stresses
 //!
@@ -27,9 +27,9 @@
 //! # Ok::<(), edgeline::base::Error>(())
 //! ```
 //!
-//! Places are x, y, z in units of C, results in units of p0. [`solve::solve`] also gives the standard
-//! curves, the pressure in cells and a summary in SI units. With `default-features = false` the crate is
-//! the numerics alone, without the program and what it needs.
+//! Points are x, y, z in units of C, results in units of p0. [`solve::solve`] also gives the
+//! standard curves, the pressure in cells and a summary in SI units. Without its default features
+//! the crate contains the numerics alone, without the program and its dependencies.
 //!
 //! # Conventions
 //!
@@ -42,17 +42,18 @@
 //!
 //! # Layers
 //!
-//! Each module imports only modules above it in this list; `tests/numerics/layering.rs` checks that.
-//! `docs/architecture.md` shows the way of a case through them, and what to touch to add something.
+//! Each module imports only modules above it in this list; `tests/numerics/layering.rs` checks
+//! that. `docs/architecture.md` shows the way of a case through them, and what to touch to add
+//! something.
 //!
-//! | module | what lives there |
+//! | module | contents |
 //! |---|---|
 //! | [`base`] | materials, Hertz scales, axes, quadrature, the stress tensor, the error type |
 //! | [`kernels`] | closed forms: deflection, Love's stresses, Hertz, loads of one wavenumber |
 //! | [`body`] | a finite body's compliance per wavenumber, one file per edge model |
 //! | [`contact`] | load-controlled contact of two bodies |
 //! | [`stress`] | stresses at points, standard curves, critical points |
-//! | `host` | files that appear whole or not at all, locked folders, memory, child processes |
+//! | `host` | complete files, locked folders, memory, child processes |
 //! | [`cells`] | contact and stresses on uniform cells of constant pressure, the published method |
 //! | [`case`](mod@case) | case and study files, their validation and expansion |
 //! | [`solve`](mod@solve) | one case and one method to one [`solve::Solution`] |
@@ -61,7 +62,7 @@
 //! | [`report`] | one file per form of output |
 //! | [`cli`] | one file per subcommand |
 
-// The one exception is `host/system.rs`, which says why.
+// The one exception is `host/system.rs`, which gives the reason.
 #![deny(unsafe_code)]
 #![warn(missing_docs)]
 

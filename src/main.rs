@@ -1,11 +1,11 @@
-//! The program; everything it does stands in the library.
+//! The program; its code is in the library.
 
 #![forbid(unsafe_code)]
 
 use std::process::ExitCode;
 
-/// A solve asks for many buffers of some kilobytes for a short time; the system's allocator spends a tenth
-/// of all time on them.
+/// A solve allocates many short-lived buffers of some kilobytes, which take a tenth of its time
+/// with the system's allocator.
 #[global_allocator]
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 

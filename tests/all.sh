@@ -3,17 +3,17 @@
 #
 #   bash tests/all.sh
 #
-# Everything is built in the profile `fast`, optimized as the release is but in pieces that compile side
-# by side, so nothing is compiled twice but for lints. The seconds of each step are printed.
+# Everything is built once, in the profile `fast`, which is optimized like the release but compiles in
+# parallel. The seconds of each step are printed.
 #
 # Installs Debian or Ubuntu packages as root or by sudo. Exit code 0 if all passed, 2 if something is
-# missing that it cannot install, else that of what failed.
+# missing that it cannot install, else that of the step that failed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=()
 name="" began=$SECONDS
 
-# Ends a step, says what it took, and begins the next one.
+# Ends a step, prints its time, and begins the next one.
 step() {
     if [[ $name ]]; then
         seconds+=("$(printf '%5d s  %s' "$((SECONDS - began))" "$name")")
@@ -66,7 +66,7 @@ fi
 # The interpreter's cache beside the sources would make cargo build anew.
 export PYTHONDONTWRITEBYTECODE=1
 
-# What is installed, or allowed, must not be skipped.
+# Tests whose tools are installed, or whose rights are given, must not be skipped.
 export EDGELINE_REQUIRE_BROWSER=1 EDGELINE_REQUIRE_VTK=1
 if [[ $(id -u) == 0 ]]; then
     export EDGELINE_REQUIRE_MOUNT=1

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Shows that the tests notice wrong formulas: changes one line of the kernels or the solver at a time,
-# in a copy of the project, and runs the tests that should fail then.
+# Shows that the tests detect wrong formulas: changes one line of the kernels or the solver at a time,
+# in a copy of the project, and runs the tests that should then fail.
 #
 #   bash tests/mutate.sh [WORD]
 #
-# With a word only the mutants whose line below has it: `gates` for the one that the accuracy gates
-# should notice. The copy stands in target/mutants. Exit code 0 if every mutant was caught, 1 if one survived, 2 if a
-# mutant no longer fits its file or does not build, or the tests fail without any.
+# With a word, only the mutants whose line below contains it: `gates` for the one that the accuracy
+# gates should detect. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if one
+# survived, 2 if a mutant no longer fits its file or does not build, or if the tests fail without any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
@@ -15,8 +15,8 @@ mkdir -p "$copy"
 
 solver="--test numerics -- verification fields"
 
-# File, the line's text, what it becomes, the tests that should notice and, where that matters, what
-# they should say. A text must stand in its file exactly once.
+# File, the text of the line, its replacement, the tests that should detect it and, if it matters, their
+# message. A text must occur in its file exactly once.
 mutants=(
     "src/kernels/boussinesq.rs @@ -1.5 / PI * z @@ -1.4 / PI * z @@ --lib kernels::boussinesq"
     "src/kernels/deflection.rs @@ (log(0) + log(1)) + x * difference @@ (log(0) + log(1)) - x * difference @@ --lib kernels::deflection"
@@ -24,8 +24,8 @@ mutants=(
     "src/kernels/plate.rs @@ along + (1.0 - near) * up @@ along + (1.0 + near) * up @@ --lib kernels::plate"
     "src/kernels/strip.rs @@ (potential(2 * m) - potential(2 * m + 2)) @@ (potential(2 * m) + potential(2 * m + 2)) @@ --lib kernels::strip"
     "src/body/finite.rs @@ identity(n, n) - from_face * &to_face @@ identity(n, n) + from_face * &to_face @@ $solver"
-    "src/body/finite.rs @@ .map(|i| Image { weight: 2.0, ..*i }) @@ .map(|i| Image { weight: 1.0, ..*i }) @@ $solver"
-    "src/contact/solver.rs @@ let load = 0.5 * PI * length; @@ let load = 0.4 * PI * length; @@ $solver"
+    "src/body/finite.rs @@ .map(|i| Image { weight: 2.0 * i.weight, ..*i }) @@ .map(|i| Image { weight: i.weight, ..*i }) @@ $solver"
+    "src/contact/solver.rs @@ None => (problem.load / load, 0.0), @@ None => (0.8 * problem.load / load, 0.0), @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
     "src/kernels/strip.rs @@ [fi + hr, fi - hr, -hi] @@ [fi + hr, fi + hr, -hi] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
@@ -43,7 +43,7 @@ refuse() {
     exit 2
 }
 
-# What is under version control, as it stands now; unchanged files keep their times for cargo.
+# The current state of all files under version control; unchanged files keep their times for cargo.
 rm -rf "$copy/tree"
 mkdir "$copy/tree"
 git ls-files -z --deduplicate | xargs -0 cp --parents --preserve=timestamps --target-directory="$copy/tree"

@@ -21,8 +21,8 @@ pub fn builtin_case(name: &str) -> Option<Result<Case>> {
 }
 
 impl Case {
-    /// Reads the case file at `path`, or takes the built-in case of that name where no such file
-    /// exists.
+    /// Reads the case file at `path`, or takes the built-in case of that name if there is no such
+    /// file.
     ///
     /// # Errors
     /// As [`Case::read`]; the error about a missing file names the built-in cases.

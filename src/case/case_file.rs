@@ -63,7 +63,7 @@ pub(super) fn form<'d>(root: &Table<'d>) -> Result<(Form, Table<'d>)> {
     }
 }
 
-/// The name, which also names folders.
+/// The name. Folders are named after it.
 pub(super) fn name<'d>(root: &Table<'d>) -> Result<&'d str> {
     root.require("name", "name = \"flush-short\"")?.string()
 }
@@ -73,14 +73,15 @@ pub(super) fn keys_of(form: Form) -> Vec<&'static Key> {
     KEYS.iter().filter(|key| key.is_of(form)).collect()
 }
 
-/// Refuses what is neither one of `more` nor a table of a case file at the top level.
+/// Refuses keys at the top level that are neither in `more` nor tables of a case file.
 pub(super) fn only_tables(root: &Table, more: &[&'static str]) -> Result<()> {
     let mut known: Vec<&str> = more.iter().copied().chain(KEYS.iter().map(Key::table)).collect();
     known.dedup();
     root.only(&known)
 }
 
-/// What a file gives for `keys`, whose tables must hold nothing else, in the order of the keys.
+/// The values of `keys` in a file, in the order of the keys. Their tables must not contain other
+/// keys.
 pub(super) fn entries<'d>(
     root: &Table<'d>,
     keys: &[&'static Key],

@@ -1,29 +1,28 @@
-//! Whether a case is legal, as a value. Readers add the place in their file, see
-//! `document::Table::place`.
+//! Checks of a case as a value. Readers add the place in their file, see `document::Table::place`.
 
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::{Case, Factors};
 use crate::base::{Error, Result};
 
-/// Letters of a name, at most.
+/// Largest number of letters of a name.
 pub(super) const MAX_NAME: usize = 64;
 
-/// A case that was written from factors on a limit is a rounding beyond it.
+/// Rounding: a case from factors at a limit may exceed the limit by this factor.
 const ROUNDING: f64 = 1.0 + 1e-9;
 
 impl Case {
     /// Refuses a case with a name or a number that is not legal, or whose factors are not.
     ///
     /// # Errors
-    /// [`Error::Value`] with the key of the case file that is at fault, `block.length_m`.
+    /// [`Error::Value`] with the key of the case file, for example `block.length_m`.
     pub fn check(&self) -> Result<()> {
         check_name(&self.name)?;
         check_numbers(&Draft::of(self, Form::Load))?;
         self.check_factors()
     }
 
-    /// Checks what the load and the lengths amount to.
+    /// Checks the factors that follow from the load and the lengths.
     fn check_factors(&self) -> Result<()> {
         let factors = self.factors();
         let refuse = |path: &str, value: f64, reason: String, remedy: &str| {
@@ -82,7 +81,7 @@ impl Draft {
     }
 }
 
-/// Refuses what cannot name a folder.
+/// Refuses a text that cannot be the name of a folder.
 pub(super) fn check_name(name: &str) -> Result<()> {
     let plain = |c: char| c.is_ascii_alphanumeric() || "._-".contains(c);
     let legal = (1..=MAX_NAME).contains(&name.len()) && name.chars().all(plain);

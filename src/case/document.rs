@@ -1,6 +1,6 @@
-//! TOML with places: every value knows its key and its line, so that every complaint can name them.
+//! TOML with places: every value knows its key and its line, so that every error can name them.
 
-// Study and sweep files, which the program alone reads, need more of it than case files do.
+// Study and sweep files, which only the program reads, need more of this file than case files do.
 #![cfg_attr(not(feature = "cli"), allow(dead_code))]
 
 use super::model::Case;
@@ -25,7 +25,7 @@ pub(super) fn nearest<'k>(name: &str, known: &[&'k str]) -> &'k str {
     known.iter().min_by_key(distance).expect("there are known names")
 }
 
-/// A parsed file that can say where things stand in it.
+/// A parsed file that knows the places of its values.
 pub(super) struct Document<'a> {
     path: &'a Path,
     text: &'a str,
@@ -101,13 +101,13 @@ impl<'d> Table<'d> {
         ))
     }
 
-    /// The value of `key`, if it is there.
+    /// The value of `key`, if the file has it.
     pub fn get(&self, key: &str) -> Option<Entry<'d>> {
         let (_, value) = self.entries.iter().find(|(k, _)| k.get_ref() == key)?;
         Some(Entry { document: self.document, key: self.full_key(key), value })
     }
 
-    /// The value of `key`; `example` shows what to write where it is missing.
+    /// The required value of `key`; `example` shows in the error how to write it.
     pub fn require(&self, key: &str, example: &str) -> Result<Entry<'d>> {
         self.get(key).ok_or_else(|| {
             self.document.error(
@@ -118,7 +118,7 @@ impl<'d> Table<'d> {
         })
     }
 
-    /// The table `key`, which has to be there.
+    /// The required table `key`.
     pub fn table(&self, key: &str) -> Result<Table<'d>> {
         match self.get(key) {
             Some(entry) => entry.table(),
@@ -129,7 +129,7 @@ impl<'d> Table<'d> {
         }
     }
 
-    /// The value at a path below this table, `roller.radius_m`, if it is there.
+    /// The value at a path below this table, for example `roller.radius_m`, if the file has it.
     pub fn find(&self, path: &str) -> Option<Entry<'d>> {
         match path.split_once('.') {
             None => self.get(path),
@@ -137,8 +137,8 @@ impl<'d> Table<'d> {
         }
     }
 
-    /// An error about a value with its place in the file; a value that the file does not give is
-    /// blamed on this table.
+    /// An error about a value with its place in the file. A value that is not in the file gets the
+    /// place of this table.
     pub fn place(&self, error: Error) -> Error {
         let Error::Value { key, value, reason, remedy } = error else { return error };
         match self.document.root().find(&key) {
@@ -179,7 +179,7 @@ impl<'d> Entry<'d> {
         self.document.error(Some(span), message, remedy)
     }
 
-    /// The outcome of a check of this value, its error with the place in the file.
+    /// The result of a check of this value; an error gets the place in the file.
     pub fn placed<T>(&self, checked: Result<T>) -> Result<T> {
         checked.map_err(|e| match e {
             Error::Value { reason, remedy, .. } => self.refuse(reason, remedy),
@@ -213,7 +213,7 @@ impl<'d> Entry<'d> {
     /// The value as a finite number.
     pub fn number(&self) -> Result<f64> {
         let parsed = match self.value.get_ref() {
-            // TOML's hexadecimal, octal and binary integers are not numbers that a case needs.
+            // A case needs no hexadecimal, octal or binary integers.
             DeValue::Integer(i) if i.radix() == 10 => i.as_str().parse().ok(),
             DeValue::Float(f) => f.as_str().parse().ok(),
             DeValue::String(_) => {

@@ -1,9 +1,9 @@
-//! A case as a file gives it, before it is known to be one.
+//! A case as given in a file, before its numbers are checked.
 
 use super::model::{Case, Factors};
 use crate::base::Material;
 
-/// Which of the two ways gives the load and the lengths.
+/// The two ways to give the load and the lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Form {
     /// `[dimensionless]`: by W, S_l and L_r.
@@ -15,7 +15,7 @@ pub enum Form {
 /// A case whose numbers are not checked yet, in either [`Form`]. [`Draft::case`] makes the case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Draft {
-    /// What is given in SI units. With `factors`, the load and the lengths mean nothing.
+    /// The values in SI units. With `factors`, its load and lengths are not used.
     pub(super) case: Case,
     /// The factors, if they give the load and the lengths.
     pub(super) factors: Option<Factors>,
@@ -35,13 +35,13 @@ impl Draft {
     pub fn of(case: &Case, form: Form) -> Self {
         let factors = || {
             let own = case.factors();
-            // Equal lengths may come out as 1 and a rounding.
+            // The ratio of equal lengths may exceed 1 by rounding.
             Factors { length_ratio: own.length_ratio.min(1.0), ..own }
         };
         Self { case: case.clone(), factors: (form == Form::Factors).then(factors) }
     }
 
-    /// How the load is given.
+    /// The form in which the load is given.
     pub fn form(&self) -> Form {
         if self.factors.is_some() { Form::Factors } else { Form::Load }
     }

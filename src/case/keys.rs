@@ -1,25 +1,25 @@
-//! The numbers of a case: what files call them, what they mean and which values are legal. Every
-//! reader, every check and every table with parameters in it goes by this list.
+//! The numbers of a case: their names in files, their meaning and their legal ranges. All readers,
+//! checks and tables of parameters use this list.
 
 use super::draft::{Draft, Form};
 use super::model::Factors;
 use crate::base::{Error, Result};
 
-/// When a file has to give a number.
+/// Whether a file must contain a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Presence {
     /// Always.
     Always,
-    /// Where the load and the lengths are given in this form; elsewhere it must not stand.
+    /// Required if the load and the lengths are given in this form, and refused otherwise.
     With(Form),
-    /// Never; it has a default.
+    /// Not required; it has a default.
     Optional,
 }
 
 /// A number of a case.
 #[derive(Debug)]
 pub struct Key {
-    /// Its place in a case file, `roller.radius_m`.
+    /// Its place in a case file, for example `roller.radius_m`.
     pub path: &'static str,
     /// Its name as the column of a table.
     pub column: &'static str,
@@ -27,13 +27,13 @@ pub struct Key {
     pub what: &'static str,
     /// The least and the largest legal value.
     pub range: (f64, f64),
-    /// A usual value, as a file has it.
+    /// A usual value, as written in a file.
     pub example: &'static str,
-    /// When a file has to give it.
+    /// Whether a file must contain it.
     pub presence: Presence,
-    /// Which values are legal, in words, where the two numbers do not say it well.
+    /// The legal values in words, if the two numbers of the range are not clear by themselves.
     rule: Option<&'static str>,
-    /// What to do about a value that is not legal.
+    /// What to do if a value is not legal.
     remedy: &'static str,
     get: fn(&Draft) -> Option<f64>,
     set: fn(&mut Draft, f64),
@@ -46,12 +46,12 @@ impl PartialEq for Key {
 }
 
 impl Key {
-    /// The key that stands at `path` in a case file.
+    /// The key at `path` in a case file.
     pub fn find(path: &str) -> Option<&'static Key> {
         KEYS.iter().find(|key| key.path == path)
     }
 
-    /// The table that it stands in.
+    /// Its table.
     pub fn table(&self) -> &'static str {
         self.path.rsplit_once('.').expect("a path has two parts").0
     }
@@ -61,17 +61,17 @@ impl Key {
         self.path.rsplit_once('.').expect("a path has two parts").1
     }
 
-    /// Whether it may stand in a case whose load and lengths are given in this form.
+    /// Whether a case with the load and the lengths in this form may contain it.
     pub fn is_of(&self, form: Form) -> bool {
         !matches!(self.presence, Presence::With(other) if other != form)
     }
 
-    /// Its value; `None` where the draft's form does not have it.
+    /// Its value; `None` if the draft's form does not have it.
     pub fn get(&self, draft: &Draft) -> Option<f64> {
         self.is_of(draft.form()).then(|| (self.get)(draft)).flatten()
     }
 
-    /// Gives it a value, which is not checked.
+    /// Sets its value without a check.
     ///
     /// # Panics
     /// If the draft's form does not have it, see [`Key::is_of`].
@@ -104,7 +104,7 @@ impl Key {
         Error::Value { key, value, reason, remedy: remedy.to_string() }
     }
 
-    /// The same key whose legal values are said in other words.
+    /// The same key with its legal values described in words.
     const fn ruled(self, rule: &'static str, remedy: &'static str) -> Self {
         Self { rule: Some(rule), remedy, ..self }
     }
@@ -125,8 +125,8 @@ const RATIO_REMEDY: &str =
 
 const CORRECT: &str = "correct the value, and check its unit";
 
-/// Path, column, quantity, range, example, presence, and how to read and write the value in a draft:
-/// a field of `case`, or of `factors` where there are any.
+/// Path, column, quantity, range, example, presence, and how to read and write the value in a
+/// draft: a field of `case`, or of `factors` if the draft has them.
 macro_rules! key {
     ($path:literal, $column:literal, $what:literal, $range:expr, $example:literal, $presence:expr,
      case $(.$field:ident)+) => {

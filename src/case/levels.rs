@@ -1,9 +1,9 @@
-//! What a sweep file may give in place of a number: a list or a range.
+//! Numbers, lists and ranges in a sweep file.
 
 use super::document::Entry;
 use crate::base::Result;
 
-/// Longer ranges, like more rows of a sweep, are a slip of the pen.
+/// Longer ranges and sweeps with more rows are refused as mistakes.
 pub(super) const MAX_ROWS: usize = 10_000_000;
 
 /// A number, or several.
@@ -34,13 +34,13 @@ impl Levels {
         };
         let value = |i: usize| {
             let t = i as f64 / (count - 1) as f64;
-            // The ends are met to the last digit.
+            // The ends are exact.
             if i == 0 {
                 low
             } else if i == count - 1 {
                 high
             } else if logarithmic {
-                // Thirteen digits: a decade's middle is to be a round number.
+                // Thirteen digits, so that the middle of a decade is a round number.
                 let value = (low.ln() + t * (high / low).ln()).exp();
                 format!("{value:.12e}").parse().expect("a formatted number")
             } else {

@@ -1,5 +1,5 @@
-//! One contact problem in SI units. The structs have the form of the case file, so that serde writes
-//! it and a field is declared once; `keys.rs` lists their numbers.
+//! One contact problem in SI units. The structs have the form of the case file: serde writes it,
+//! and each field is declared once. `keys.rs` lists their numbers.
 
 use crate::base::{HertzScales, Material};
 use serde::{Deserialize, Serialize};
@@ -27,14 +27,14 @@ pub struct Block {
     pub material: Material,
 }
 
-/// What presses the roller on the block.
+/// The load that presses the roller on the block.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Load {
     /// Force (N), of the whole roller.
     pub force_n: f64,
 }
 
-/// How accurately the case is to be solved; no part of the problem.
+/// The accuracy of the solution; not a part of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// Requested accuracy of the semi-analytical solution, as a fraction of p0.
@@ -42,14 +42,14 @@ pub struct Accuracy {
 }
 
 impl Default for Accuracy {
-    /// The accuracy that is asked for where a case does not say.
+    /// The accuracy of a case without its own.
     fn default() -> Self {
         Self { tolerance: 1e-3 }
     }
 }
 
-/// A contact problem in SI units. [`Case::check`] tells whether it is legal; a case that was read
-/// from a file is.
+/// A contact problem in SI units. [`Case::check`] tells whether it is legal. A case that was read
+/// from a file is legal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Case {
     /// The case's name, unique in a study.
@@ -76,8 +76,8 @@ pub struct Factors {
 }
 
 impl Factors {
-    /// Legal range of W. Above, the half-width C is more than a quarter of the radius, which no
-    /// small-strain theory of contact covers.
+    /// Legal range of W. Above it the half-width C exceeds a quarter of the radius, where no theory
+    /// of small strains holds.
     pub const LOAD_RANGE: (f64, f64) = (1e-12, 0.05);
     /// Legal range of S_l.
     pub const SLENDERNESS_RANGE: (f64, f64) = (0.5, 1e4);
@@ -85,15 +85,15 @@ impl Factors {
     pub const LENGTH_RATIO_RANGE: (f64, f64) = (1e-3, 1.0);
 }
 
-/// Numbers of two cases that agree to this fraction are the same number: what formatting, reading
-/// and the way through the factors may cost.
+/// Numbers of two cases that agree to this fraction are equal: formatting, reading and the
+/// conversion to factors and back round them.
 const SAME: f64 = 1e-9;
 
-/// Why a case can always be written.
+/// Reason why writing a case cannot fail.
 const PLAIN: &str = "a case has the form of its file";
 
 impl Case {
-    /// Larger case and study files are refused unread: none comes near (bytes).
+    /// Size above which case and study files are refused (bytes).
     pub const MAX_BYTES: u64 = 1 << 20;
 
     /// The case that has the dimensionless `factors`, with a roller of radius `radius_m` (m), and
@@ -116,14 +116,13 @@ impl Case {
         case
     }
 
-    /// The same case, to be solved to another tolerance.
+    /// The same case with another tolerance.
     #[must_use]
     pub fn with_tolerance(self, tolerance: f64) -> Self {
         Self { accuracy: Accuracy { tolerance }, ..self }
     }
 
-    /// Gives the case the lengths and the force that follow from `factors`, its radius and its
-    /// materials.
+    /// Sets the lengths and the force from `factors`, the radius and the materials.
     pub(super) fn set_factors(&mut self, factors: Factors) {
         let e_star = self.roller.material.contact_modulus(&self.block.material);
         let radius_m = self.roller.radius_m;
@@ -151,13 +150,13 @@ impl Case {
         }
     }
 
-    /// Whether `other` is the same problem, whatever it is called and however accurately it is to be
-    /// solved: all the rest of both case files agrees, numbers to nine digits.
+    /// Whether `other` is the same problem apart from the name and the accuracy: all other entries
+    /// of both case files agree, numbers to nine digits.
     pub fn is_same_problem(&self, other: &Case) -> bool {
         alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
     }
 
-    /// The case file but for the name and the accuracy.
+    /// The case file without the name and the accuracy.
     fn problem(&self) -> Table {
         let mut table = Table::try_from(self).expect(PLAIN);
         for other in ["name", "accuracy"] {
@@ -166,13 +165,13 @@ impl Case {
         table
     }
 
-    /// The case file that [`Case::parse`] reads this case from, to the last digit.
+    /// The case file, from which [`Case::parse`] reads exactly this case.
     pub fn to_toml(&self) -> String {
         toml::to_string(self).expect(PLAIN)
     }
 }
 
-/// Whether two values are the same but for rounding.
+/// Whether two values are equal apart from rounding.
 fn alike(a: &Value, b: &Value) -> bool {
     match (a, b) {
         (Value::Float(a), Value::Float(b)) => (a - b).abs() <= SAME * a.abs().max(b.abs()),

@@ -11,10 +11,10 @@ use crate::base::{Error, Result};
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-/// The text of the study that runs when none is given.
+/// The text of the default study.
 pub const DEFAULT_STUDY: &str = include_str!("../../cases/factorial.toml");
 
-/// More cases than this are a slip of the pen, not a study.
+/// Larger designs are refused as mistakes.
 const MAX_CASES: usize = 4096;
 
 /// A study: every combination of the factors' levels, and further cases.
@@ -30,8 +30,8 @@ pub struct Study {
     pub length_ratio_levels: Vec<f64>,
     /// All combinations of the levels; W varies slowest and L_r fastest.
     pub corners: Vec<Case>,
-    /// The centre point, called `centre`, if it is asked for: geometric means of the levels of W
-    /// and of S_l, arithmetic mean of those of L_r.
+    /// The centre point, called `centre`, if the file has `centre = true`: geometric means of the
+    /// levels of W and of S_l, arithmetic mean of those of L_r.
     pub centre: Option<Case>,
     /// Further cases that are not part of the design.
     pub extra: Vec<Case>,
@@ -44,18 +44,17 @@ impl Study {
             .expect("a test reads the built-in study")
     }
 
-    /// Reads a study file. Case files that it lists are looked for beside it; a listed name
-    /// without such a file is a built-in case.
+    /// Reads a study file. Its case files are relative to its folder; a name without such a file is
+    /// that of a built-in case.
     ///
     /// # Errors
     /// [`crate::base::Error::Io`] when a file cannot be read; [`crate::base::Error::File`] with the
-    /// line when it is not
-    /// TOML, has an unknown or missing key, or a value that is not legal.
+    /// line when it is not TOML, has an unknown or missing key, or a value that is not legal.
     pub fn read(path: &Path) -> Result<Study> {
         Study::parse(&read_text(path)?, path)
     }
 
-    /// Parses the text of a study file that stands at `path`.
+    /// Parses the text of the study file at `path`.
     ///
     /// # Errors
     /// As [`Study::read`].
@@ -119,7 +118,7 @@ impl Study {
         }
     }
 
-    /// Takes up the further cases that the file lists; paths start at `folder`.
+    /// Adds the further cases of the file; paths are relative to `folder`.
     fn list(&mut self, files: &[Entry], folder: &Path) -> Result<()> {
         let mut names: BTreeSet<String> = self.cases().map(|c| c.name.clone()).collect();
         for entry in files {
@@ -139,7 +138,7 @@ impl Study {
     }
 }
 
-/// What all cases of the design share.
+/// The values that all cases of the design share.
 fn read_base(root: &Table) -> Result<Draft> {
     let keys: Vec<&'static Key> =
         KEYS.iter().filter(|key| !matches!(key.presence, Presence::With(_))).collect();

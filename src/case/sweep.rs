@@ -1,8 +1,8 @@
 //! A sweep: thousands of cases as a grid or as lists of parameters, or as a table.
 //!
-//! A sweep knows its rows without holding them: row i is the base with the values of that row, and is
-//! checked as every case is. What is wrong with the file is an error; what is wrong with a row belongs
-//! to that row.
+//! A sweep does not store its cases: row i is the base with the values of that row, and is checked
+//! like every case. A mistake in the file is an error of the sweep; a mistake in a row is an error
+//! of that row.
 
 use super::draft::Draft;
 use super::keys::Key;
@@ -13,16 +13,16 @@ use std::path::Path;
 /// Many cases that differ in some numbers.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sweep {
-    /// What varies.
+    /// The columns that vary.
     pub(super) columns: Vec<Column>,
     /// Names of the columns.
     pub(super) names: Vec<String>,
-    /// What does not vary.
+    /// The values that do not vary.
     pub(super) base: Draft,
     pub(super) rows: Rows,
 }
 
-/// What a column of a sweep gives.
+/// The content of a column of a sweep.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Column {
     /// The names of the cases.
@@ -36,15 +36,15 @@ pub(super) enum Column {
 pub(super) enum Rows {
     /// Every combination of the columns' levels; the last column varies fastest.
     Grid(Vec<Vec<f64>>),
-    /// The columns' values side by side, as many of each; one row where there is no column.
+    /// The columns' values side by side, with equal lengths; one row if there is no column.
     Side(Vec<Vec<f64>>),
     /// Texts, row by row.
     List(Vec<Vec<String>>),
 }
 
 impl Sweep {
-    /// Reads a sweep from a file in TOML or, if its name ends in `.csv`, from a table. `base` gives
-    /// a table's rows what its columns do not give; a TOML file gives everything itself.
+    /// Reads a sweep from a TOML file or, if its name ends in `.csv`, from a table. `base` gives
+    /// the values that a table has no column for; a TOML file must contain all values.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line when it is not
@@ -68,7 +68,7 @@ impl Sweep {
     /// Number of rows, at least 1.
     pub fn len(&self) -> usize {
         match &self.rows {
-            // Its readers have made sure that the product is a number of rows.
+            // The readers have checked that the product is within the limit.
             Rows::Grid(levels) => levels.iter().map(Vec::len).product(),
             Rows::Side(columns) => columns.first().map_or(1, Vec::len),
             Rows::List(rows) => rows.len(),
@@ -80,12 +80,12 @@ impl Sweep {
         self.len() == 0
     }
 
-    /// Names of what varies, in the order of the file.
+    /// Names of the columns, in the order of the file.
     pub fn columns(&self) -> &[String] {
         &self.names
     }
 
-    /// What stands in the columns in row `i`.
+    /// The texts of the columns in row `i`.
     pub fn cells(&self, i: usize) -> Vec<String> {
         let text_of = |value: f64| format!("{value:e}");
         match &self.rows {
@@ -108,7 +108,7 @@ impl Sweep {
         }
     }
 
-    /// The case of row `i`; it is called what the column `name` says, or `row-1` and so on.
+    /// The case of row `i`. Its name is in the column `name`; otherwise it is `row-1` and so on.
     ///
     /// # Errors
     /// [`Error::Value`] about the first value of the row that is not legal.

@@ -1,4 +1,4 @@
-//! The sweep as a table: one row a case, with a column for each number that is given.
+//! A sweep as a CSV table: one row per case, and a column for each number that varies.
 
 use super::document::nearest;
 use super::draft::{Draft, Form};
@@ -13,10 +13,10 @@ use std::path::Path;
 /// Columns that give both bodies the same value.
 const BOTH: [&str; 2] = ["young_pa", "poisson"];
 
-/// Larger tables are refused unread: [`MAX_ROWS`] rows are smaller (bytes).
+/// Size above which tables are refused (bytes); [`MAX_ROWS`] rows are smaller.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// Memory that a table takes in units of its file's size: cells of some six letters become texts.
+/// Memory of a table in units of its file's size; cells have about six letters.
 const GROWTH: f64 = 15.0;
 
 impl Sweep {
@@ -27,8 +27,8 @@ impl Sweep {
         Sweep::parse_csv(&read_text(path, MAX_BYTES, remedy)?, path, base)
     }
 
-    /// Parses a CSV table with a column for each number and optionally a column `name`. `base` gives
-    /// what has no column.
+    /// Parses a CSV table with a column for each number and optionally a column `name`. `base`
+    /// gives the values without a column.
     ///
     /// # Errors
     /// As [`Sweep::read`].
@@ -74,7 +74,7 @@ impl Sweep {
     }
 }
 
-/// What is found in the header, or what is wrong with it and what to do about that.
+/// The content of the header, or what is wrong with it and what to do.
 type Finding<T> = std::result::Result<T, (String, String)>;
 
 /// The column called `name`.
@@ -115,7 +115,7 @@ fn given_once(columns: &[Column]) -> Finding<Vec<&'static Key>> {
     Ok(given)
 }
 
-/// How the columns give the load; by factors where they leave it to the base.
+/// The form in which the columns give the load; factors if the base gives it.
 fn form_of(given: &[&Key]) -> Finding<Form> {
     let any_of = |form: Form| given.iter().any(|key| key.presence == Presence::With(form));
     match (any_of(Form::Factors), any_of(Form::Load)) {
@@ -128,7 +128,7 @@ fn form_of(given: &[&Key]) -> Finding<Form> {
     }
 }
 
-/// Refuses a table without a base that does not give all that a case needs.
+/// Refuses a table without a base that lacks a required number.
 fn nothing_missing(given: &[&Key], form: Form) -> Finding<()> {
     let needed = |key: &&Key| key.is_of(form) && key.presence != Presence::Optional;
     let missing: Vec<&str> =

@@ -10,11 +10,11 @@ use crate::base::Result;
 use crate::host::check_memory;
 use std::path::Path;
 
-/// Memory that a row takes while a sweep runs, and each of its numbers in lists (bytes).
+/// Memory of a row of a running sweep, and of each number in parallel lists (bytes).
 const ROW_BYTES: f64 = 300.0;
 const CELL_BYTES: f64 = 8.0;
 
-/// A number that varies: where it stands in the file, and its values.
+/// A number that varies: its place in the file, and its values.
 struct Varying<'d> {
     key: &'static Key,
     entry: Entry<'d>,
@@ -37,7 +37,7 @@ impl Sweep {
         let root = document.root();
         only_tables(&root, &["name", "sweep"])?;
         if let Some(entry) = root.get("name") {
-            // It only tells readers what the file is about, but must not be nonsense.
+            // The name is only for readers, but must be legal.
             entry.string()?;
         }
         let side_by_side = side_by_side(&root)?;
@@ -50,7 +50,7 @@ impl Sweep {
                 levels => varying.push(Varying { key, entry, levels }),
             }
         }
-        // The order of the file is the order of the columns.
+        // The columns have the order of the file.
         varying.sort_by_key(|v| v.entry.place());
         check_rows(&varying, side_by_side, &root)?;
         let keys: Vec<&'static Key> = varying.iter().map(|v| v.key).collect();
@@ -80,7 +80,7 @@ fn side_by_side(root: &Table) -> Result<bool> {
     }
 }
 
-/// Refuses lists that do not fit together, or combine to too many rows.
+/// Refuses lists of unequal lengths and combinations of too many rows.
 fn check_rows(varying: &[Varying], side_by_side: bool, root: &Table) -> Result<()> {
     let count = |v: &Varying| v.levels.len();
     let first = varying.first().map_or(1, count);

@@ -24,37 +24,37 @@ use std::path::{Path, PathBuf};
 
 /// Measures run time against error: every model at several tolerances, and FEM on several meshes.
 ///
-/// Writes pareto.csv (one row a case and a model's tolerance or FEM's mesh), pareto.svg (run time
-/// against error, both sides) and bench.json into the output folder. Errors are taken against FEM's
-/// finest mesh and against quarter-space at the tightest tolerance. Only with --fem live are times
-/// of FEM and the models divided; recorded ones are shown apart. A mesh that is done in the folder already is not run
-/// again: give a new folder to time both sides anew. Takes a few minutes for the four
+/// Writes pareto.csv (one row per case and tolerance or mesh), pareto.svg (run time against error,
+/// both sides) and bench.json into the output folder. Errors are taken against FEM's finest mesh
+/// and against quarter-space at the tightest tolerance. Only with --fem live are times of FEM and
+/// the models divided; recorded ones are shown apart. A mesh that is done in the folder already is
+/// not run again: give a new folder to time both sides anew. Takes a few minutes for the four
 /// default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Case or study files, built-in cases, cases of the built-in study or `factorial`, all of it;
-    /// its four corners of the lower load if left out
+    /// Case or study files, built-in cases, cases of the built-in study, or `factorial` for all of
+    /// it; its four corners of the lower load by default
     #[arg(value_hint = ValueHint::FilePath, value_name = "CASE")]
     cases: Vec<PathBuf>,
-    /// Folder for the results; made if it is not there
+    /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
-    /// Models to run, separated by commas; all of them if left out
+    /// Models to run, separated by commas; all by default
     #[arg(long, value_delimiter = ',', value_parser = edge_model())]
     methods: Vec<EdgeModel>,
-    /// Tolerances of the models as fractions of p0; the tightest is the models' limit
+    /// Tolerances of the models as fractions of p0; the tightest gives the limit of each model
     #[arg(long, value_delimiter = ',', value_name = "T,T", default_values_t = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4])]
     tolerances: Vec<f64>,
     /// Errors (fractions of p0) at which the times of FEM and quarter-space are compared
     #[arg(long, value_delimiter = ',', value_name = "E,E", default_values_t = [0.02, 0.01, 0.005], value_parser = level)]
     levels: Vec<f64>,
-    /// Repeats of each model's timing
+    /// Repetitions of each timing of a model
     #[arg(long, default_value_t = 9, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
     repeats: u16,
-    /// Where the finite-element times come from; the reference is the finest mesh there is
+    /// Source of the finite-element times; the finest mesh is the reference
     #[arg(long, value_enum, default_value = "recorded")]
     fem: FemSource,
-    /// Folder of recorded curves, one folder a case, in place of those built into the program
+    /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
     /// Relative element sizes of the meshes with --fem live
@@ -78,7 +78,7 @@ fn level(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
-/// The cases that the arguments name, each once.
+/// The cases of the arguments, each once.
 fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
     let built_in = Study::built_in();
     let mut all: Vec<Case> = Vec::new();
@@ -106,7 +106,7 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
             return Err(Error::Value {
                 key: "cases".into(),
                 value: all[i].name.clone(),
-                reason: "it is there twice".into(),
+                reason: "it is given twice".into(),
                 remedy: "name each case once".into(),
             });
         }
@@ -114,7 +114,7 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
     Ok(all)
 }
 
-/// Each of some numbers once, the largest first.
+/// The distinct numbers, the largest first.
 fn descending(values: &[f64]) -> Vec<f64> {
     let mut all = values.to_vec();
     all.sort_by(|a, b| b.total_cmp(a));
@@ -132,7 +132,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let records = Records::read(arguments.reference.as_deref())?;
     let _lock = Lock::claim(&arguments.out)?;
     let drivers = drivers(&arguments)?;
-    // A damaged record is told before the long run.
+    // A damaged record is reported before the long run.
     cases.iter().try_for_each(|case| records.find(case).map(|_| ()))?;
     let benches = measure(&arguments, &cases, &tolerances, &records, &drivers);
     host::check_interrupt()?;
@@ -198,10 +198,10 @@ fn measure(
     benches
 }
 
-/// Warns of answers that there are none of.
+/// Warns of missing results.
 ///
 /// # Errors
-/// [`Error::Value`] when no model answered at all.
+/// [`Error::Value`] when no model has a result.
 fn report_failures(benches: &[CaseBench]) -> Result<()> {
     let points = || benches.iter().flat_map(|c| c.points.iter().map(move |p| (c, p)));
     for (case, point) in points() {
@@ -249,7 +249,7 @@ fn text(bench: &Bench, out: &Path) -> String {
     lines.join("\n") + "\n"
 }
 
-/// What one level says in one line: the range over the cases.
+/// One level in one line: the range over the cases.
 fn at_level(here: &[&Speedup], level: f64, whose: &str, cases: usize) -> Option<String> {
     let slowest = here.iter().min_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
     let fastest = here.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;

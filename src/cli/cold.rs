@@ -7,8 +7,8 @@ use crate::solve::Summary;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Runs `edgeline solve` on cases, in a folder that goes with it. Nothing of this process, such as
-/// the tables that it has built, helps there.
+/// Runs `edgeline solve` on cases, in a temporary folder. The new process cannot use the tables
+/// that this one has built.
 pub(super) struct ColdRuns {
     folder: PathBuf,
 }
@@ -19,8 +19,8 @@ impl ColdRuns {
         Self { folder: folder.join("cold") }
     }
 
-    /// Seconds of the complete answer as that process measures them, start-up and files not
-    /// counted; `None` where it could not run.
+    /// Time of the complete solution (s) as measured by that process, without start-up and files;
+    /// `None` if it could not run.
     pub(super) fn seconds(&self, case: &Case, method: EdgeModel, threads: usize) -> Option<f64> {
         std::fs::create_dir_all(&self.folder).ok()?;
         let file = self.folder.join("case.toml");
@@ -42,7 +42,7 @@ impl ColdRuns {
 
 impl Drop for ColdRuns {
     fn drop(&mut self) {
-        // What cannot be removed is in the user's own folder and says what it is.
+        // A folder that cannot be removed is in the user's own folder and has a clear name.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

@@ -1,4 +1,4 @@
-//! `edgeline doctor`: what is installed, and what would have to be.
+//! `edgeline doctor`: what is installed, and what is missing.
 
 use super::output::{Exit, print, print_json};
 use crate::base::number::duration;
@@ -11,19 +11,19 @@ use clap::Args;
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
-/// Tells what is installed, which interpreter finite elements would run with, and what to install.
+/// Reports what is installed, which interpreter finite elements would use, and what to install.
 ///
-/// Solves a built-in case to see that the program works. Writes no files. Takes a few seconds, for
-/// the interpreters that it tries. Missing finite-element tools are an error only with --fem.
+/// Solves a built-in case as a check of the program. Writes no files. Takes a few seconds, because
+/// it starts the interpreters. Missing finite-element tools are an error only with --fem.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Exit with code 2 unless all that finite elements need is there
+    /// Exit with code 2 unless all tools for finite elements are installed
     #[arg(long)]
     fem: bool,
-    /// Interpreter to try instead of the usual ones
+    /// Interpreter to check instead of the usual ones
     #[arg(long, value_name = "FILE")]
     python: Option<PathBuf>,
-    /// The gmsh program to try
+    /// The gmsh program to check
     #[arg(long, value_name = "FILE", default_value = "gmsh")]
     gmsh: PathBuf,
     /// Print the findings as one JSON object and nothing else

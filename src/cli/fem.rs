@@ -1,4 +1,4 @@
-//! `edgeline fem`: one case by finite elements, now.
+//! `edgeline fem`: solves one case by finite elements.
 
 use super::fem_options::{FemOptions, Size};
 use super::output::{Exit, print, print_json, say};
@@ -14,15 +14,15 @@ use std::path::PathBuf;
 /// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx, as child processes.
 ///
 /// Writes curves.csv and pressure.csv (at the points of the semi-analytical solution), fem.json,
-/// mesh.json and the log of each stage into the output folder. Takes some seconds at --size 2, a
-/// minute at --size 1. A run that was stopped goes on where it was; one that is done is not
+/// mesh.json and the log of each stage into the output folder. Takes a few seconds at --size 2 and
+/// a minute at --size 1. The next run continues a run that was stopped; a finished run is not
 /// repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
-    /// Folder for the results; made if it is not there
+    /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     #[command(flatten)]

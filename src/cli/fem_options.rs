@@ -1,4 +1,4 @@
-//! Options of whatever runs finite elements.
+//! Options of the subcommands that run finite elements.
 
 use crate::fem::{FemSettings, LinearSolver};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -6,16 +6,16 @@ use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
 
-/// Where FEM's curves come from.
+/// Source of the FEM curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum FemSource {
-    /// The recorded curves: those built into the program, or those of --reference
+    /// The recorded curves: the built-in ones, or those of --reference
     Recorded,
-    /// gmsh and FEniCSx, now
+    /// A run of gmsh and FEniCSx now
     Live,
 }
 
-/// The mesh of whatever runs finite elements on one.
+/// The mesh of a subcommand that uses a single one.
 #[derive(Args)]
 pub(super) struct Size {
     /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
@@ -23,7 +23,7 @@ pub(super) struct Size {
     pub size: f64,
 }
 
-/// Options of everything that runs finite elements.
+/// Options of all subcommands that run finite elements.
 #[derive(Args)]
 pub(super) struct FemOptions {
     /// Linear solver of the finite elements
@@ -38,22 +38,22 @@ pub(super) struct FemOptions {
     /// The gmsh program
     #[arg(long, value_name = "FILE", default_value = "gmsh", value_hint = ValueHint::ExecutablePath)]
     gmsh: PathBuf,
-    /// Seconds that meshing one case may take
+    /// Time limit for meshing one case, in seconds
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_negative_numbers = true)]
     mesh_timeout: f64,
-    /// Seconds that the calculation of one case may take
+    /// Time limit for solving one case, in seconds
     #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds, allow_negative_numbers = true)]
     solve_timeout: f64,
-    /// GiB that the files of one run may take
+    /// Limit for the files of one run, in GiB
     #[arg(long, value_name = "GIB", default_value_t = 10)]
     max_disk: u16,
-    /// Keep meshes and requests after success
+    /// Keep meshes and requests after a successful run
     #[arg(long)]
     keep: bool,
 }
 
 impl FemOptions {
-    /// The settings that they amount to, for a mesh of relative element size `size`.
+    /// The settings for a mesh of relative element size `size`.
     pub fn settings(&self, size: f64) -> FemSettings {
         FemSettings {
             size,

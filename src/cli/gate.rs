@@ -1,4 +1,4 @@
-//! `edgeline gate`: does it still hold?
+//! `edgeline gate`: checks of the accuracy.
 
 use super::output::{Exit, print, print_json};
 use super::study_options::StudyOptions;
@@ -12,23 +12,24 @@ use clap::{Args, ValueHint};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Holds the models to their accuracy gates: absolute limits, and drift from accepted numbers.
+/// Checks the models against their accuracy gates: absolute limits, and drift from accepted
+/// numbers.
 ///
-/// Prints a table of every gate with value, limit and margin; writes gates.json, gates.md and
+/// Prints a table of all gates with value, limit and margin; writes gates.json, gates.md and
 /// junit.xml into the output folder, and the Markdown also to the file that $GITHUB_STEP_SUMMARY
-/// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes some seconds with recorded
+/// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes a few seconds with recorded
 /// finite-element curves.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     study: StudyOptions,
-    /// Thresholds (TOML) in place of those built into the program
+    /// Thresholds (TOML), instead of the built-in ones
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     gates: Option<PathBuf>,
-    /// Accepted numbers (JSON) in place of those built into the program
+    /// Accepted numbers (JSON), instead of the built-in ones
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     baseline: Option<PathBuf>,
-    /// Accept the numbers of this run: show what changes and write them to --baseline
+    /// Accept the numbers of this run: show the changes and write the numbers to --baseline
     #[arg(long, requires = "baseline")]
     accept: bool,
     /// Print the outcomes as one JSON object and nothing else
@@ -36,7 +37,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-/// Changes that `--accept` lists; more are counted.
+/// Largest number of changes that `--accept` lists; the others are counted.
 const LISTED: usize = 40;
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
@@ -46,7 +47,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         None => Gates::built_in()?,
     };
     let accepted = match &arguments.baseline {
-        // What is to be written need not be there yet.
+        // A file that is to be written need not exist.
         Some(path) if arguments.accept && !path.exists() => Baseline::default(),
         Some(path) => Baseline::parse(&read(path)?, path)?,
         None => Baseline::built_in()?,
@@ -80,7 +81,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(if hold { Exit::Done } else { Exit::GateFailed })
 }
 
-/// Writes the numbers of a run as the accepted ones and says what that changes.
+/// Writes the numbers of a run as the accepted ones and lists the changes.
 fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Result<Exit> {
     let places: usize = now.numbers.values().map(|v| v.len()).sum();
     let sound = now.numbers.values().flat_map(|v| v.values()).all(|v| v.is_finite());
@@ -89,7 +90,7 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
             key: "--accept".to_string(),
             value: format!("{places} numbers"),
             reason: "nothing was compared, or a number is not finite".to_string(),
-            remedy: "run `edgeline study` and see what is wrong".to_string(),
+            remedy: "run `edgeline study` to find the cause".to_string(),
         });
     }
     let changes = accepted.changes(now, 0.0);
@@ -109,7 +110,7 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
     Ok(Exit::Done)
 }
 
-/// Adds to the end of a file: other steps of a job write there too.
+/// Appends to a file, because other steps of a job write to it too.
 fn append(path: &Path, text: &str) -> Result<()> {
     let io = |source| Error::Io { action: "append to", path: path.to_path_buf(), source };
     let mut file = std::fs::OpenOptions::new().create(true).append(true).open(path).map_err(io)?;

@@ -1,25 +1,25 @@
-//! What subcommands say: results on standard output, everything else on standard error.
+//! Output of the subcommands: results on standard output, everything else on standard error.
 
 use crate::base::{Error, Result};
 use crate::report::study_files::pretty;
 use serde::Serialize;
 use std::io::Write;
 
-/// What a subcommand that ran to its end has to say.
+/// How a subcommand ended that could run.
 pub(super) enum Exit {
-    /// All was done.
+    /// Success.
     Done,
-    /// All was done, and an accuracy gate does not hold.
+    /// Success, but an accuracy gate does not hold.
     GateFailed,
 }
 
-/// Says something on standard error. That it cannot be said is no reason to fail.
+/// Writes a message to standard error. The program does not fail if that is impossible.
 pub(super) fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
-/// Prints to standard output. That nobody reads on (`edgeline ... | head -1`) is no error: the
-/// files are what counts.
+/// Prints to standard output. A closed pipe (`edgeline ... | head -1`) is not an error, because the
+/// results are in the files.
 pub(super) fn print(text: &str) -> Result<()> {
     let mut out = std::io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {

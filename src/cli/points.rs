@@ -8,10 +8,10 @@ use crate::stress::BodyKind;
 use serde::Deserialize;
 use std::path::Path;
 
-/// Larger files are refused unread.
+/// Larger files are refused without reading them (bytes).
 const MAX_BYTES: u64 = 8 << 30;
 
-/// Memory that a point and its stress take (bytes), and the length of its row in the file.
+/// Memory of a point and its stress, and the least length of its row in the file (bytes).
 const POINT_BYTES: f64 = 500.0;
 const ROW_BYTES: f64 = 40.0;
 

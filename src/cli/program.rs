@@ -6,13 +6,13 @@ use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Contact pressure and stresses at the ends of finite line contacts, by a semi-analytical
-/// solver, and the finite-element harness that proves it.
+/// Contact pressure and stresses at the ends of finite line contacts: a semi-analytical solver, and
+/// finite-element models that verify it.
 ///
 /// Results go to files and a short summary to standard output; progress and warnings go to
-/// standard error. A folder serves one run at a time. The exit code is 0 when all was done, 1 when
-/// an accuracy gate failed, and 2 when it could not run: bad input, a missing tool, a failed child
-/// process.
+/// standard error. Only one run at a time can use a folder. The exit code is 0 for success, 1 if an
+/// accuracy gate failed, and 2 if the command could not run: bad input, a missing tool, a failed
+/// child process.
 #[derive(Parser)]
 #[command(name = "edgeline", version, arg_required_else_help = true)]
 struct Arguments {
@@ -37,7 +37,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(e) => {
-            // Help and version are no errors and go to standard output.
+            // Help and version are not errors and go to standard output.
             let _ = e.print();
             return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
         }

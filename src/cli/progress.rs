@@ -5,7 +5,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// What goes on, for who waits: a line that moves on a terminal, plain lines otherwise.
+/// Progress of a run: a moving line on a terminal, plain lines otherwise.
 pub(super) struct Progress {
     bar: Option<ProgressBar>,
 }
@@ -23,7 +23,7 @@ impl Progress {
         Self { bar }
     }
 
-    /// Says what is being done to what.
+    /// Reports the current step.
     pub fn say(&self, what: &str, doing: &str) {
         match &self.bar {
             Some(bar) => {
@@ -50,7 +50,7 @@ pub(super) fn progress_bar() -> ProgressBar {
     bar
 }
 
-/// Shows that `done` of `all` steps are done, and what was just done.
+/// Shows that `done` of `all` steps are finished, and the last one of them.
 pub(super) fn show(bar: &ProgressBar, done: usize, all: usize, what: &str) {
     bar.set_length(all as u64);
     bar.set_position(done as u64);

@@ -1,8 +1,8 @@
-//! When, where and by which command a run was made.
+//! Date, machine and command of a run.
 
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// The command that was given, as one can give it again.
+/// The command line of this process, quoted for a shell.
 pub(super) fn command_line() -> String {
     let quoted = |a: String| {
         let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,+:".contains(c);
@@ -16,7 +16,7 @@ pub(super) fn command_line() -> String {
     std::iter::once("edgeline".to_string()).chain(rest).collect::<Vec<_>>().join(" ")
 }
 
-/// The processor's name as the system states it.
+/// The processor's name as given by the system.
 pub(super) fn processor() -> String {
     let info = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     info.lines()

@@ -9,7 +9,7 @@ use std::path::Path;
 pub(super) struct Records(Option<Vec<fem::FemResults>>);
 
 impl Records {
-    /// Those below `folder`; the built-in ones without it.
+    /// Those in `folder`, or the built-in ones if there is none.
     pub(super) fn read(folder: Option<&Path>) -> Result<Self> {
         folder.map(fem::FemResults::read_all).transpose().map(Self)
     }

@@ -1,4 +1,4 @@
-//! `edgeline report`: the page of a finished run again.
+//! `edgeline report`: rebuilds the page of a finished run.
 
 use super::output::{Exit, print};
 use crate::base::Result;
@@ -8,9 +8,10 @@ use crate::report::study_files::StudyFiles;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
-/// Makes report.html, report.md and plots/*.svg again from the files of a finished study.
+/// Rebuilds report.html, report.md and plots/*.svg from the files of a finished study.
 ///
-/// Reads summary.json and the CSV files of the run and writes beside them. Takes about a second.
+/// Reads summary.json and the CSV files of the run and writes into the same folder. Takes about a
+/// second.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// The folder that `edgeline study --out` wrote

@@ -17,9 +17,9 @@ use std::path::PathBuf;
 
 /// Solves one case with the semi-analytical method.
 ///
-/// Writes summary.json, pressure.csv (the contact pressure, one row a cell), curves.csv (stresses
+/// Writes summary.json, pressure.csv (the contact pressure, one row per cell), curves.csv (stresses
 /// on the standard curves of both bodies) and, with --points, points.csv into the output folder.
-/// Takes well under a second; with --field, some seconds at most.
+/// Takes well under a second; with --field, a few seconds at most.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -28,7 +28,7 @@ pub(super) struct Arguments {
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
-    /// Folder for the results; made if it is not there
+    /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     /// CSV file of further points, with the columns body,x_m,y_m,z_m
@@ -37,16 +37,16 @@ pub(super) struct Arguments {
     /// Also write the stress fields of both bodies
     #[arg(long, conflicts_with = "points")]
     field: bool,
-    /// Points of a quarter of a body's field across, along and into it
+    /// Numbers of points of a quarter of a body: across, along and into it
     #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_values_t = field::DEFAULT_COUNTS, value_parser = count, requires = "field")]
     field_points: Vec<usize>,
     /// Only this body's curves; both by default
     #[arg(long, value_parser = body())]
     body: Vec<BodyKind>,
-    /// Only this curve; all by default, may be given several times
+    /// Only this curve; may be given several times; all by default
     #[arg(long, value_parser = PossibleValuesParser::new(CURVE_NAMES))]
     curve: Vec<String>,
-    /// Requested accuracy as a fraction of p0; the case's own by default
+    /// Accuracy as a fraction of p0; that of the case by default
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
     /// Print the summary as one JSON object and nothing else
@@ -101,11 +101,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Memory that a point of the field takes (bytes): its stress, four mirror images of it, and their
-/// place in the files.
+/// Memory per point of the field (bytes): its stress, four mirror images of it, and their rows in
+/// the files.
 const FIELD_POINT_BYTES: f64 = 280.0;
 
-/// The numbers of points of a quarter of a body's field, if that is not too large.
+/// The numbers of points of a quarter of a body's field, unless they are too many.
 fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
@@ -115,7 +115,7 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
             remedy: "give for example 33,49,41".into(),
         })?;
     let [nx, ny, nz] = counts.map(|n| n as f64);
-    // The block may have half as many points again on its ledge.
+    // The block may have half as many additional points on its ledge.
     let (roller, block) = (nx * ny * nz, 1.5 * nx * ny * nz);
     check_memory(
         &format!("a field of {nx} x {ny} x {nz} points a quarter of a body"),

@@ -1,4 +1,4 @@
-//! `edgeline study`: every case by every model, against FEM.
+//! `edgeline study`: every case by every model, compared with FEM.
 
 use super::fem_options::FemSource;
 use super::output::{Exit, print, print_json};
@@ -20,16 +20,16 @@ use std::time::Instant;
 
 /// Runs a study: every case by every model, compared with finite elements.
 ///
-/// Writes study.csv (one row a case and source), curves.csv, pressure.csv, fem_error.csv,
-/// errors.csv (one row a case, model, curve and quantity), effects.csv, summary.json, plots/*.svg,
-/// report.html and report.md into the output folder. With recorded finite-element curves it takes
-/// half a minute, nearly all of it for timing (--repeats 0: some seconds); with --fem live, minutes
-/// a case.
+/// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
+/// errors.csv (one row per case, model, curve and quantity), effects.csv, summary.json,
+/// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
+/// curves it takes half a minute, nearly all of it for timing (a few seconds with --repeats 0);
+/// with --fem live it takes minutes per case.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     study: StudyOptions,
-    /// Warm repeats of each model's timing; 0 leaves the timing out
+    /// Warm repetitions of each timing of a model; 0 for no timing
     #[arg(long, default_value_t = 7, value_name = "N")]
     repeats: usize,
     /// Print the summary as one JSON object and nothing else
@@ -73,8 +73,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The gates built into the program; their thresholds are made for the built-in study, and another one
-/// has its own in `edgeline gate`.
+/// The built-in gates. Their thresholds apply to the built-in study; `edgeline gate` takes those of
+/// another study.
 fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::Outcome>> {
     if options.study.is_some() {
         return Ok(Vec::new());
@@ -85,7 +85,7 @@ fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::Outcome>> {
     Ok(gate::evaluate(run, &Gates { drift, ..gates }, Some(&Baseline::built_in()?)))
 }
 
-/// FEM's times over the model's, where a record has both from one run.
+/// Ratio of the FEM time to the model's time, if a record has both from one run.
 fn speedups(options: &StudyOptions, study: &Study) -> Result<Vec<Speedup>> {
     match options.fem {
         FemSource::Recorded => {
@@ -111,7 +111,7 @@ fn text(files: &StudyFiles, out: &Path) -> String {
     text + &format!("wrote report.html, report.md, tables and plots into {}\n", out.display())
 }
 
-/// Why nothing at all could be solved.
+/// The reason why no case could be solved.
 fn first_failure(run: &StudyRun) -> Error {
     let first = run.cases.iter().flat_map(|c| &c.methods).find_map(|m| m.answer.as_ref().err());
     Error::Value {

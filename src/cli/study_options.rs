@@ -1,4 +1,4 @@
-//! What `edgeline study` and `edgeline gate` have in common: the study, its cases by every model, and FEM.
+//! What `edgeline study` and `edgeline gate` share: the study, its cases by every model, and FEM.
 
 use super::cold::ColdRuns;
 use super::fem_options::{FemOptions, FemSource, Size};
@@ -20,31 +20,31 @@ use std::path::PathBuf;
 /// The study, and how it is run.
 #[derive(Args)]
 pub(super) struct StudyOptions {
-    /// A study file; the built-in two-level factorial study if left out
+    /// A study file; the built-in two-level factorial study by default
     #[arg(value_hint = ValueHint::FilePath)]
     pub(super) study: Option<PathBuf>,
-    /// Folder for the results; made if it is not there
+    /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     pub(super) out: PathBuf,
-    /// Models to run, separated by commas; all of them if left out
+    /// Models to run, separated by commas; all by default
     #[arg(long, value_delimiter = ',', value_parser = edge_model())]
     methods: Vec<EdgeModel>,
-    /// Where the finite-element curves come from
+    /// Source of the finite-element curves
     #[arg(long, value_enum, default_value = "recorded")]
     pub(super) fem: FemSource,
-    /// Folder of recorded curves, one folder a case, in place of those built into the program
+    /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
     /// Distance from the roller's edge within which stresses are not compared, in half-widths C
     #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
     exclude: f64,
-    /// The same for pressure, separated by commas; summaries use the first
+    /// The same for pressure: one or more distances, separated by commas; summaries use the first
     #[arg(long, value_name = "C,C", default_values_t = [0.1, 0.2], value_delimiter = ',', value_parser = distance)]
     exclude_pressure: Vec<f64>,
-    /// Runs of the finite elements of each case with --fem live: their median counts
+    /// Finite-element runs of each case with --fem live; the median time is reported
     #[arg(long, value_name = "N", default_value_t = 2)]
     fem_repeats: usize,
-    /// Factor of the images of guilbault, in place of the one that follows from Poisson's ratio
+    /// Weight of the images of guilbault, instead of the one that follows from Poisson's ratio
     #[arg(long, value_parser = factor)]
     psi: Option<f64>,
     #[command(flatten)]
@@ -53,7 +53,7 @@ pub(super) struct StudyOptions {
     options: FemOptions,
 }
 
-/// Memory that a case's curves take by one model or FEM, with their rows in the tables (bytes).
+/// Memory of the curves of one case by one model or by FEM, with their rows in the tables (bytes).
 const CASE_BYTES: f64 = 2e6;
 
 impl StudyOptions {
@@ -74,7 +74,7 @@ impl StudyOptions {
         check_memory(
             &format!("a study of {cases} cases by {models} models"),
             CASE_BYTES * (cases * (models + 1)) as f64,
-            "give fewer cases or models, or take a sweep",
+            "give fewer cases or models, or use a sweep",
         )?;
         let answers = self.fem_answers()?;
         let cold = ColdRuns::new(&self.out);
@@ -98,7 +98,7 @@ impl StudyOptions {
             },
         );
         bar.finish_and_clear();
-        // What was asked to stop is no study, even though every case has a row.
+        // An interrupted run is not a study, although every case has a row.
         host::check_interrupt()?;
         for case in &run.cases {
             for m in &case.methods {
@@ -110,7 +110,7 @@ impl StudyOptions {
         Ok(run)
     }
 
-    /// Where FEM's answers come from.
+    /// Source of the FEM results.
     fn fem_answers(&self) -> Result<FemAnswers> {
         Ok(match self.fem {
             FemSource::Live => FemAnswers::Live {
@@ -125,16 +125,16 @@ impl StudyOptions {
     }
 }
 
-/// FEM's answers to the cases of a study.
+/// FEM results for the cases of a study.
 enum FemAnswers {
-    /// Computed now, each in a folder below this one.
+    /// Computed now, each in a subfolder of this folder.
     Live { live: Live, folder: PathBuf },
-    /// As they were recorded, with times of one run where there are any.
+    /// Recorded, with times of one run if there are any.
     Recorded { records: Records, times: Bench },
 }
 
 impl FemAnswers {
-    /// The answer to `case`, or why there is none; `progress` is told what goes on.
+    /// The result of `case`, or why there is none; calls `progress` with the current step.
     fn of(&self, case: &Case, progress: &dyn Fn(&str)) -> std::result::Result<Reference, String> {
         match self {
             FemAnswers::Live { live, folder } => {
@@ -151,7 +151,7 @@ impl FemAnswers {
     }
 }
 
-/// Parses the factor of images.
+/// Parses the weight of the images.
 fn factor(text: &str) -> std::result::Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if (0.0..=2.0).contains(&value) => Ok(value),

@@ -1,4 +1,4 @@
-//! `edgeline sweep`: thousands of cases.
+//! `edgeline sweep`: many cases in one table.
 
 use super::output::{Exit, print, print_json};
 use super::progress::progress_bar;
@@ -17,32 +17,33 @@ use std::time::Instant;
 
 /// Solves many cases: a grid or lists of parameters.
 ///
-/// Writes one CSV file with one row a case, in the order of the input: pressures at the centre and
-/// towards the end, the critical stress and its place, approach; a case that cannot be solved is a
-/// row whose `err` says why. Run again, it goes on where it was stopped. Cases that differ in scale
-/// only are solved once. Takes about ten milliseconds a case and processor at a tolerance of 1e-2.
+/// Writes one CSV file with one row per case, in the order of the input: pressures at the centre
+/// and towards the end, the largest stress and its place, and the approach. The row of a case that
+/// cannot be solved gives the reason in `err`. The next run continues a sweep that was stopped.
+/// Cases that differ only in scale are solved once. A case takes about ten milliseconds of
+/// processor time at a tolerance of 1e-2.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file in which numbers may be lists or ranges (TOML), or a table with a column for each
-    /// parameter (CSV)
+    /// A case file in which numbers may be lists or ranges (TOML), or a table with a column for
+    /// each parameter (CSV)
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
-    /// The CSV file of the results; rows that it holds already are kept
+    /// The CSV file of the results; existing rows are kept
     #[arg(long, value_name = "CSV", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
     out: PathBuf,
-    /// A case file or built-in case that gives a table what its columns do not
+    /// A case file or built-in case for the values that a table has no column for
     #[arg(long, value_name = "CASE", value_hint = ValueHint::FilePath)]
     base: Option<PathBuf>,
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
-    /// Requested accuracy of all cases as a fraction of p0, in place of their own
+    /// Accuracy of all cases as a fraction of p0, instead of their own
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Cases solved at a time; as many as there are processors by default
+    /// Cases solved at the same time; one per processor by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Only the i-th of n parts, for job arrays; give each part its own --out
+    /// Solve only the i-th of n parts, for job arrays; each part needs its own --out
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
     /// Print the summary as one JSON object and nothing else
@@ -110,18 +111,18 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Cases solved at a time.
+/// Number of cases solved at the same time.
 fn jobs(arguments: &Arguments) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);
     arguments.jobs.map_or_else(all, usize::from)
 }
 
-/// What was done.
+/// The results in numbers.
 struct SweepSummary {
     rows_of_sweep: usize,
     /// Rows of this part of it.
     rows: usize,
-    /// Rows that the file held already.
+    /// Rows that were in the file before.
     kept: usize,
     /// Rows with an `err`.
     failed: usize,

@@ -1,4 +1,4 @@
-//! Values that several subcommands take.
+//! Values of options that several subcommands share.
 
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -13,7 +13,7 @@ pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
     })
 }
 
-/// The models that were named, simplest first; all of them if none was.
+/// The chosen models, simplest first; all of them if none is chosen.
 pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
     let wanted = |m: &EdgeModel| named.is_empty() || named.contains(m);
     EdgeModel::ALL.into_iter().filter(wanted).collect()

@@ -1,31 +1,31 @@
-//! Files that appear whole or not at all, in folders that were checked before the long run.
+//! Files that are written completely or not at all, in folders that are checked before a long run.
 
 use crate::base::{Error, Result};
 use std::fs::File;
 use std::io::Write;
 use std::path::Path;
 
-/// Makes the folder `path` and checks that files can be written there, so that a bad path fails
-/// before a calculation and not after it.
+/// Creates the folder `path` and checks that files can be written there, so that a bad path is an
+/// error before the calculation and not after it.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be made or written into.
+/// [`Error::Io`] when it cannot be created or written to.
 pub fn prepare_folder(path: &Path) -> Result<()> {
     let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
     std::fs::create_dir_all(path).map_err(io("create the folder"))?;
-    // One name for all: what a run that is killed here leaves is removed by the next.
+    // A fixed name: the next run removes the file of a run that was killed here.
     let probe = path.join(".probe");
-    // Not empty: a full disk still takes names.
+    // Not empty, because a full disk still accepts names.
     let written = std::fs::write(&probe, [0; 4096]);
     let removed = remove(&probe);
     written.and(removed).map_err(io("write into the folder"))
 }
 
-/// Writes a file under another name and moves it into place: readers, and runs that go on where
-/// this one was stopped, never see half of it, not even after a power cut.
+/// Writes a file under another name and moves it into place. Readers and later runs never see an
+/// incomplete file, not even after a power failure.
 ///
 /// # Errors
-/// [`Error::Io`] when it cannot be written; what was there before is left as it was.
+/// [`Error::Io`] when it cannot be written; the previous file then remains.
 pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let mut name = path.file_name().unwrap_or_default().to_os_string();
     name.push(format!(".part-{}", std::process::id()));
@@ -33,19 +33,19 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
     let written =
         write_through(&part, content.as_ref()).and_then(|()| std::fs::rename(&part, path));
     written.map_err(|source| {
-        // What is left of the attempt is in the way; the first error is the one to report.
+        // Removes the rest of the attempt; the first error is the one to report.
         let _ = std::fs::remove_file(&part);
         Error::Io { action: "write", path: path.to_path_buf(), source }
     })
 }
 
-/// Writes files that belong together into `folder`, which this process has locked, by name. The last
-/// one says that all are there: nothing is changed until all have been written elsewhere, and it is
-/// taken away first and put in place last.
+/// Writes files that belong together into `folder`, which this process has locked. The last file
+/// marks the set as complete: it is removed first and moved into place last. Nothing is changed
+/// until all files have been written elsewhere.
 ///
 /// # Errors
-/// [`Error::Io`] when one cannot be written; unless the moving itself failed, what was there before
-/// is left as it was.
+/// [`Error::Io`] when one cannot be written; the previous files then remain, unless the move itself
+/// failed.
 ///
 /// # Panics
 /// When there are no files.
@@ -73,16 +73,16 @@ pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Resul
         Ok(())
     };
     let written = write();
-    // If it failed, that is the error to report.
+    // A failure of the write is the error to report.
     let _ = remove(&parts);
     written
 }
 
-/// The folder in which a set of files is written before any is put in its place.
+/// The folder in which a set of files is written before the move.
 const PARTS: &str = ".parts";
 
-/// Removes what a run that was killed in `folder` had not put in its place yet. The caller has locked
-/// the folder.
+/// Removes the unfinished files of a run that was killed in `folder`. The caller has locked the
+/// folder.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be removed.
@@ -90,7 +90,7 @@ pub(super) fn remove_parts(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(PARTS))
 }
 
-/// Removes a file or a folder with all that is in it, if it is there.
+/// Removes a file, or a folder with its content, if it exists.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be removed.
@@ -110,7 +110,7 @@ fn remove(path: &Path) -> std::io::Result<()> {
     }
 }
 
-/// Writes a file down to the disk: else its name could outlive a power cut that its content does not.
+/// Writes a file to the disk. Otherwise a power failure could keep its name without its content.
 fn write_through(path: &Path, content: &[u8]) -> std::io::Result<()> {
     let mut file = File::create(path)?;
     file.write_all(content)?;
@@ -150,14 +150,14 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let set = |text: &str| ["a", "b", "done"].map(|name| (name, text.as_bytes().to_vec()));
         let files = || std::fs::read_dir(folder.path()).unwrap().count();
-        // What a run that was killed left is in nobody's way.
+        // The rest of a killed run is not an obstacle.
         std::fs::create_dir(folder.path().join(PARTS)).unwrap();
         std::fs::write(folder.path().join(PARTS).join("0"), "half").unwrap();
         write_set(folder.path(), &set("one")).unwrap();
         write_set(folder.path(), &set("two")).unwrap();
         assert_eq!(std::fs::read_to_string(folder.path().join("a")).unwrap(), "two");
         assert_eq!(files(), 3);
-        // A place that cannot be taken leaves the set without the file that calls it complete.
+        // If a file cannot be moved, the set lacks the file that marks it as complete.
         std::fs::remove_file(folder.path().join("b")).unwrap();
         std::fs::create_dir(folder.path().join("b")).unwrap();
         write_set(folder.path(), &set("three")).unwrap_err();

@@ -1,5 +1,4 @@
-//! A lock on the folder of a run. It is the kernel's, so it ends with the process that holds it,
-//! however that ends.
+//! A lock on the folder of a run. The kernel releases it when the process that holds it ends.
 
 use super::files::remove_parts;
 use super::prepare_folder;
@@ -9,7 +8,7 @@ use std::io::{Read, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// A folder that this process has for itself.
+/// A folder that only this process uses.
 #[derive(Debug)]
 pub struct Lock {
     path: PathBuf,
@@ -17,8 +16,8 @@ pub struct Lock {
 }
 
 impl Lock {
-    /// Makes `folder`, checks that files can be written there, takes its lock, and removes what a run
-    /// that was killed left half-written.
+    /// Creates `folder`, checks that files can be written there, takes its lock, and removes the
+    /// unfinished files of a run that was killed.
     ///
     /// # Errors
     /// As [`prepare_folder`] and [`Lock::take`].
@@ -29,10 +28,10 @@ impl Lock {
         Ok(lock)
     }
 
-    /// Takes the lock of `folder`, which is there.
+    /// Takes the lock of `folder`, which exists.
     ///
     /// # Errors
-    /// [`Error::Busy`] when another process has it, [`Error::Io`] when there can be no lock.
+    /// [`Error::Busy`] when another process has it, [`Error::Io`] when the lock cannot be made.
     pub fn take(folder: &Path) -> Result<Lock> {
         let path = folder.join(".lock");
         let io = |source| Error::Io { action: "lock", path: path.clone(), source };
@@ -48,12 +47,12 @@ impl Lock {
                     let pid = text.trim().parse().ok();
                     return Err(Error::Busy { path: folder.to_path_buf(), pid });
                 }
-                // A file system without locks: two runs in one folder are then the user's own care.
+                // On a file system without locks the user must keep two runs apart.
                 Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {}
                 Err(TryLockError::Error(e)) => return Err(io(e)),
             }
-            // The holder before may have removed the file between our opening and locking it; a
-            // third process would then lock another file of the same name.
+            // The previous holder may have removed the file after it was opened here and before it
+            // was locked. A third process would then lock another file of the same name.
             let there = std::fs::metadata(&path).map(|m| m.ino()).ok();
             if there.is_none() || there != file.metadata().map(|m| m.ino()).ok() {
                 continue;
@@ -67,7 +66,7 @@ impl Lock {
 
 impl Drop for Lock {
     fn drop(&mut self) {
-        // Removed while it is still locked; if that fails the next run takes it over.
+        // The file is removed while it is locked; if that fails, the next run takes it over.
         let _ = std::fs::remove_file(&self.path);
     }
 }
@@ -85,7 +84,7 @@ mod tests {
         assert!(message.contains(&format!("process {}", std::process::id())), "{message}");
         drop(lock);
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
-        // What a dead process left is taken over.
+        // The lock of a dead process is taken over.
         std::fs::write(folder.path().join(".lock"), "999999\n").unwrap();
         Lock::take(folder.path()).unwrap();
     }

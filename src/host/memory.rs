@@ -1,12 +1,12 @@
-//! Requests that need more memory than there is, refused before anything is allocated.
+//! A check before large requests: those that need more memory than is free are refused.
 
 use crate::base::{Error, Result};
 
-/// What counts as free where the system does not tell (bytes).
+/// Free memory if the system does not report it (bytes).
 const UNKNOWN: u64 = 4 << 30;
 
-/// Memory that can still be had (bytes): what the system has available, or what is left of the
-/// control group's limit if that is less.
+/// Free memory (bytes): what the system reports as available, or the rest of the control group's
+/// limit if that is less.
 fn free_memory() -> u64 {
     let text = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
     let bytes = |path: &str| text(path).trim().parse::<u64>().ok();
@@ -17,14 +17,13 @@ fn free_memory() -> u64 {
     system.min(group)
 }
 
-/// Available bytes by the text of `/proc/meminfo`.
+/// Available bytes from the text of `/proc/meminfo`.
 fn available(meminfo: &str) -> Option<u64> {
     let rest = meminfo.lines().find_map(|line| line.strip_prefix("MemAvailable:"))?;
     rest.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()?.checked_mul(1024)
 }
 
-/// Refuses `what` if the `bytes` that it is estimated to take are not free; `remedy` says what to
-/// ask for instead.
+/// Refuses `what` if its estimated `bytes` are not free; `remedy` says what to do instead.
 ///
 /// # Errors
 /// [`Error::Memory`] with the estimate.

@@ -1,4 +1,4 @@
-//! What talks to the machine: whole files, locked folders, limits of memory, child processes and signals.
+//! The machine: complete files, locked folders, limits of memory, child processes and signals.
 
 #[cfg(feature = "cli")]
 mod files;

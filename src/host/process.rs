@@ -1,9 +1,8 @@
-//! Child processes that end: in time, with their log kept, and with all that they started.
+//! Child processes with a time limit and a log, which end together with all their own children.
 //!
-//! A child gets a process group of its own, asks the kernel to be killed when this process dies
-//! (so a `kill -9` of the driver leaves nothing), and carries a mark in its environment, which its
-//! own children inherit. Whatever is found with that mark after the child's end is killed; that
-//! reaches MPI ranks, which leave the process group.
+//! A child has its own process group. The kernel kills it when this process dies, even by
+//! `kill -9`. A mark in its environment is inherited by its own children. Every process with that
+//! mark is killed after the child's end, including MPI ranks, which leave the process group.
 
 use super::signals::{Active, check_interrupt};
 use super::system;
@@ -20,31 +19,31 @@ use std::time::{Duration, Instant};
 /// The environment variable that marks all processes of a run; its value is the run's folder.
 const MARK: &str = "EDGELINE_RUN";
 
-/// The environment variable that tells processes further down who the driver is, as
+/// The environment variable that names the driver to the children of a child, as
 /// `<boot id>:<process id>`; `lifetime.py` reads it.
 const DRIVER: &str = "EDGELINE_DRIVER";
 
-/// A log larger than this comes from a child that has lost its way.
+/// Size of a log above which the child is stopped (bytes).
 const MAX_LOG_BYTES: u64 = 64 << 20;
 
-/// How long a child has to end by itself after it was asked to.
+/// Time for a child to end after SIGTERM.
 const GRACE: Duration = Duration::from_secs(3);
 
-/// One child process and the bounds that it is kept within.
+/// A child process and its limits.
 pub(crate) struct Stage<'a> {
-    /// What the messages call it.
+    /// Its name in messages.
     pub name: &'a str,
     /// The program and its arguments.
     pub command: Command,
-    /// Where its output goes.
+    /// The file for its output.
     pub log: PathBuf,
-    /// How long it may take.
+    /// Its time limit.
     pub timeout: Duration,
-    /// The option that sets `timeout`, for the message.
+    /// The option that sets `timeout`, for messages.
     pub timeout_option: &'a str,
-    /// The folder it works in, also the mark of its processes.
+    /// Its working folder, which is also the mark of its processes.
     pub folder: &'a Path,
-    /// How large that folder may become (bytes).
+    /// Largest size of that folder (bytes).
     pub max_bytes: u64,
 }
 
@@ -53,8 +52,8 @@ impl Stage<'_> {
     ///
     /// # Errors
     /// [`Error::Child`] with the end of the log when it cannot be started, fails, takes too long,
-    /// or fills the disk; [`Error::Interrupted`] when this process was asked to stop. No process
-    /// of the child is left in any case.
+    /// or fills the disk; [`Error::Interrupted`] when this process received a request to stop. No
+    /// process of the child is left in any case.
     pub fn run(mut self) -> Result<()> {
         let _active = Active::new();
         check_interrupt()?;
@@ -89,7 +88,7 @@ impl Stage<'_> {
         }))
     }
 
-    /// Waits for the end, or for a reason not to.
+    /// Waits for the end of the child, or for a reason to stop it.
     fn watch(&self, child: &mut Child) -> Result<ExitStatus> {
         let began = Instant::now();
         let mut next_look = Duration::from_secs(1);
@@ -123,7 +122,7 @@ impl Stage<'_> {
                     ));
                 }
             }
-            // Short stages are not held up, long ones are not disturbed.
+            // Short stages are not delayed, and long ones are rarely interrupted.
             std::thread::sleep(
                 (elapsed / 20).clamp(Duration::from_millis(2), Duration::from_millis(50)),
             );
@@ -147,7 +146,7 @@ pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Option<(Strin
     let reader = |stream: Option<Box<dyn Read + Send>>| {
         std::thread::spawn(move || {
             let mut bytes = Vec::new();
-            // What was read before an error counts; a megabyte is more than any version needs.
+            // The output before an error is used; a megabyte is more than any version text.
             let _ = stream.map(|s| s.take(1 << 20).read_to_end(&mut bytes));
             String::from_utf8_lossy(&bytes).into_owned()
         })
@@ -186,7 +185,7 @@ fn spawn(command: &mut Command, mark: &Path) -> std::io::Result<Child> {
     command.spawn()
 }
 
-/// Ends a child and its process group: asks first, so that `mpirun` can end its ranks.
+/// Ends a child and its process group, by SIGTERM first, so that `mpirun` can end its ranks.
 fn stop(child: &mut Child) {
     signal_group(child, Signal::TERM);
     let began = Instant::now();
@@ -196,19 +195,19 @@ fn stop(child: &mut Child) {
         }
         std::thread::sleep(Duration::from_millis(10));
     }
-    // The group may outlive its leader.
+    // Members of the group may outlive its leader.
     signal_group(child, Signal::KILL);
     let _ = child.wait();
 }
 
-/// Sends a signal to the group that was made for this child. Its number is not another group's: a
-/// leader's number is not given away while it is not waited for, or while its group has members.
+/// Sends a signal to the child's process group. The number cannot belong to another group: the
+/// system does not reuse it before the leader is waited for, or while the group has members.
 fn signal_group(child: &Child, signal: Signal) {
-    // A group that is not there any more needs no signal.
+    // A group that has ended needs no signal.
     let _ = Pid::from_raw(child.id() as i32).map(|pid| kill_process_group(pid, signal));
 }
 
-/// Kills every process that carries the mark of the run in `folder`, until there is none.
+/// Kills all processes with the mark of the run in `folder`, until there are none.
 pub(crate) fn kill_marked(folder: &Path) {
     use std::os::unix::ffi::OsStrExt;
     let mut wanted = format!("{MARK}=").into_bytes();
@@ -219,7 +218,7 @@ pub(crate) fn kill_marked(folder: &Path) {
             return;
         }
         for pid in found {
-            // One that is not there any more is none of ours.
+            // A process that has ended needs no signal.
             let _ = kill_process(pid, Signal::KILL);
         }
         std::thread::sleep(Duration::from_millis(5));
@@ -233,7 +232,7 @@ fn marked(wanted: &[u8]) -> Vec<Pid> {
     entries
         .filter_map(|entry| Pid::from_raw(entry.file_name().to_str()?.parse().ok()?))
         .filter(|&pid| pid != own)
-        // Processes of other users cannot be read, and are none of ours.
+        // The environment of other users' processes cannot be read, and they are not children.
         .filter(|pid| {
             fs::read(format!("/proc/{}/environ", pid.as_raw_pid()))
                 .is_ok_and(|text| text.split(|&b| b == 0).any(|variable| variable == wanted))
@@ -241,7 +240,7 @@ fn marked(wanted: &[u8]) -> Vec<Pid> {
         .collect()
 }
 
-/// The end of a log, fit to be shown.
+/// The end of a log for a message.
 fn tail(log: &Path) -> String {
     const BYTES: u64 = 4096;
     const LINES: usize = 12;
@@ -254,7 +253,7 @@ fn tail(log: &Path) -> String {
         Ok(bytes)
     };
     let text = String::from_utf8_lossy(&read().unwrap_or_default()).into_owned();
-    // Control characters of a child have no business on the user's terminal.
+    // Control characters of a child must not reach the user's terminal.
     let plain = |line: &str| format!("  | {}", line.replace(|c: char| c.is_control(), " "));
     let lines: Vec<String> = text.lines().map(plain).collect();
     match lines.len() {
@@ -263,7 +262,8 @@ fn tail(log: &Path) -> String {
     }
 }
 
-/// Whether there is hardly any room left in a folder: the log of a child that this stopped is empty.
+/// Whether the disk of a folder is almost full. A child that stopped for this reason has an empty
+/// log.
 fn is_full(folder: &Path) -> bool {
     let probe = folder.join(".probe");
     let written = fs::write(&probe, vec![0; 1 << 20]);
@@ -271,7 +271,7 @@ fn is_full(folder: &Path) -> bool {
     written.is_err_and(|e| e.kind() == std::io::ErrorKind::StorageFull)
 }
 
-/// Bytes of all files below a folder; what vanishes meanwhile does not count.
+/// Bytes of all files below a folder, without those that vanish meanwhile.
 fn size_of(folder: &Path) -> u64 {
     let entries = fs::read_dir(folder).into_iter().flatten().flatten();
     entries

@@ -1,5 +1,5 @@
-//! Requests to stop (Ctrl-C, SIGTERM, SIGHUP): while a child runs they are noted, so that it can be
-//! ended first; otherwise they do what they do by default.
+//! Requests to stop (Ctrl-C, SIGTERM, SIGHUP). While a child runs they are noted, and the child is
+//! ended first; otherwise they have their default effect.
 
 use crate::base::{Error, Result};
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -8,13 +8,13 @@ use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::{Arc, LazyLock, Mutex};
 
-/// What the handlers of signals see.
+/// The state for the signal handlers.
 struct Watch {
-    /// The signal that asked this process to stop while a child ran; 0 if none did.
+    /// The signal that arrived while a child ran; 0 if none did.
     interrupt: Arc<AtomicUsize>,
     /// Whether no child runs, so that a signal ends this process at once.
     idle: Arc<AtomicBool>,
-    /// Number of children that are waited for.
+    /// Number of running children.
     children: Mutex<usize>,
 }
 
@@ -25,7 +25,7 @@ static WATCH: LazyLock<Watch> = LazyLock::new(|| {
         children: Mutex::new(0),
     };
     for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|&s| !is_ignored(s)) {
-        // The system refuses handlers only of signals that do not exist.
+        // The system refuses handlers only for signals that do not exist.
         let _ = flag::register_conditional_default(signal, watch.idle.clone());
         let _ = flag::register_usize(signal, watch.interrupt.clone(), signal as usize);
     }
@@ -44,7 +44,7 @@ fn ignored(status: &str, signal: i32) -> bool {
     bits.is_some_and(|bits| bits >> (signal - 1) & 1 == 1)
 }
 
-/// While one of these lives, a request to stop is noted and can be asked for by [`check_interrupt`].
+/// While a value of this type exists, requests to stop are noted for [`check_interrupt`].
 pub(super) struct Active;
 
 impl Active {
@@ -66,10 +66,10 @@ impl Drop for Active {
     }
 }
 
-/// Tells whether this process was asked to stop while a child ran.
+/// Checks for a request to stop that arrived while a child ran.
 ///
 /// # Errors
-/// [`Error::Interrupted`] if it was.
+/// [`Error::Interrupted`] if there was one.
 pub(crate) fn check_interrupt() -> Result<()> {
     match WATCH.interrupt.load(Ordering::SeqCst) {
         0 => Ok(()),
@@ -83,7 +83,7 @@ mod tests {
 
     #[test]
     fn ignored_signals_are_read_from_the_status() {
-        // As a process that was started by nohup has it.
+        // The mask of a process started by nohup.
         let status = "Name:\tedgeline\nSigBlk:\t0000000000000000\nSigIgn:\t0000000000001001\n";
         assert!(ignored(status, SIGHUP));
         assert!(!ignored(status, SIGINT) && !ignored(status, SIGTERM));

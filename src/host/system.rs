@@ -1,5 +1,5 @@
-//! A child that dies with its parent. The standard library has no safe form for it, and without it a
-//! driver that is killed would leave its children; nothing else in this program is unsafe.
+//! A child that dies with its parent. Without this, a killed driver would leave its children
+//! behind. The standard library has no safe call for it; nothing else in this program is unsafe.
 #![allow(unsafe_code)]
 
 use std::process::Command;

@@ -1,11 +1,11 @@
-//! Text files that are read up to a limit.
+//! Text files of limited size.
 
 use crate::base::{Error, Result};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a text file of at most `most` bytes; `remedy` says what to give instead.
+/// Reads a text file of at most `most` bytes; `remedy` says what to do about a larger one.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is larger or not UTF-8.
@@ -13,7 +13,7 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
     let mut bytes = Vec::new();
     let file = File::open(path).map_err(io)?;
-    // A file can be longer than it says: a pipe, a device, one that grows.
+    // A pipe, a device or a growing file can be longer than its stated length.
     file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
     let refuse = |message: String| Error::File {
         path: path.to_path_buf(),
@@ -41,7 +41,7 @@ mod tests {
         assert!(said.ends_with("is larger than 1 MiB; give less"), "{said}");
         std::fs::write(&path, [0xff]).unwrap();
         assert!(read_text(&path, 9, "").unwrap_err().to_string().contains("UTF-8"));
-        // What has no end is not waited for.
+        // A file without end is refused as well.
         assert!(read_text(Path::new("/dev/zero"), 9, "").is_err());
     }
 }

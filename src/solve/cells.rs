@@ -32,7 +32,7 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
     let pressure = &solved.pressure;
     let axis = pressure.axis();
     let mut cells = Vec::new();
-    // Alike to either side of both planes of symmetry: computed once.
+    // Symmetric about both planes, hence computed once.
     let profile = |j: usize| -> Vec<f64> {
         let (a, coefficients) = pressure.at_node(j);
         let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;

@@ -1,13 +1,13 @@
-//! The part of space that a body takes: where stresses may be asked for.
+//! The extent of a body, within which stresses can be computed.
 
 use crate::case::Case;
 use crate::stress::BodyKind;
 
-/// Part of a length by which a coordinate may exceed it: it may have lost digits in a file.
+/// Relative tolerance of a coordinate, which may have lost digits in a file.
 const ROUNDING: f64 = 1e-9;
 
-/// The extent of a body in its own frame (m): |y| up to its half-length, z from its surface down. Across
-/// the contact it has no end.
+/// The extent of a body in its own frame (m): |y| up to its half-length, and z from its surface
+/// down. Across the contact it is unlimited.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     body: BodyKind,
@@ -15,7 +15,7 @@ pub struct Extent {
     depth_m: f64,
 }
 
-/// A coordinate that is not within a body.
+/// A coordinate outside a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outside {
     /// The axis, `x`, `y` or `z`.
@@ -46,7 +46,7 @@ impl Extent {
     /// Whether the point `at_m` (m) lies within the body.
     ///
     /// # Errors
-    /// The first coordinate that does not, with what to do.
+    /// The first coordinate outside, with a remedy.
     pub fn check(&self, at_m: [f64; 3]) -> Result<(), Outside> {
         (0..3).try_for_each(|axis| self.check_axis(axis, at_m[axis]))
     }

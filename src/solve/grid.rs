@@ -1,11 +1,11 @@
-//! What grids of points may be asked for.
+//! Limits of grids of points.
 
 use super::extent::Extent;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::stress::{BodyKind, Grid};
 
-/// Largest number of points of one grid: the result takes 48 bytes a point.
+/// Largest number of points of one grid; the result takes 48 bytes per point.
 pub const MOST_GRID_POINTS: usize = 20_000_000;
 
 /// Refuses grids (C) that are empty, too large, or not within the body.

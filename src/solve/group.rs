@@ -14,8 +14,8 @@ pub fn solve(case: &Case, options: &Options) -> Result<Solution> {
     SolvedCase::new(case, options).map(|solved| solved.solution())
 }
 
-/// Solves cases that differ in scale only together: the first one's scene is solved once, and every
-/// case gets its own scales, approach and roller. A case of another scene is solved by itself.
+/// Solves cases that differ only in scale together: their scene is solved once, and each case gets
+/// its own scales, approach and roller. A case of another scene is solved separately.
 pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
     let mut shared: Option<(SolvedCase, SharedStresses)> = None;
     cases
@@ -23,7 +23,7 @@ pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
         .map(|case| {
             options.check(case)?;
             let key = Scene::new(case, options.method, options.psi).key();
-            // Extra points are given in metres, so they are another case's own.
+            // Extra points are in metres and therefore differ between cases.
             let own = !options.points.is_empty();
             let fits =
                 |(first, _): &&(SolvedCase, SharedStresses)| first.scene().scene.key() == key;

@@ -1,5 +1,5 @@
-//! The key results of many cases that are one problem in units of C and p0, without the curves and
-//! cells of a whole solution.
+//! The main results of many cases with one scene, without the curves and cells of a complete
+//! solution.
 
 use super::cells::{largest, pressure_cells};
 use super::scene::{Scene, SolvedScene};
@@ -12,7 +12,7 @@ use crate::stress::{BodyKind, Critical, EDGE, RoundStress, away_from_edge, curve
 /// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
 pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
 
-/// What one wants to know of a case among thousands.
+/// The main results of a case.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KeyResults {
     /// The scales.
@@ -27,8 +27,8 @@ pub struct KeyResults {
     pub p_max: f64,
     /// Its place x, y (C).
     pub p_max_at: [f64; 2],
-    /// Pressure (p0) at x = 0 and the [`END_DISTANCES`] from the roller's end; none where that is
-    /// beyond the centre.
+    /// Pressure (p0) at x = 0 and the [`END_DISTANCES`] from the roller's end; none beyond the
+    /// centre.
     pub p_at: [Option<f64>; END_DISTANCES.len()],
     /// The most stressed place of both bodies outside 0.1 C of the roller's edge.
     pub critical: Critical,
@@ -37,10 +37,10 @@ pub struct KeyResults {
 /// A stress at a place, in units of C and p0.
 type Sample = (BodyKind, [f64; 3], RoundStress);
 
-/// Key results of `cases`, which are all of one [`Scene`] by `method`; `each` gets them one after the
-/// other. The contact is solved once, and only the stresses that the critical one needs are
-/// evaluated: on all standard curves for tolerances below 5e-3, and by a search along them
-/// otherwise, which finds the largest within 2e-3 p0 (a test of this module holds it to that).
+/// Main results of `cases`, all of which have one [`Scene`] by `method`; `each` is called with them
+/// one after the other. The contact is solved once. The largest stress is sought on all standard
+/// curves for tolerances below 5e-3, and otherwise by a search along the curves in the plane x = 0,
+/// which finds it within 2e-3 p0 (a test of this module checks that).
 ///
 /// # Errors
 /// [`crate::base::Error::NotConverged`] when the contact does not settle.
@@ -107,7 +107,7 @@ fn samples(solved: &SolvedScene) -> Vec<Sample> {
     let mut all = Vec::new();
     for (kind, body) in BodyKind::ALL.into_iter().zip(solved.scene.bodies.iter()) {
         if shared && kind == BodyKind::Roller {
-            // What both bodies share in the computation they share in the result.
+            // Bodies that share one computation have equal results.
             let again: Vec<Sample> =
                 all.iter().map(|&(_, at, s): &Sample| (BodyKind::Roller, at, s)).collect();
             all.extend(again);
@@ -170,7 +170,7 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
             add(y, z, all);
         }
     }
-    // At the end the stress may be largest just outside what does not count.
+    // At the end the stress may be largest just outside the excluded part.
     add(half_length, EDGE, all);
     for z in ALONG_DEPTHS {
         for s in ALONG.into_iter().chain((z == 0.0).then_some(EDGE)) {
@@ -183,7 +183,7 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
     for (x, s) in xs.into_iter().zip(field.round_at(0.0, 0.0, &xs)) {
         all.push((kind, [x, 0.0, 0.0], s));
     }
-    // A step to either side of the best, halved twice; at the end of a curve one side is enough.
+    // A step to either side of the largest stress, halved twice.
     let best = |all: &[Sample]| {
         let own = all[start..].iter().filter(|s| s.1[0] == 0.0);
         own.map(|s| (s.2.flat.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))

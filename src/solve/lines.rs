@@ -8,7 +8,7 @@ use rayon::prelude::*;
 struct Line {
     body: BodyKind,
     along: Along,
-    /// Coordinates (C), and where the stress belongs.
+    /// Coordinates (C), and the place of the stress in the result.
     points: Vec<([f64; 3], Slot)>,
 }
 
@@ -25,21 +25,21 @@ enum Along {
     OffZ(f64),
 }
 
-/// Where a stress belongs: a curve's point, or a single point.
+/// The place of a stress in the result: a curve's point, or a single point.
 #[derive(Clone, Copy)]
 enum Slot {
     Curve(usize, usize),
     Single(usize),
 }
 
-/// Stresses of bodies whose roundness is still open.
+/// Stresses of bodies before the roller's round shape is added.
 #[derive(Debug, Default)]
 pub(super) struct Stresses {
     /// Of each curve at its points.
     pub curves: Vec<Vec<RoundStress>>,
     /// Of the single points.
     pub points: Vec<RoundStress>,
-    /// What it took.
+    /// The evaluations.
     pub work: Work,
 }
 
@@ -82,7 +82,7 @@ pub(super) fn stresses(
 fn lines(solved: &SolvedScene, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut add = |kind: BodyKind, along: Along, at: [f64; 3], slot: Slot| {
-        // What both bodies share in the computation they share in the result.
+        // Bodies that share one computation have equal results.
         let body = if solved.bodies_shared() { BodyKind::Block } else { kind };
         let index = lines.iter().position(|l| l.body == body && l.along == along);
         let index = index.unwrap_or_else(|| {

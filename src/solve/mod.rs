@@ -1,4 +1,5 @@
-//! A case and an edge model to a solved case, its solution, and the key results of many.
+//! From a case and an edge model to a solved case, its solution, and the main results of many
+//! cases.
 
 mod cells;
 pub mod edge;

@@ -9,8 +9,8 @@ use std::f64::consts::FRAC_PI_2;
 const MOST_ITERATIONS: usize = 1000;
 
 impl Scene {
-    /// The scene's contact on the cells of `grid`, whose half-length is the scene's, to the relative
-    /// residual `tolerance`.
+    /// The scene's contact on the cells of `grid`, whose half-length is the scene's, to the
+    /// relative residual `tolerance`.
     pub fn on_cells(&self, grid: Grid, tolerance: f64) -> CellProblem {
         let (mut images, mut free) = (Vec::new(), Vec::new());
         for kind in BodyKind::ALL {
@@ -22,8 +22,8 @@ impl Scene {
         CellProblem { grid, images, free, load, tolerance, most_iterations: MOST_ITERATIONS }
     }
 
-    /// The stresses of a body under the pressures of cells; none where its ends are free of traction, which
-    /// takes more than Love's sums.
+    /// The stresses of a body under the pressures of cells; none where its ends are free of
+    /// traction, which takes more than Love's sums.
     pub fn cell_field(&self, kind: BodyKind, pressure: &CellPressure) -> Option<CellField> {
         let (body, end) = (self.bodies[kind], self.end(kind));
         let ends =

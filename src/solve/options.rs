@@ -1,4 +1,4 @@
-//! What to solve a case with, and what to compute of it.
+//! The edge model of a solution, and what to compute.
 
 use super::extent::Extent;
 use crate::base::{Error, Result};
@@ -7,18 +7,18 @@ use crate::case::Case;
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
 
-/// How to solve a case, and what to compute.
+/// The edge model of a solution, and what to compute.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The edge model of both bodies.
     pub method: EdgeModel,
-    /// Bodies whose curves are wanted.
+    /// Bodies whose curves to compute.
     pub bodies: Vec<BodyKind>,
-    /// Names of the standard curves that are wanted; all by default.
+    /// Names of the standard curves to compute; all by default.
     pub curves: Vec<String>,
     /// Extra points, in their order.
     pub points: Vec<Point>,
-    /// Factor of the images of `guilbault` in place of [`crate::body::guilbault_psi`].
+    /// Weight of the images of `guilbault`, instead of [`crate::body::guilbault_psi`].
     pub psi: Option<f64>,
 }
 

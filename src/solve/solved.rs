@@ -1,5 +1,5 @@
-//! A solved case: the scene's solution with the case's own scales and roller, to be kept and asked
-//! for pressures and stresses.
+//! A solved case: the scene's solution with the case's own scales and roller. It gives pressures
+//! and stresses at any points.
 
 use super::cells::{PressureCell, largest, pressure_cells};
 use super::edge::edge_strength;
@@ -20,7 +20,8 @@ use crate::stress::{
 use std::sync::Arc;
 use std::time::Instant;
 
-/// A case whose contact is solved. Lengths are in units of C, stresses and pressures in units of p0.
+/// A case whose contact is solved. Lengths are in units of C, stresses and pressures in units of
+/// p0.
 #[derive(Debug, Clone)]
 pub struct SolvedCase {
     case: Case,
@@ -34,7 +35,7 @@ pub struct SolvedCase {
 pub struct Solution {
     /// The results in numbers, in SI units.
     pub summary: Summary,
-    /// The contact pressure on the two standard lines, and stresses on the curves asked for.
+    /// The contact pressure on the two standard lines, and stresses on the curves of the options.
     pub curves: Curves,
     /// The contact pressure in cells.
     pub cells: Vec<PressureCell>,
@@ -42,8 +43,8 @@ pub struct Solution {
     pub points: Vec<StressTensor>,
 }
 
-/// The stresses that [`Options`] ask for, of a roller whose radius is still open: cases of one scene
-/// share them.
+/// The stresses of the curves and points of [`Options`] before the roller's round shape is added.
+/// Cases of one scene share them.
 pub(super) struct SharedStresses {
     specs: Vec<CurveSpec>,
     found: lines::Stresses,
@@ -54,15 +55,15 @@ impl SolvedCase {
     /// Solves the contact of `case`.
     ///
     /// # Errors
-    /// [`Error::Value`] when `options` ask for what does not exist, [`Error::NotConverged`] and
-    /// [`Error::Unsound`] as [`SolvedScene::new`].
+    /// [`Error::Value`] when `options` name an unknown curve or a point outside its body;
+    /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`].
     pub fn new(case: &Case, options: &Options) -> Result<Self> {
         options.check(case)?;
         let scene = SolvedScene::new(&Scene::new(case, options.method, options.psi))?;
         Ok(Self::of_scene(case, options, Arc::new(scene)))
     }
 
-    /// A case of a scene that is solved already.
+    /// A case whose scene is already solved.
     pub(super) fn of_scene(case: &Case, options: &Options, scene: Arc<SolvedScene>) -> Self {
         let hertz = case.hertz();
         Self { case: case.clone(), options: options.clone(), hertz, scene }
@@ -78,7 +79,7 @@ impl SolvedCase {
         &self.hertz
     }
 
-    /// The scene's solution, which knows nothing of the roller's radius.
+    /// The scene's solution, which does not depend on the roller's radius.
     pub(super) fn scene(&self) -> &Arc<SolvedScene> {
         &self.scene
     }
@@ -109,14 +110,14 @@ impl SolvedCase {
 
     /// The six stress components of `body` (p0) at every point of `grid` (C).
     ///
-    /// Runs on all threads of the current pool. Coordinates that mirror each other exactly in x = 0 or
-    /// in y = 0 are computed once.
+    /// Runs on all threads of the current pool. Coordinates that mirror each other exactly in x = 0
+    /// or in y = 0 are computed once.
     ///
     /// # Errors
     /// [`Error::Value`] when the grid is empty, too large, or leaves the body.
     pub fn on_grid(&self, body: BodyKind, grid: &Grid) -> Result<GridStress> {
         check_grid(&self.case, body, grid)?;
-        // The body's end may be a rounding beyond itself.
+        // The body's end may exceed itself by rounding.
         let half = Extent::of(&self.case, body).half_length_m() / self.hertz.c_m;
         let y = grid.y.iter().map(|y| y.clamp(-half, half)).collect();
         let grid = Grid { y, ..grid.clone() };
@@ -124,12 +125,12 @@ impl SolvedCase {
         Ok(on_grid(&self.scene.field(body), &grid, curvature))
     }
 
-    /// Everything that the options ask for.
+    /// The complete solution.
     pub fn solution(&self) -> Solution {
         self.solution_with(&self.stresses())
     }
 
-    /// The stresses that the options ask for.
+    /// The stresses of the curves and points of the options.
     pub(super) fn stresses(&self) -> SharedStresses {
         let start = Instant::now();
         let (scene, options) = (&self.scene.scene, &self.options);
@@ -146,7 +147,7 @@ impl SolvedCase {
         SharedStresses { specs, found, seconds: start.elapsed().as_secs_f64() }
     }
 
-    /// The solution whose stresses are known.
+    /// The complete solution with known stresses.
     pub(super) fn solution_with(&self, stresses: &SharedStresses) -> Solution {
         let curves = Curves {
             hertz: self.hertz,
@@ -166,7 +167,7 @@ impl SolvedCase {
         self.hertz.c_m / self.case.roller.radius_m
     }
 
-    /// The stress of a body (p0), the roller's with what its radius adds.
+    /// The stress of a body (p0); that of the roller includes the contribution of its radius.
     fn shaped(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
         match body {
             BodyKind::Block => stress.flat,
@@ -256,7 +257,7 @@ impl SolvedCase {
     }
 }
 
-/// The most stressed point of the curves outside the surroundings of the roller's edge.
+/// The most stressed point of the curves, apart from the surroundings of the roller's edge.
 fn most_stressed(curves: &[StressCurve], half_length: f64) -> Option<Critical> {
     let points = curves.iter().flat_map(|c| c.at.iter().zip(&c.stress).map(|p| (c.body, p)));
     let away = points.filter(|(_, (at, _))| away_from_edge(**at, half_length, EDGE));

@@ -1,4 +1,4 @@
-//! What a solution says in numbers, in SI units, as `summary.json` holds it.
+//! The numbers of a solution in SI units, as in `summary.json`.
 
 use super::edge::EdgeStrength;
 use super::scene::Seconds;
@@ -34,9 +34,9 @@ pub struct Summary {
     pub load_error_rel: f64,
     /// Time spent.
     pub seconds: Seconds,
-    /// The most stressed place of the curves asked for, more than 0.1 C from the roller's edge.
+    /// The most stressed place of the curves, more than 0.1 C from the roller's edge.
     pub critical: Option<CriticalSummary>,
-    /// What was chosen and what was left out.
+    /// The resolution and the work.
     pub details: Details,
 }
 
@@ -53,7 +53,7 @@ pub struct CriticalSummary {
     pub at_m: [f64; 3],
 }
 
-/// What a place is the most stressed one by.
+/// The measure of the largest stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
@@ -73,7 +73,7 @@ impl CriticalSummary {
     }
 }
 
-/// How a scene was resolved and what came out beside the results.
+/// The resolution of a scene and further numbers of its solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Details {
     /// Requested accuracy (p0).
@@ -84,51 +84,51 @@ pub struct Details {
     pub wavenumbers: [usize; 2],
     /// Nodes along half of the contact line.
     pub contact_nodes: usize,
-    /// Strength of the contact's end, where the model has a law for it.
+    /// Strength of the contact's end, if the model has a law for it.
     pub edge: Option<EdgeStrength>,
-    /// Amplitude of the pressure's singularity across the contact that was left (p0).
+    /// Remaining amplitude of the pressure's singularity across the contact (p0).
     pub edge_residual: f64,
     /// The largest condition number of the bodies' equations.
     pub condition: f64,
-    /// Whether both bodies are one computation.
+    /// Whether both bodies share one computation.
     pub bodies_shared: bool,
     /// Evaluations of waves.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub work: Option<WorkSummary>,
-    /// Depth of the points whose approach is stated (m).
+    /// Depth of the points of the approach (m).
     pub approach_reference_m: f64,
-    /// The uniform sigma_xx of the roller squeezed across its diameter (Pa).
+    /// The uniform sigma_xx of a roller compressed across its diameter (Pa).
     pub roller_diametral_tension_pa: f64,
 }
 
 /// Evaluations done and avoided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct WorkSummary {
-    /// Evaluations that stresses were summed from.
+    /// Evaluations in the sums of the stresses.
     pub done: u64,
     /// Those avoided, by reason.
     pub avoided: Avoided,
 }
 
-/// Evaluations avoided, by reason; the names are those of the file and of the report.
+/// Evaluations avoided, by reason; the names are those in the file and in the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Avoided {
-    /// Sources farther away than a wave reaches.
+    /// Sources beyond the reach of a wave.
     #[serde(rename = "sources beyond a wave's reach")]
     pub sources: u64,
-    /// End faces that a wavenumber does not reach from the contact.
+    /// End faces beyond the reach of a wavenumber from the contact.
     #[serde(rename = "end faces beyond a wave's reach")]
     pub ends: u64,
-    /// Wavenumbers behind those that add nothing any more.
+    /// Wavenumbers whose contribution is negligible.
     #[serde(rename = "wavenumbers that have faded")]
     pub faded: u64,
-    /// The second of two bodies that are alike.
+    /// The second of two identical bodies.
     #[serde(rename = "the other body is alike")]
     pub alike: u64,
 }
 
 impl WorkSummary {
-    /// From the work of the fields; `alike` says that it served two bodies.
+    /// From the work of the fields; `alike` if it served two bodies.
     pub fn new(work: &Work, alike: bool) -> Self {
         let avoided = Avoided {
             sources: work.beyond_reach,

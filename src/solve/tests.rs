@@ -1,4 +1,4 @@
-//! A solved case that is asked in different ways gives the same answers.
+//! A solved case gives the same results in all its ways.
 
 use super::{Options, Point, SolvedCase, solve};
 use crate::body::EdgeModel;

@@ -1,7 +1,7 @@
-//! The closed forms against high-precision values, quadrature, one another and the equations they
-//! solve.
+//! The closed forms compared with high-precision values, quadrature, one another and the equations
+//! that they solve.
 //!
-//! The values that it reads under `tests/data/` are written by `tests/data/analytic.py`, which says how.
+//! `tests/data/analytic.py` writes the values in `tests/data/` and describes how.
 
 use std::f64::consts::PI;
 
@@ -11,8 +11,8 @@ use edgeline::kernels::{boussinesq, deflection, hertz, love};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
-/// Relative error of every component of Love's stresses. The promise is 1e-10; what is left at the
-/// points of the table is 2e-13, where a component happens to pass near zero.
+/// Relative error of every component of Love's stresses. Required are 1e-10; the largest error at
+/// the points of the table is 2e-13, where a component is nearly zero.
 const RELATIVE: f64 = 1e-12;
 
 /// Relative error; absolute where the true value is zero (unit pressure).
@@ -20,7 +20,7 @@ fn error(got: f64, want: f64) -> f64 {
     if want == 0.0 { got.abs() } else { (got / want - 1.0).abs() }
 }
 
-/// Largest error of each kind of point, printed, and asserted to be at most `tolerance`.
+/// Prints the largest error of each kind of point and asserts that it is at most `tolerance`.
 #[derive(Default)]
 struct Worst(Vec<(String, f64, String)>);
 
@@ -64,8 +64,8 @@ fn love_equals_high_precision_values() {
     worst.assert_at_most(RELATIVE);
 }
 
-/// Distances of 1e-9 to 1e9 sides, sides as 1 to 1e-6 to 1e6, every octant, plane, edge and corner: each
-/// component to 1e-12 of itself, or to 1e-14 of the largest one.
+/// Distances of 1e-9 to 1e9 sides, sides as 1 to 1e-6 to 1e6, every octant, plane, edge and corner:
+/// each component to 1e-12 of itself, or to 1e-14 of the largest one.
 #[test]
 fn love_and_deflection_equal_high_precision_values_at_all_scales() {
     let rows = table("love_extremes.csv");
@@ -176,7 +176,7 @@ fn love_and_deflection_are_sums_of_point_loads() {
 
 #[test]
 fn love_is_in_equilibrium() {
-    // Fourth-order differences; their own error is what the tolerance allows for.
+    // Fourth-order differences; the tolerance allows for their own error.
     let h = 1e-3;
     let slope =
         |f: &dyn Fn(f64) -> f64| (8.0 * (f(h) - f(-h)) - (f(2.0 * h) - f(-2.0 * h))) / (12.0 * h);

@@ -1,4 +1,5 @@
-//! Contacts and stresses on cells against an independent calculation and against the line engine.
+//! Contacts and stresses on cells compared with an independent calculation and with the line
+//! solver.
 
 use crate::common::{near, scene, small, table};
 use edgeline::body::EdgeModel;
@@ -14,7 +15,8 @@ fn on_cells(scene: &Scene, nx: usize, ny: usize, tolerance: f64) -> CellPressure
     scene.on_cells(grid, tolerance).solve(&Straight).unwrap()
 }
 
-/// tests/data/cells.py: whole complex transforms, every image at its own place, Polonsky and Keer's iteration.
+/// tests/data/cells.py: whole complex transforms, every image at its own place, Polonsky and Keer's
+/// iteration.
 #[test]
 fn the_published_method_equals_an_independent_calculation() {
     let rows = table("cells.csv");
@@ -52,8 +54,9 @@ fn the_published_method_equals_an_independent_calculation() {
     }
 }
 
-/// Root mean square of the pressure's difference to the line engine, over the cells of the contact more than 0.15 C from its ends
-/// and 0.05 C from its edges, where a cell holds a mean over a steep slope.
+/// Root mean square of the pressure's difference to the line engine, over the cells of the contact
+/// more than 0.15 C from its ends and 0.05 C from its edges, where a cell holds a mean over a steep
+/// slope.
 fn pressure_error(cells: &CellPressure, line: &SolvedScene) -> f64 {
     let grid = &cells.grid;
     let (mut sum, mut count) = (0.0, 0.0f64);

@@ -1,5 +1,4 @@
-//! What the tests of the numerics share: a plain scene, and comparisons in which a NaN never passes for
-//! small.
+//! Shared parts of the tests of the numerics: a plain scene, and comparisons that fail for NaN.
 
 use edgeline::base::{Material, PerBody, StressTensor};
 use edgeline::body::EdgeModel;
@@ -21,7 +20,7 @@ pub fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> 
     }
 }
 
-/// The larger one; a NaN wins.
+/// The larger one, or NaN if either is NaN.
 pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
@@ -55,13 +54,13 @@ pub fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {
     field.at(y, z, &[x])[0]
 }
 
-/// Asserts |got - want| <= tolerance and says what was got.
+/// Asserts |got - want| <= tolerance and reports the value.
 pub fn near(what: &str, got: f64, want: f64, tolerance: f64) {
     println!("{what}: {got:.5}, expected {want:.5} +- {tolerance}");
     assert!((got - want).abs() <= tolerance, "{what}: got {got}, expected {want} +- {tolerance}");
 }
 
-/// Asserts value <= tolerance and says what was got.
+/// Asserts value <= tolerance and reports the value.
 pub fn small(what: &str, value: f64, tolerance: f64) {
     println!("{what}: {value:.2e} of at most {tolerance:.0e}");
     assert!(value <= tolerance, "{what}: {value:e} > {tolerance:e}");
@@ -73,8 +72,8 @@ pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
     Case::from_factors("case", 0.01, steel, steel, factors)
 }
 
-/// Rows of `tests/data/<name>`: a label where the file has one, and the numbers. A line that begins with
-/// # is a comment.
+/// Rows of `tests/data/<name>`: a label if the file has one, and the numbers. Lines that begin with
+/// # are comments.
 pub fn table(name: &str) -> Vec<(String, Vec<f64>)> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name);
     let mut reader = csv::ReaderBuilder::new().comment(Some(b'#')).from_path(path).unwrap();

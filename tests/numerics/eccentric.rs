@@ -1,4 +1,4 @@
-//! A load beside the middle: even and odd parts of both bodies.
+//! An eccentric load: even and odd parts of both bodies.
 
 use edgeline::base::{Panels, Parity};
 use edgeline::body::{Body, EdgeModel, Resolution, Shape};
@@ -7,8 +7,8 @@ use edgeline::kernels::strip;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
-/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an independent
-/// calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
+/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an
+/// independent calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
 #[test]
 fn an_eccentric_load_has_the_pressures_of_an_independent_calculation() {
     let half = 5.0;

@@ -1,4 +1,4 @@
-//! The strength of the contact's end, and the one number of the `guilbault` model that is fitted.
+//! The strength of the contact's end, and the only fitted number of the `guilbault` model.
 //! Lengths are in units of C, stresses in units of p0.
 
 use crate::common::{CORNER, scene};
@@ -16,8 +16,9 @@ fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
 #[test]
 fn exponents_of_corners_are_the_known_ones() {
     let exponent = |length_ratio, nu, model| scene(5.0, length_ratio, nu, model).corner_exponent();
-    // Two half-planes: a rigid punch's. A quarter-plane on a half-plane of the same material, without
-    // friction: 0.226, whatever Poisson's ratio (Dundurs and Lee, Journal of Elasticity 2, 1972).
+    // Two half-planes: a rigid punch's. A quarter-plane on a half-plane of the same material,
+    // without friction: 0.226, whatever Poisson's ratio (Dundurs and Lee, Journal of Elasticity 2,
+    // 1972).
     assert_eq!(exponent(0.5, 0.3, EdgeModel::HalfSpace), Some(0.5));
     for nu in [0.0, 0.3, 0.49] {
         let m = exponent(0.5, nu, EdgeModel::QuarterSpace).unwrap();
@@ -50,7 +51,7 @@ fn strengths_do_not_depend_on_the_mesh() {
         let flush = scene(slenderness, 1.0, 0.3, EdgeModel::QuarterSpace);
         let limits = [usual, usual.refined()].map(|r| match strength(&flush, &r) {
             Some(EdgeStrength::Finite { limit, residual, .. }) => {
-                // Next to the last free half-width p is good to some 0.002 p0.
+                // Next to the last free half-width the error of p is about 0.002 p0.
                 assert!(residual < 3e-3, "{residual}");
                 limit
             }
@@ -58,17 +59,17 @@ fn strengths_do_not_depend_on_the_mesh() {
         });
         assert!((limits[0] - limits[1]).abs() < 3e-3, "{limits:?}");
         if slenderness == 5.0 {
-            // Finite elements: 0.572, good to one percent.
+            // Finite elements: 0.572 within one percent.
             assert!((limits[1] - 0.572).abs() < 0.006, "{limits:?}");
         }
     }
-    // Images that psi > 1 weighs in both bodies leave no law of either kind.
+    // With images weighted by psi > 1 in both bodies neither law holds.
     assert_eq!(strength(&scene(5.0, 1.0, 0.3, EdgeModel::Guilbault), &usual), None);
 }
 
 // --- The stress transition factor --------------------------------------------------------------
 
-/// What decides sigma_yy of `guilbault` at one point, and the complete solution's there.
+/// The values that determine sigma_yy of `guilbault` at a point, and that of the complete solution.
 struct Sample {
     /// sigma_yy with the images in full.
     mirrored: f64,
@@ -93,7 +94,7 @@ fn samples((slenderness, length_ratio, nu): (f64, f64, f64)) -> Vec<Sample> {
         .map(|model| SolvedScene::new(&scene(slenderness, length_ratio, nu, model)).unwrap());
     let mut all = Vec::new();
     for (kind, body) in BodyKind::ALL.into_iter().zip(model.scene.bodies.iter()) {
-        // A factor next to nothing corrects on the faces themselves and nowhere else.
+        // With a tiny factor only the faces themselves are corrected.
         let (mirrored, truth) = (model.field_with(kind, Some(1e-12), 1e-3), truth.field(kind));
         // The factor was calibrated on the curves in the planes of symmetry, the first seven.
         let curves = standard_curves(kind, slenderness, body.half).into_iter();
@@ -121,7 +122,7 @@ fn rms(samples: &[Sample], gamma: f64) -> f64 {
     (sum / samples.len() as f64).sqrt()
 }
 
-/// The factor of least squares, by golden section in its logarithm.
+/// The least-squares factor, by golden-section search in its logarithm.
 fn best(samples: &[Sample]) -> f64 {
     let (mut low, mut high) = (0.02f64.ln(), 50f64.ln());
     let part = 0.5 * (5f64.sqrt() - 1.0);

@@ -1,5 +1,5 @@
-//! The laws that any field of stress keeps: equilibrium, free faces, superposition, symmetry. Lengths are
-//! in units of C, stresses in units of p0.
+//! Laws of any stress field: equilibrium, free faces, superposition, symmetry. Lengths are in units
+//! of C, stresses in units of p0.
 
 use crate::common::{apart, at, half_of, near, small, solved, table, worse};
 use edgeline::base::{Material, Panels, Parity, StressTensor};
@@ -11,8 +11,8 @@ use proptest::prelude::RngCore;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::f64::consts::PI;
 
-/// Towards the roller's end face, off all planes of symmetry, against finite elements: all components
-/// in both bodies.
+/// All components in both bodies near the roller's end face, off all planes of symmetry, compared
+/// with finite elements.
 #[test]
 fn both_bodies_are_right_at_the_rollers_end_face() {
     let material = Material { young_pa: 210e9, poisson: 0.25 };
@@ -55,7 +55,7 @@ fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor
     }
 }
 
-/// What is left of the three tractions on the end faces, 40 x 40 points of each.
+/// The remaining three tractions on the end faces, at 40 x 40 points of each.
 #[test]
 fn end_faces_are_free() {
     for (slenderness, length_ratio, nu) in [
@@ -71,7 +71,7 @@ fn end_faces_are_free() {
         let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
         for kind in BodyKind::ALL {
             let field = solved.field(kind);
-            // On the face itself zero is put in; so near to it the fields say what they are.
+            // On the face itself the tractions are set to zero; next to it they are computed.
             let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
             let mut left = [0.0; 3];
             for i in 0..40 {
@@ -90,7 +90,7 @@ fn end_faces_are_free() {
     }
 }
 
-/// The force through a plane under the contact is the load: a half-space's misses what it lets pass
+/// The force through a plane below the contact is the load; a half-space also carries a part of it
 /// beyond the end faces.
 #[test]
 fn planes_carry_the_load() {
@@ -148,10 +148,10 @@ fn stresses_superpose_and_mirror() {
         small("mirrored in x", apart(&turned, &whole), 1e-12);
         let s = both([x, -y, z]);
         let turned = StressTensor { xy: -s.xy, yz: -s.yz, ..s };
-        // In y = 0 itself both are what is left of sums in single precision.
+        // In y = 0 itself both are rounding errors of sums in single precision.
         small("mirrored in y", apart(&turned, &whole), if y == 0.0 { 1e-6 } else { 1e-12 });
     }
-    // What is odd in y vanishes in the middle plane, where nothing makes it do so but the loads.
+    // Odd components vanish in the middle plane by the symmetry of the loads alone.
     for x in [0.2, 1.0] {
         let s = both([x, 0.0, 0.4]);
         small("xy in the middle plane", s.xy.abs(), 1e-6);
@@ -161,25 +161,25 @@ fn stresses_superpose_and_mirror() {
 
 // --- Equilibrium and compatibility at any place ------------------------------------------------
 
-/// Scenes, and places in each of their bodies.
+/// Numbers of scenes, and of points in each of their bodies.
 const SCENES: usize = 10;
 const PLACES: usize = 16;
 
 /// Step of the differences (C).
 const STEP: f64 = 0.03;
 
-/// Distance from where stresses are singular, the contact's end and edge, within which differences of
-/// that step see little (C).
+/// Distance from the contact's end and edge, where stresses are singular, beyond which differences
+/// of that step are accurate (C).
 const SINGULAR: f64 = 0.3;
 
-/// Most of a divergence (p0 / C) and of a trace's Laplacian (p0 / C^2).
+/// Limits of the divergence (p0 / C) and of the Laplacian of the trace (p0 / C^2).
 const LIMITS: [f64; 2] = [0.006, 0.05];
 
-/// What the divergence in a round roller is allowed besides, for each C / R: its round shape is taken to
-/// first order, and alike all along the line.
+/// Additional limit of the divergence in a round roller per C / R, because its round shape is
+/// included to first order only, and uniformly along the line.
 const FIRST_ORDER: f64 = 0.3;
 
-/// Numbers in 0 to 1 that are the same in every run.
+/// Pseudo-random numbers in 0 to 1, the same in every run.
 struct Random(TestRng);
 
 impl Random {
@@ -191,12 +191,12 @@ impl Random {
         low + (high - low) * self.number()
     }
 
-    /// Alike in the logarithm.
+    /// Uniform in the logarithm.
     fn scale(&mut self, low: f64, high: f64) -> f64 {
         low * (high / low).powf(self.number())
     }
 
-    /// A case of any slenderness, ends, materials and load that matter to a field.
+    /// A case with random slenderness, ends, materials and load.
     fn case(&mut self) -> Case {
         let ratio = match self.number() {
             u if u < 0.3 => 1.0,
@@ -216,13 +216,13 @@ impl Random {
     }
 
     /// A place in a body of half-length `half`, off all planes of symmetry, the last coordinate the
-    /// depth below its surface: half of them near the contact's end, and all so far from surfaces that
-    /// differences lie within.
+    /// depth below its surface: half of them near the contact's end, and all so far from surfaces
+    /// that differences lie within.
     fn place(&mut self, contact: f64, half: f64) -> [f64; 3] {
         const INSIDE: f64 = 2.1 * STEP;
         loop {
             let x = self.between(INSIDE, 2.5);
-            // Nearer to the surface a tolerance's worth of error varies over few steps.
+            // Nearer to the surface the error varies over a few steps.
             let depth = self.scale(5.0 * STEP, 6.0);
             let y = match self.number() {
                 u if u < 0.3 => contact - self.scale(INSIDE, 3.0),
@@ -238,8 +238,8 @@ impl Random {
     }
 }
 
-/// At a place the largest component of a stress's divergence, and its trace's Laplacian, by central
-/// differences of the fourth order.
+/// The largest component of the divergence of the stress at a point, and the Laplacian of its
+/// trace, by central differences of fourth order.
 fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64; 2] {
     let trace = |s: &StressTensor| s.xx + s.yy + s.zz;
     let here = trace(&stress(place));
@@ -265,8 +265,8 @@ fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64
     [divergence.into_iter().map(f64::abs).fold(0.0, worse), laplacian.abs()]
 }
 
-/// Elastic bodies without forces inside them: the divergence of the stress vanishes, and its trace is
-/// harmonic. A roller is seen in its true shape, whose surface falls by x^2 / (2 R).
+/// In elastic bodies without body forces the divergence of the stress vanishes, and its trace is
+/// harmonic. The roller has its true shape, whose surface falls by x^2 / (2 R).
 #[test]
 fn fields_are_in_equilibrium_and_compatible() {
     let mut random = Random(TestRng::deterministic_rng(RngAlgorithm::ChaCha));

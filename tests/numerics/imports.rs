@@ -1,28 +1,28 @@
-//! Which file of a crate imports which, read from the sources. Every path that starts at `crate`,
-//! `super`, `self`, a module or an imported name is followed, through modules that hand names on, to
-//! the file that defines what it names. Code under `#[cfg(test)]` is left out.
+//! The imports between the files of a crate, read from the sources. Every path that starts at
+//! `crate`, `super`, `self`, a module or an imported name is followed, through re-exports, to the
+//! file that defines the name. Code under `#[cfg(test)]` is left out.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// How many times a name may be handed on.
+/// Largest number of re-exports of a name.
 const PATIENCE: usize = 8;
 
 /// Names of the modules from the crate's root to one of them.
 type Place = Vec<String>;
 
-/// What one module, in a file of its own or within another's, defines and names.
+/// The definitions and names of one module, in its own file or within another.
 #[derive(Default)]
 struct Module {
     file: PathBuf,
     items: BTreeSet<String>,
-    /// Names that `use` brings, and what they stand for.
+    /// Names that `use` imports, and their paths.
     bound: BTreeMap<String, Vec<String>>,
-    /// What `use` brings all names of.
+    /// Paths of glob imports.
     globs: Vec<Vec<String>>,
-    /// What is used here, by private `use` or in the code.
+    /// Paths used here, by private `use` or in the code.
     used: Vec<Vec<String>>,
-    /// What public `use` offers to others.
+    /// Paths of public `use`.
     offered: Vec<Vec<String>>,
 }
 
@@ -106,8 +106,8 @@ impl Sources {
         declared
     }
 
-    /// The file that defines what a path names, seen from a module; none for what is no part of the
-    /// crate. A module that is named itself is in its own file.
+    /// The file that defines the name of a path, seen from a module; none outside the crate. The
+    /// file of a module's name is the module's own.
     fn resolve(&self, place: &Place, path: &[String], patience: usize) -> Option<&Path> {
         let (mut at, mut rest) = (place.clone(), path);
         match path[0].as_str() {
@@ -153,8 +153,8 @@ impl Sources {
         brought.chain([file]).collect()
     }
 
-    /// Pairs of files, the first of which imports from the second. A name that a module hands on from
-    /// below itself is no import of that module's.
+    /// Pairs of files, the first of which imports from the second. Re-exports of a module from its
+    /// own submodules do not count.
     pub fn imports(&self) -> BTreeSet<(&Path, &Path)> {
         let mut found = BTreeSet::new();
         for (place, module) in &self.modules {
@@ -178,7 +178,7 @@ impl Sources {
 }
 
 impl Module {
-    /// Takes what stands between `use` and its semicolon.
+    /// Reads the tokens between `use` and its semicolon.
     fn take_use(&mut self, tree: &[String], public: bool) {
         let mut leaves = Vec::new();
         flatten(tree, &[], &mut leaves);
@@ -266,8 +266,8 @@ fn item_end(tokens: &[String], mut i: usize) -> usize {
     i
 }
 
-/// Names, `::` and single characters of a source. Comments, which may mention any module, are left
-/// out, and of literals only that there is one is kept.
+/// Names, `::` and single characters of a source. Comments are left out, because they may mention
+/// any module, and literals are replaced by placeholders.
 fn tokens(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut rest = text;

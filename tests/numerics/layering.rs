@@ -14,7 +14,7 @@ fn layers(lib: &str) -> Vec<String> {
         .collect()
 }
 
-/// Imports against the direction: a file, and the file of a lower layer that it must not know.
+/// Imports against the direction: a file, and the file of a lower layer that it imports.
 fn violations(layers: &[String], sources: &Sources) -> Vec<(PathBuf, PathBuf)> {
     let rank = |file: &Path| {
         let top = file.iter().next().expect("a path is not empty");
@@ -27,7 +27,7 @@ fn violations(layers: &[String], sources: &Sources) -> Vec<(PathBuf, PathBuf)> {
     found.map(|(from, to)| (from.into(), to.into())).collect()
 }
 
-/// Sets of files each of which imports every other one, directly or by way of others.
+/// Sets of files that import each other, directly or through others.
 fn circles(sources: &Sources) -> BTreeSet<BTreeSet<PathBuf>> {
     let imports = sources.imports();
     let reached = |from| {
@@ -85,7 +85,7 @@ fn no_module_imports_one_below_it() {
 #[test]
 fn no_files_import_each_other() {
     let (sources, texts) = own();
-    // All but the program's own file and what only tests declare.
+    // All files apart from the program's main file and those that only tests declare.
     let (read, imports) = (sources.files().len(), sources.imports().len());
     assert!(10 * read > 9 * texts.len() && imports > 2 * read, "{read} files, {imports} imports");
     let found = circles(&sources);
@@ -214,7 +214,7 @@ fn planted_circles_are_found() {
         let wanted = [wanted].into_iter().filter(|circle| !circle.is_empty()).collect();
         assert_eq!(circles(&planted(&files)), wanted, "{module} | {one} | {other}");
     }
-    // By way of a third file, and with the file that declares them.
+    // Through a third file, and with the file that declares them.
     let three = [
         ("lib.rs", "mod a; mod b; mod c;"),
         ("a.rs", "use crate::b::B; pub struct A;"),

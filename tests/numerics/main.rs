@@ -1,4 +1,4 @@
-//! The numerics: what needs the library alone.
+//! Tests of the numerics, which need the library alone.
 
 mod analytic;
 mod cells;

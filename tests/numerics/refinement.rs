@@ -1,5 +1,5 @@
-//! The solver against itself: finer, with less left out, and with less shared. Lengths are in units of C,
-//! stresses in units of p0.
+//! The solver compared with itself: finer, with less neglected, and with less shared. Lengths are
+//! in units of C, stresses in units of p0.
 
 use crate::common::{CORNER, apart, at, case, curve_points, half_of, scene, small, solved, worse};
 use edgeline::base::StressTensor;
@@ -8,7 +8,7 @@ use edgeline::solve::{Options, Scene, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, away_from_edge};
 
-/// What a resolution changes against a finer one: pressure and stresses outside [`CORNER`].
+/// Differences of a resolution from a finer one: pressure and stresses outside [`CORNER`].
 fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
     let length = coarse.scene.half_length;
     let mut pressure: f64 = 0.0;
@@ -34,7 +34,7 @@ fn changes(coarse: &SolvedScene, fine: &SolvedScene) -> (f64, f64) {
     (pressure, stress)
 }
 
-// --- What is skipped ---------------------------------------------------------------------------
+// --- Neglected contributions -------------------------------------------------------------------
 
 /// Sources beyond a wave's reach, and end faces that a wavenumber does not reach.
 #[test]
@@ -71,9 +71,9 @@ fn faded_wavenumbers_do_not_matter() {
     }
 }
 
-/// Points of the curves that are interpolated, ledges of about the depth included, below which the end
-/// face's corner is as near as the contact's. Where a coarse answer's own error is seen, as on the end
-/// face, whose load is given on coarse panels, the points between must not add to it.
+/// Interpolated points of the curves, also for ledges of about the depth, below which the end
+/// face's corner is as near as the contact's. Where the coarse solution has an error of its own, as
+/// on the end face with its coarse panels, the interpolation must not increase it.
 #[test]
 fn points_between_do_not_matter() {
     let levels = [1e-2, 5e-3, 1e-3, 1e-4];
@@ -197,8 +197,8 @@ fn refinement_changes_little_at_other_ledges_and_materials() {
     assert_converged(&[(5.0, 0.5, 0.45), (5.0, 1.0, 0.45)]);
 }
 
-/// One direction of refinement after the other: what a resolution half as fine as the default, and the
-/// default itself, are off from one twice as fine. The table stands in docs/theory.md.
+/// Each direction of refinement by itself: differences of a resolution half as fine as the default,
+/// and of the default, from one twice as fine. docs/theory.md has the table.
 #[test]
 fn every_direction_converges() {
     type Level = fn(&mut Resolution, f64);
@@ -234,7 +234,7 @@ fn every_direction_converges() {
             let text = errors.map(|(p, s)| format!("{p:.5} / {s:.5}"));
             println!("| {length_ratio} | {name} | {} | {} |", text[0], text[1]);
             let [coarse, usual] = errors;
-            // Below half the tolerance a change need not fall any more: off the plane x = 0 the stresses
+            // Below half the tolerance a change need not decrease: off the plane x = 0 the stresses
             // change by 3e-4 with fewer modes and by 5e-4 with more.
             let falls = |coarse: f64, usual: f64| usual <= coarse.max(5e-4);
             assert!(falls(coarse.0, usual.0) && falls(coarse.1, usual.1), "{name}: {errors:?}");

@@ -1,8 +1,8 @@
-//! Scenes from all over the legal range and beyond it: each ends in an answer that keeps every law of
-//! contact or, outside that range and nowhere else, in a refusal.
+//! Scenes over the whole legal range and beyond it: each has a solution that satisfies every law of
+//! contact or, only outside that range, is refused.
 //!
-//! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes -- --nocapture` runs as many and writes
-//! `results/scenes/`; without the variable some hundred of them run, and nothing is written.
+//! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes -- --nocapture` runs 20,000 and
+//! writes `results/scenes/`. Without the variable a few hundred run, and nothing is written.
 
 use crate::common::{apart, worse};
 use edgeline::base::{Error, Material, StressTensor};
@@ -18,22 +18,23 @@ use std::fmt::Write;
 use std::path::Path;
 use std::time::Instant;
 
-/// Scenes when the environment does not say.
+/// Number of scenes without the environment variable.
 const FEW: usize = 400;
 
-/// Every so many answers are compared with those of a finer grid.
+/// One of so many solutions is compared with that of a finer grid.
 const COMPARED: usize = 89;
 
-/// Distance from the contact's end within which pressure and gap are not looked at (C).
+/// Distance from the contact's end within which pressure and gap are not checked (C).
 const CORNER: f64 = 0.2;
 
-/// Distance from the contact's end within which stresses of the loose tolerances are less accurate (C).
+/// Distance from the contact's end within which stresses of the loose tolerances are less accurate
+/// (C).
 const NEAR: f64 = 0.5;
 
 /// Drawn numbers of a scene.
 const DIMENSIONS: usize = 8;
 
-/// One place of the sequence.
+/// A point of the sequence.
 #[derive(Debug, Clone)]
 struct Draw {
     index: usize,
@@ -125,7 +126,7 @@ enum Law {
     FinerNear,
 }
 
-/// What a law is broken by, each in units of what is allowed.
+/// The largest violation of each law in units of its limit.
 const LAWS: [(&str, f64); 12] = [
     ("load (relative)", 1e-9),
     ("pull (tolerances)", 1.0),
@@ -141,7 +142,7 @@ const LAWS: [(&str, f64); 12] = [
     ("finer grid near the end (tolerances)", 12.0),
 ];
 
-/// What became of a scene.
+/// The outcome of a scene.
 enum Outcome {
     Answer { broken: [f64; LAWS.len()], iterations: usize, condition: f64, seconds: f64 },
     Error(&'static str, String),
@@ -156,7 +157,7 @@ fn kind(error: &Error) -> &'static str {
     }
 }
 
-/// Why, without the file's place and without the value at hand.
+/// The reason, without the place in the file and without the value.
 fn reason(message: &str) -> String {
     let tail = message.split_once("is not valid: ").map_or(message, |(_, tail)| tail);
     let words = tail.split(';').next().unwrap_or(tail).split(' ');
@@ -243,7 +244,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         let mirrored = StressTensor { xz: -t.xz, yz: -t.yz, ..t };
         note(Law::Mirror, apart(&s, &mirrored));
         if draw.model == EdgeModel::QuarterSpace {
-            // On the face itself zero is put in; so near to it the field says what it is.
+            // On the face itself the tractions are set to zero; next to it they are computed.
             let y = body.half * (1.0 - 2e-9);
             for z in [0.2, 0.7, 2.0, 6.0] {
                 for s in field.at(y, z, &[0.0, 0.7, 1.5]) {
@@ -270,7 +271,8 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
     other.block.material.young_pa *= stress;
     other.load.force_n *= length * length * stress;
     let rescaled = Scene::new(&other, draw.model, None);
-    // A scene has twelve digits of the case: the same ones, but where rounding takes the other side.
+    // A scene has twelve digits of the case: the same ones, but where rounding takes the other
+    // side.
     if rescaled.key() != scene.key() {
         note(Law::Perturbed, pressures_apart(&solved, &SolvedScene::new(&rescaled)?));
     }
@@ -326,7 +328,7 @@ fn is_legal(draw: &Draw) -> bool {
         && (1e-12..=1e15).contains(&case.load.force_n)
 }
 
-/// Answers and errors of scenes of one kind.
+/// Solutions and errors of scenes of one kind.
 #[derive(Default)]
 struct Group {
     counts: BTreeMap<&'static str, usize>,
@@ -336,14 +338,14 @@ struct Group {
     seconds: f64,
 }
 
-/// What became of all scenes.
+/// The outcomes of all scenes.
 #[derive(Default)]
 struct Tally {
     /// By model, slenderness and ends.
     groups: BTreeMap<(usize, &'static str, &'static str), Group>,
-    /// How many scenes ended in an error, and which one was the first, by its kind and reason.
+    /// Number of scenes with each kind and reason of an error, and the first of them.
     reasons: BTreeMap<(&'static str, String), (usize, usize)>,
-    /// The laws that were broken, and where; and refusals of what is legal, or the other way round.
+    /// Violated laws with their scenes, refused legal scenes, and solved illegal ones.
     wrong: String,
 }
 
@@ -393,7 +395,7 @@ impl Tally {
         self.groups.values().filter_map(|group| group.counts.get(name)).sum()
     }
 
-    /// A row for each kind of scenes: how many ended how, and the worst of everything.
+    /// A row for each kind of scenes: numbers of outcomes, and the worst value of each law.
     fn table(&self) -> String {
         let laws: Vec<&str> = LAWS.iter().map(|l| l.0).collect();
         let (names, laws) = (NAMES.join(","), laws.join(","));
@@ -434,7 +436,7 @@ const NAMES: [&str; 6] = ["answer", "refused", "not converged", "unsound", "wron
 fn every_scene_ends_in_a_sound_answer_or_is_outside_the_legal_range() {
     let wanted = std::env::var("EDGELINE_SCENES").ok();
     let count = wanted.as_ref().map_or(FEW, |n| n.parse().expect("a number of scenes"));
-    // The few are spread over the many.
+    // A small number of scenes is spread over the whole sequence.
     let stride = if wanted.is_some() { 1 } else { 53 };
     let outcomes: Vec<(Draw, Outcome)> = (0..count)
         .into_par_iter()

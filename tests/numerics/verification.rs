@@ -1,4 +1,5 @@
-//! The solver against known solutions, an independent one, and the laws that any contact keeps. Lengths are in units of C, stresses in units of p0.
+//! The solver compared with known solutions, an independent one, and the laws of any contact.
+//! Lengths are in units of C, stresses in units of p0.
 
 use crate::common::{apart, at, case, curve_points, half_of, near, scene, small, solved, worse};
 use edgeline::base::{Panels, Parity, StressTensor};
@@ -12,7 +13,7 @@ use std::f64::consts::PI;
 
 // --- Known pressures ---------------------------------------------------------------------------
 
-/// Pressure on x = 0 by an independent calculation of another kind: cells of uniform pressure,
+/// Pressure on x = 0 by an independent calculation with another method: cells of uniform pressure,
 /// 0.04 long at the end and growing by 1.25, with 128 wavenumbers of a periodic transform.
 #[test]
 fn pressures_of_an_independent_calculation() {
@@ -32,8 +33,9 @@ fn pressures_of_an_independent_calculation() {
         let tolerance = if model == QuarterSpace { 0.004 } else { 0.01 };
         for (distance, want) in DISTANCES.into_iter().zip(row) {
             let tolerance = match (model, length_ratio, distance) {
-                // Where p has no limit at the end, that calculation's cells are too long next to it:
-                // halving them moves its half-space value at 0.1 from 2.06 to 2.03 and on.
+                // Where p has no limit at the end, the cells of that calculation are too long
+                // there: halving them changes its half-space value at 0.1 from 2.06 to 2.03 and
+                // further.
                 (HalfSpace, _, d) if d < 1.0 => continue,
                 (_, 0.5, 0.1) => 0.006,
                 _ => tolerance,
@@ -45,8 +47,8 @@ fn pressures_of_an_independent_calculation() {
     }
 }
 
-/// The half-space's pressure, which grows without bound at the end, from coarse answers: 1 % of itself as
-/// far as 0.1 C from there.
+/// The half-space's pressure, which is unbounded at the end, from coarse solutions: its error is
+/// below 1 % from 0.1 C on.
 #[test]
 fn coarse_half_spaces_are_good_to_one_percent() {
     let line = |tolerance| {
@@ -61,8 +63,8 @@ fn coarse_half_spaces_are_good_to_one_percent() {
     }
 }
 
-/// Mid-plane of a long contact whose ends lose no load sideways. (Free ends do: a flush one still
-/// raises the middle by 1.3 % of p0 at S_l = 200, as what its ends carry less has to go somewhere.)
+/// Middle of a long contact whose ends carry their full load. (Free ends carry less, and a flush
+/// one still raises the pressure in the middle by 1.3 % of p0 at S_l = 200.)
 #[test]
 fn long_contact_is_plane_strain() {
     let solved = solved(200.0, 1.0, 0.3, EdgeModel::Mirror);
@@ -83,8 +85,8 @@ fn long_contact_is_plane_strain() {
     }
 }
 
-/// The approach of points at a depth in plane strain: the integral of (1 - e^(-k d)) 2 J1(k) / k^2 over k,
-/// whose derivative in d is 2 (sqrt(1 + d^2) - d).
+/// The approach of points at a depth in plane strain: the integral of (1 - e^(-k d)) 2 J1(k) / k^2
+/// over k, whose derivative in d is 2 (sqrt(1 + d^2) - d).
 #[test]
 fn approach_of_a_long_contact_is_that_of_plane_strain() {
     for tolerance in [1e-2, 1e-3] {
@@ -97,7 +99,7 @@ fn approach_of_a_long_contact_is_that_of_plane_strain() {
     }
 }
 
-/// Without Poisson's effect plane strain pulls at no end face: flush ends are not felt at all.
+/// Without Poisson's effect plane strain has no stress on the end faces: flush ends have no effect.
 #[test]
 fn flush_ends_without_lateral_strain_are_not_felt() {
     let solved = solved(5.0, 1.0, 0.0, EdgeModel::QuarterSpace);
@@ -115,7 +117,7 @@ fn flush_ends_without_lateral_strain_are_not_felt() {
     small("stresses", points.into_iter().map(off).fold(0.0, worse), 1e-3);
 }
 
-/// A block whose end is 50 C away, pressed by a rigid roller, is a half-space to the contact.
+/// For a rigid roller, a block whose end is 50 C away is a half-space.
 #[test]
 fn a_far_end_is_no_end() {
     let rigid = |model, half| {
@@ -136,8 +138,8 @@ fn a_far_end_is_no_end() {
     small("stresses", points.map(off).fold(0.0, worse), 5e-3);
 }
 
-/// Half-space stresses as `solve` gives them at extra points, against Love's stresses summed over
-/// fine cells of the same pressure.
+/// Half-space stresses of `solve` at extra points, compared with Love's stresses summed over fine
+/// cells of the same pressure.
 #[test]
 fn stresses_of_cells() {
     let case = case(5e-4, 5.0, 0.5);
@@ -219,7 +221,7 @@ fn stresses_of_cells() {
 
 // --- Laws of any solution ----------------------------------------------------------------------
 
-/// Betti: the work of one pressure on another's displacement is the same both ways.
+/// Betti's theorem: the work of one pressure on the displacement of another is symmetric.
 #[test]
 fn compliance_is_reciprocal() {
     let resolution = Resolution::for_tolerance(1e-3);
@@ -263,8 +265,8 @@ fn compliance_is_reciprocal() {
     }
 }
 
-/// Rounding costs a few hundred units of 1e-16 at most, however fine the grading, long the body, near
-/// its end, small the wavenumber or incompressible the material.
+/// Rounding costs a few hundred units of 1e-16 at most, for any grading, length, ledge, wavenumber
+/// and Poisson's ratio.
 #[test]
 fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
@@ -300,8 +302,8 @@ fn equations_of_the_end_faces_are_well_conditioned() {
     say("ledge", ledges.map(|l| at(5.0, 5.0 + l, 0.3, &usual, 0.1)).to_vec());
 }
 
-/// No pressure gives work back, whatever weight the images have: contacts have one solution. (It takes
-/// images that push, psi < -1, to break that; the field's own range is 0 to 2.)
+/// The work of any pressure is positive for all weights of the images, so that contacts have one
+/// solution. (Only images of opposite sign, psi < -1, violate this; the legal range is 0 to 2.)
 #[test]
 fn compliance_is_positive_definite() {
     for (model, psi) in [
@@ -322,8 +324,8 @@ fn compliance_is_positive_definite() {
     assert!(smallest_energy(0.5, 1.0, EdgeModel::Guilbault, -1.2) < 0.0);
 }
 
-/// Smallest eigenvalue of the symmetric part of a body's compliance at any wavenumber, for pressures
-/// whose mean square along the line is one, relative to the largest.
+/// Smallest eigenvalue of the symmetric part of a body's compliance at any wavenumber, for
+/// pressures whose mean square along the line is one, relative to the largest.
 fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f64) -> f64 {
     let resolution = Resolution::for_tolerance(1e-2);
     let half = slenderness / length_ratio;
@@ -343,7 +345,7 @@ fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f
     energies.fold(f64::INFINITY, f64::min)
 }
 
-/// The contact presses and never pulls, and carries the load.
+/// The pressure is nowhere tensile, and carries the load.
 #[test]
 fn pressure_never_pulls() {
     for (slenderness, length_ratio) in
@@ -366,7 +368,7 @@ fn pressure_never_pulls() {
 
 // --- Scales and threads ------------------------------------------------------------------------
 
-/// All numbers of a solution in units of C and p0 that know nothing of the roller's radius.
+/// All numbers of a solution in units of C and p0 that do not depend on the roller's radius.
 fn numbers(case: &Case) -> Vec<f64> {
     let mut options = Options::new(EdgeModel::QuarterSpace);
     options.bodies = vec![BodyKind::Block];

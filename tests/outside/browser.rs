@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
-/// A page in a browser of its own.
+/// A page in its own browser.
 struct Page {
     child: Child,
     input: ChildStdin,
@@ -22,7 +22,7 @@ struct Page {
     events: VecDeque<Value>,
     session: Option<String>,
     next: u64,
-    /// The browser's profile; goes with it.
+    /// The browser's temporary profile.
     _profile: tempfile::TempDir,
 }
 
@@ -186,7 +186,7 @@ impl Page {
         (number(16), number(20))
     }
 
-    /// What the page complained of, or asked of the network.
+    /// Errors of the page, and its requests to the network.
     fn complaints(&mut self) -> Vec<String> {
         self.events
             .iter()
@@ -265,7 +265,7 @@ fn the_page_works_in_a_browser() {
     assert!(head.contains("quarter-space is off FEM by"), "{head}");
     assert_eq!(page.eval("document.getElementById('case').options.length"), json!(2));
 
-    // A selector changes the curve and what is said of it.
+    // A selector changes the curve and its description.
     let path =
         "document.querySelector('#chart path[data-source=\"quarter-space\"]').getAttribute('d')";
     let before = page.text(path);
@@ -347,7 +347,7 @@ fn the_page_works_in_a_browser() {
     page.choose("case", "w1e-3_sl6_lr1");
     assert!(page.text("document.querySelector('#not-done').innerText").contains("w1e-3_sl6_lr1"));
 
-    // Readable at two widths in both schemes: nothing sticks out of the window.
+    // Readable at two widths in both schemes: nothing exceeds the window.
     page.choose("case", case);
     page.choose("show", "value");
     let pictures = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
@@ -373,7 +373,7 @@ fn the_page_works_in_a_browser() {
         }
     }
 
-    // On paper there are no controls, and words say what they have chosen.
+    // On paper there are no controls, and text states their choices.
     page.call("Emulation.setEmulatedMedia", json!({ "media": "print" }));
     let display = |id: &str| format!("getComputedStyle(document.querySelector('{id}')).display");
     assert_eq!(page.text(&display(".controls")), "none");

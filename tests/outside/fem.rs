@@ -1,5 +1,5 @@
-//! The driver of the finite-element side: what children that fail, hang or write nonsense lead to,
-//! and that runs which are killed go on and leave no process.
+//! The driver of the finite elements: children that fail, hang or write nonsense, and killed runs,
+//! which are continued and leave no process.
 //!
 //! Most tests use the stand-ins in `tests/fake/`. Those that run gmsh and FEniCSx are marked
 //! `ignore`, since not every machine has them; `tests/all.sh` installs both and runs all tests.
@@ -31,7 +31,7 @@ fn a_run_leaves_checked_results_and_is_not_repeated() {
     assert_eq!(files(&bench.out()), wanted);
     succeeded(&mut bench.fake(""));
     assert_eq!(bench.notes(), ["mesh", "solve"]);
-    // Another request is another run, and so are results that somebody changed.
+    // A changed request starts a new run, and so do changed results.
     succeeded(bench.fake("").args(["--size", "2"]));
     assert_eq!(bench.notes().len(), 4);
     fs::write(bench.out().join("curves.csv"), "body\n").unwrap();
@@ -178,14 +178,14 @@ fn children_die_with_a_killed_driver_and_the_next_run_removes_the_rest() {
     wait_for("solving", || bench.notes().len() == 2 && bench.processes().len() == 2);
     kill(driver.id() as i32, libc::SIGKILL);
     driver.wait().unwrap();
-    // The stand-in dies at once; what it started has left its group and asks for nothing.
+    // The stand-in dies at once; its child has left the process group.
     wait_for("the child's death", || bench.processes().len() == 1);
     succeeded(&mut bench.fake(""));
     bench.assert_no_process_is_left();
     assert_eq!(bench.notes(), ["mesh", "solve", "solve"]);
 }
 
-/// The stage process of the run, if it is there.
+/// The stage process of the run, if it runs.
 fn stage_process(bench: &Bench) -> Option<i32> {
     bench.processes().into_iter().find(|pid| {
         fs::read(format!("/proc/{pid}/cmdline"))
@@ -214,7 +214,7 @@ fn run_under_fire(
         let status = driver.wait().unwrap();
         bench.assert_no_process_is_left();
         if status.success() {
-            // It came too late: the next one has something to hit again.
+            // The signal came too late; the next run is hit instead.
             fs::remove_dir_all(bench.out()).unwrap();
             fs::create_dir(bench.out()).unwrap();
         } else {
@@ -339,11 +339,11 @@ fn live_killed_study_is_completed_and_equals_an_undisturbed_one() {
             kill(pid, libc::SIGKILL);
             hits += 1;
         }
-        // Without its child the driver goes on: a case that failed is a row of the study.
+        // The driver continues without its child: the study has a row for the failed case.
         driver.wait().unwrap();
         bench.assert_no_process_is_left();
         if finished(&bench) == 4 {
-            // The next round has something to hit again.
+            // So that the next round has a run to hit.
             fs::remove_dir_all(bench.out().join("fem")).unwrap();
         }
     }

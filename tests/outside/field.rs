@@ -1,4 +1,4 @@
-//! `edgeline solve --field`: what ParaView's reader makes of the files.
+//! `edgeline solve --field`: the files as ParaView's reader sees them.
 //!
 //! Skipped with a message where the system's Python cannot import VTK, unless
 //! `EDGELINE_REQUIRE_VTK` is set; `tests/all.sh` installs it and sets that.
@@ -64,8 +64,8 @@ fn a_real_reader_finds_the_right_values() {
     assert!(text.contains("grid field-block 17 31 8 4216"), "{text}");
     assert!(text.contains("grid pressure 17 31 1 527"), "{text}");
 
-    // The same places by --points, in each body's own frame, each with the farthest point of its line
-    // in the grid: how far a line reaches from the centre decides how fine its wavenumbers are.
+    // The same points by --points, in each body's own frame, each with the farthest point of its
+    // line in the grid, because the extent of a line determines its wavenumbers.
     let farthest = |name: &str| -> f64 {
         let bounds = text.lines().find_map(|l| l.strip_prefix(&format!("bounds {name} "))).unwrap();
         bounds.split(' ').nth(1).unwrap().parse().unwrap()

@@ -1,4 +1,4 @@
-//! The program and the tools from outside: finite elements, a browser, VTK, Cargo.
+//! The program with external tools: finite elements, a browser, VTK, Cargo.
 
 mod browser;
 mod fem;

@@ -1,5 +1,5 @@
-//! What the program is built from: dependencies that the oldest supported compiler builds, from one
-//! registry, and one place for everything unsafe. `deny.toml` has the rules on licences.
+//! The dependencies: built by the oldest supported compiler and from one registry; and unsafe code
+//! in one place only. `deny.toml` has the rules on licences.
 
 use serde_json::Value;
 use std::fs;
@@ -86,7 +86,7 @@ fn unsafe_code_stands_in_one_place() {
         names.sort();
         names
     };
-    // The compiler refuses it elsewhere, as long as nothing else allows it.
+    // The compiler refuses unsafe code elsewhere, unless something else allows it.
     assert_eq!(names("deny(unsafe_code)"), ["lib.rs"]);
     assert_eq!(names("forbid(unsafe_code)"), ["main.rs"]);
     assert_eq!(names("allow(unsafe_code)"), ["host/system.rs"]);

@@ -1,4 +1,4 @@
-//! `edgeline bench` as a user meets it; finite elements are stood in for. No time is asserted on.
+//! `edgeline bench` with stand-ins for the finite elements. No test depends on a time.
 
 use crate::support::{Row, edgeline, fake, number, said};
 use std::path::Path;
@@ -12,7 +12,7 @@ fn rows(folder: &Path) -> Vec<Row> {
     crate::support::rows(&folder.join("pareto.csv"))
 }
 
-/// What makes a run short: two models, two tolerances, one repeat.
+/// Options for a short run: two models, two tolerances, one repetition.
 const SHORT: [&str; 6] =
     ["--methods", "mirror,quarter-space", "--tolerances", "5e-3,1e-4", "--repeats", "1"];
 
@@ -43,8 +43,8 @@ fn recorded_meshes_are_shown_apart_and_never_divided() {
         assert!(row["err"].is_empty() && number(row, "seconds") > 0.0);
         assert_eq!(recorded, row["seconds_cold"].is_empty(), "{row:?}");
     }
-    // The physics: the mirror keeps its modelling error at any tolerance, quarter-space does not,
-    // and FEM's meshes close in on the finest.
+    // The mirror keeps its modelling error at any tolerance, quarter-space does not, and finer
+    // meshes of FEM are nearer to the finest.
     for tolerance in [5e-3, 1e-4] {
         assert!(number(of("mirror", tolerance), "worst_rms_to_limit") > 0.1);
         assert!(number(of("quarter-space", tolerance), "worst_rms_to_fem") < 0.025);

@@ -1,10 +1,10 @@
-//! The program as a user meets it: exit codes, messages, files.
+//! The command line: exit codes, messages, files.
 
 use crate::support::{edgeline, files, number, rows};
 use serde_json::Value;
 use std::path::Path;
 
-/// Runs it where it has to be refused, and returns what it said.
+/// Runs arguments that must be refused, and returns the message.
 fn refused(folder: &Path, arguments: &[&str]) -> String {
     crate::support::refused(&mut edgeline(folder, arguments))
 }
@@ -47,7 +47,7 @@ fn wrong_usage_exits_with_two() {
     assert!(said.contains("--tolerance") && said.contains("1e-1"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "-1"]);
     assert!(said.contains("--tolerance = -1 is not valid"), "{said}");
-    // Refused by its memory or, where there is enough, by the number of points.
+    // Refused for its memory or, if that suffices, for the number of points.
     let field = ["solve", "half-short", "--field", "--field-points", "2000,100,70"];
     assert!(refused(folder.path(), &field).contains("--field-points"));
     assert_eq!(files(folder.path()), [""; 0]);

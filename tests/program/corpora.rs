@@ -1,5 +1,5 @@
-//! The readers of outside files on the inputs that fuzzing has collected, and on damaged copies of
-//! them. `fuzz/README.md` says how the inputs were found.
+//! The readers of files on the inputs that fuzzing has collected, and on damaged copies of them.
+//! `fuzz/README.md` describes how the inputs were found.
 
 #[path = "../../fuzz/src/lib.rs"]
 mod targets;
@@ -48,7 +48,7 @@ fn damaged(input: &[u8], random: &mut impl FnMut(usize) -> usize) -> Vec<u8> {
     bytes
 }
 
-/// Hands every input of `target` to it, and damaged copies of each.
+/// Runs `target` on all its inputs, and on damaged copies of each.
 fn run(target: &str, check: fn(&[u8])) {
     use proptest::prelude::RngCore;
     let mut rng = TestRng::deterministic_rng(RngAlgorithm::ChaCha);

@@ -1,11 +1,11 @@
-//! Faults of the world around the program: full and read-only disks, folders that vanish, children that
-//! write nonsense, names that look like commands, runs that meet in one folder, clocks that are off, and
-//! requests that are far too large. Nothing that was finished is lost, nothing half-written is taken for
-//! whole, no process is left over, and every refusal says what to do, with exit code 2.
+//! Faults outside the program: full and read-only disks, removed folders, children that write
+//! nonsense, names that look like commands, two runs in one folder, wrong clocks, and requests that
+//! are far too large. Finished results are kept, incomplete ones are not taken for complete, no
+//! process is left behind, and every refusal has a remedy and exit code 2.
 //!
-//! Full and read-only disks are real ones, mounted for the test, which needs root. Without it these
-//! tests are skipped with a message, unless `EDGELINE_REQUIRE_MOUNT` is set; `tests/all.sh` sets that
-//! where it is root.
+//! Full and read-only disks are mounted for the test, which needs root. Without root these tests
+//! are skipped with a message, unless `EDGELINE_REQUIRE_MOUNT` is set; `tests/all.sh` sets it if it
+//! runs as root.
 
 use crate::support::{Bench, edgeline, fake, kill, refused, start, succeeded, wait_for};
 use sha2::{Digest, Sha256};
@@ -35,8 +35,8 @@ struct Disk {
 }
 
 impl Disk {
-    /// Mounts a disk of `size` (as `mount` takes it) at `path`, which is made. None where that is not
-    /// allowed.
+    /// Mounts a disk of `size` (in the form of `mount`) at the new folder `path`. None if that is
+    /// not allowed.
     fn mount(path: &Path, size: &str) -> Option<Disk> {
         fs::create_dir_all(path).unwrap();
         let options = format!("size={size}");
@@ -50,7 +50,7 @@ impl Disk {
         None
     }
 
-    /// Fills the disk but for `left` bytes.
+    /// Fills the disk up to `left` free bytes.
     fn fill(&self, left: u64) {
         let mut file = File::create(self.ballast()).unwrap();
         while file.write_all(&[0; 4096]).is_ok() {}
@@ -58,7 +58,7 @@ impl Disk {
         file.set_len(length - left).unwrap();
     }
 
-    /// Makes the room again that was filled.
+    /// Frees the filled space.
     fn clear(&self) {
         fs::remove_file(self.ballast()).unwrap();
     }
@@ -67,7 +67,7 @@ impl Disk {
         self.path.join("ballast")
     }
 
-    /// Mounts it again, for reading only.
+    /// Mounts it again as read-only.
     fn protect(&self) {
         let done = Command::new("mount").args(["-o", "remount,ro"]).arg(&self.path).status();
         assert!(done.unwrap().success());
@@ -81,7 +81,7 @@ impl Drop for Disk {
     }
 }
 
-/// All files below a folder with their content, the ballast aside.
+/// All files below a folder with their content, without the ballast.
 fn content(folder: &Path) -> BTreeMap<PathBuf, Vec<u8>> {
     let mut found = BTreeMap::new();
     for entry in fs::read_dir(folder).unwrap() {
@@ -107,7 +107,8 @@ fn small_study(folder: &Path) {
 
 const SMALL_STUDY: [&str; 6] = ["study", "small.toml", "--methods", "mirror", "--repeats", "0"];
 
-/// A sweep over `count` loads, which one solution serves, or over as many lengths, which take one each.
+/// A sweep over `count` loads, which one solution serves, or over as many lengths, which take one
+/// each.
 fn sweep_file(folder: &Path, key: &str, from: f64, to: f64, count: usize) {
     let mut values = BTreeMap::from([("W", "1e-3".to_string()), ("S_l", "5".to_string())]);
     values.insert(key, format!("{{ from = {from:e}, to = {to:e}, count = {count} }}"));
@@ -120,7 +121,7 @@ fn sweep_file(folder: &Path, key: &str, from: f64, to: f64, count: usize) {
     fs::write(folder.join("sweep.toml"), text).unwrap();
 }
 
-/// Checks what is said about a disk that is full.
+/// Checks the message about a full disk.
 fn assert_says_full(said: &str) {
     assert!(said.contains("No space left on device"), "{said}");
     assert!(said.contains("make room there, or give a folder on another disk"), "{said}");
@@ -197,7 +198,7 @@ fn finite_elements_go_on_after_a_full_disk() {
     succeeded(&mut run());
     let before = bench.results();
     assert_eq!(bench.notes(), ["mesh", "solve", "solve"]);
-    // What is finished is still there when there is no room for anything else.
+    // Finished stages are kept on a full disk.
     disk.fill(0);
     refused(run().args(["--size", "2"]));
     assert_eq!(bench.results(), before);
@@ -214,7 +215,7 @@ fn files_that_may_not_grow_are_not_taken_for_whole() {
     let solve = |method| edgeline(folder.path(), &["solve", "flush-short", "--method", method]);
     succeeded(&mut solve("half-space"));
     let before = content(&out);
-    // The system kills a process that writes more than it may.
+    // The system kills a process that exceeds its file size limit.
     let done = limited("--fsize=30000", &solve("mirror")).output().unwrap();
     assert!(!done.status.success());
     let now = content(&out);
@@ -230,11 +231,11 @@ fn streams_that_take_nothing_are_no_reason_to_fail_silently() {
     let mut solve = edgeline(folder.path(), &["solve", "flush-short", "--json"]);
     let said = refused(solve.stdout(full()));
     assert!(said.contains("cannot write to standard output: No space left"), "{said}");
-    // An error that cannot be said is still an error, and nothing worse.
+    // An error without a message is still an error, and not a crash.
     let mut wrong = edgeline(folder.path(), &["solve", "nowhere.toml"]);
     let status = wrong.stderr(full()).status().unwrap();
     assert_eq!(status.code(), Some(2));
-    // Warnings that cannot be said are none.
+    // Warnings that cannot be written are dropped.
     let bench = Bench::new();
     assert!(bench.fake("").stdout(Stdio::null()).stderr(full()).status().unwrap().success());
 }
@@ -265,7 +266,7 @@ fn read_only_folders_are_refused_before_anything_is_computed() {
 
 #[test]
 fn a_folder_that_vanishes_is_reported() {
-    // Finite elements: the folder goes while a child works in it.
+    // Finite elements: the folder is removed while a child works in it.
     let bench = Bench::new();
     let driver = start(bench.fake("").env("FAKE_PAUSE", "0.5"));
     wait_for("meshing", || bench.notes() == ["mesh"]);
@@ -294,7 +295,7 @@ fn a_folder_that_vanishes_is_reported() {
     assert!(said.contains("cannot write deep/s.csv: No such file"), "{said}");
     assert!(said.contains("check the path, and that nobody removed it meanwhile"), "{said}");
 
-    // A study either leaves all of its files or says that it could not.
+    // A study writes all its files or fails.
     small_study(folder.path());
     let study = start(&mut edgeline(folder.path(), &[&SMALL_STUDY[..], &["--out", "o"]].concat()));
     let out = folder.path().join("o");
@@ -374,7 +375,7 @@ fn damaged_references_are_refused() {
     assert!(said.contains("curves.csv: was changed or is damaged: its SHA-256 is"), "{said}");
     assert!(said.contains("restore the folder from version control"), "{said}");
     assert!(said.contains("python3 -m edgeline_fem record"), "{said}");
-    // A pipe's worth of nothing is not read to its end.
+    // An endless pipe is not read to its end.
     File::create(record.join("curves.csv")).unwrap().set_len(1 << 40).unwrap();
     let said = refused(&mut run());
     assert!(said.contains("curves.csv: is larger than 256 MiB"), "{said}");
@@ -416,7 +417,7 @@ fn children_that_write_garbage_are_refused() {
             succeeded(&mut bench.fake(""));
         }
     }
-    // A gmsh that fails, dies or says nothing is no gmsh.
+    // A program that fails, dies or prints nothing is not gmsh.
     let bench = Bench::new();
     for script in ["exit 3", "kill -9 $$", "exit 0", "printf '\\377\\376'"] {
         let gmsh = bench.folder.path().join("gmsh");
@@ -443,7 +444,7 @@ fn names_of_cases_cannot_leave_their_folder() {
         assert!(said.contains("c.toml:") && said.contains("a name is 1 to 64 letters"), "{said}");
     }
     assert_eq!(content(folder.path()).len(), 1);
-    // In a table they are a row's own fault, and the row stays one line.
+    // In a table they are an error of the row, which remains one line.
     let mut table = csv::Writer::from_path(folder.path().join("t.csv")).unwrap();
     table.write_record(["name", "W", "S_l", "L_r"]).unwrap();
     for name in ["..", "a b", "a\"b", "a\nb", "ü", "good"] {
@@ -457,7 +458,7 @@ fn names_of_cases_cannot_leave_their_folder() {
     let rows = fs::read_to_string(folder.path().join("sweep.csv")).unwrap();
     assert_eq!(rows.lines().count(), 7, "{rows}");
     assert_eq!(rows.lines().filter(|l| l.contains("a name is 1 to 64")).count(), 5, "{rows}");
-    // Cut within a character, as by a full disk, it is gone on with.
+    // A sweep is continued even if its file was cut within a character, as by a full disk.
     let cut = rows.find('ü').unwrap() + 1;
     fs::write(folder.path().join("sweep.csv"), &rows.as_bytes()[..cut]).unwrap();
     succeeded(&mut sweep);
@@ -480,7 +481,7 @@ fn folders_may_be_called_anything() {
         succeeded(edgeline(folder, &solve).arg(&out));
         assert!(folder.join(name).join("summary.json").exists(), "{name:?}");
         let mut run = bench.fake("");
-        // The last of two settings would be refused, so the folder is given anew.
+        // A repeated option would be refused, so the folder is set anew.
         let mut fem = Command::new(run.get_program());
         fem.current_dir(folder).args(["fem", "flush-short", "--out"]).arg(out.join("fem"));
         fem.arg("--python").arg(fake("python3")).arg("--gmsh").arg(fake("gmsh"));
@@ -489,7 +490,7 @@ fn folders_may_be_called_anything() {
         assert!(folder.join(name).join("fem/fem.json").exists(), "{name:?}");
         assert_eq!(count(), before + 1, "{name:?}: something was put elsewhere");
     }
-    // A study states the command that was given, and a sweep its files.
+    // A study reports its command, and a sweep its files.
     small_study(folder);
     let odd = OsStr::from_bytes(b"./\xff\xfe/study");
     succeeded(edgeline(folder, &[&SMALL_STUDY[..], &["--json", "--out"]].concat()).arg(odd));
@@ -548,7 +549,7 @@ fn a_study_that_is_asked_to_stop_stops() {
     study.arg("--gmsh").arg(fake("gmsh")).env("FAKE", "hang");
     let study = start(study.env("FAKE_NOTES", folder.join("notes")));
     wait_for("solving", || bench.notes().len() == 2);
-    // Not Ctrl-C's: a shell that runs this in the background has that ignored.
+    // Not SIGINT, which is ignored in background jobs of a shell.
     kill(study.id() as i32, libc::SIGTERM);
     let done = study.wait_with_output().unwrap();
     let said = String::from_utf8(done.stderr).unwrap();
@@ -564,7 +565,7 @@ fn clocks_that_are_off_change_nothing() {
     succeeded(&mut bench.fake(""));
     let year = Duration::from_secs(365 * 86_400);
     for time in [SystemTime::UNIX_EPOCH, SystemTime::UNIX_EPOCH + 130 * year] {
-        // What a run that was killed left, and what one that finished did.
+        // Files of a killed run and of a finished one.
         fs::write(bench.out().join(".lock"), "999999\n").unwrap();
         for path in content(&bench.out()).into_keys() {
             let file = OpenOptions::new().append(true).open(&path).unwrap();
@@ -573,7 +574,7 @@ fn clocks_that_are_off_change_nothing() {
         succeeded(&mut bench.fake(""));
         assert_eq!(bench.notes(), ["mesh", "solve"], "a finished run was repeated");
     }
-    // The date of a run is all that the wall clock is asked for; time limits go by one that cannot jump.
+    // Only the date of a run comes from the wall clock; time limits use the monotonic clock.
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut asks = Vec::new();
     for (path, text) in content(&root.join("src")).into_iter().chain(content(&root.join("fem"))) {
@@ -621,7 +622,7 @@ fn requests_that_are_far_too_large_are_refused_with_an_estimate() {
         (edgeline(folder, &["gate", "--gates", "huge.toml"]), "reading huge.toml takes about"),
         (mesh, "a mesh of size 0.1 takes about"),
     ] {
-        // Where a gigabyte cannot be had, nothing near to what is asked for was tried.
+        // With less than a gigabyte of memory, the request was refused before any large allocation.
         let mut limited = limited("--as=1073741824", &command);
         for (name, value) in command.get_envs() {
             limited.env(name, value.unwrap_or_default());

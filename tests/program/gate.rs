@@ -1,4 +1,4 @@
-//! The gates notice what they are there for: another psi, a sign, a FEM curve that is off by 2 %.
+//! The gates detect errors: another psi, a wrong sign, a FEM curve with an error of 2 %.
 
 use crate::support::{edgeline, said};
 use edgeline::base::Result;
@@ -12,7 +12,7 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// One flush case and one on a longer block, by the two models that have something to lose.
+/// One flush case and one on a longer block, by the two most accurate models.
 const STUDY: &str = "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
 [block]\nyoung_pa = 210e9\npoisson = 0.3\n[factors]\nW = [1e-3]\nS_l = [5.0]\nL_r = [0.5, 1.0]\n";
 
@@ -52,7 +52,7 @@ fn flipped_shears_are_named() {
     let accepted = Baseline::of(&right);
     assert_eq!(failed(&right, &accepted), Vec::new());
 
-    // The sign that the paper's x_k - x_p gives the shears across z.
+    // The sign of the shears across z that follows from the paper's x_k - x_p.
     let sign = |cases: &[Case], method: EdgeModel| {
         let mut solutions = usual(cases, method);
         for solution in solutions.iter_mut().flatten() {
@@ -70,7 +70,7 @@ fn flipped_shears_are_named() {
             |o: &Outcome| ["sigma_xz", "sigma_yz"].iter().any(|shear| o.note.contains(shear));
         assert!(drift.is_some_and(named), "{method}: {outcomes:?}");
     }
-    // The limits alone notice it too, without accepted numbers.
+    // The limits alone detect it too, without accepted numbers.
     assert!(outcomes.iter().any(|o| o.kind == gate::Kind::Limit && o.method == "quarter-space"));
 }
 
@@ -121,7 +121,7 @@ fn scale_curve(record: &Path, body: &str, curve: &str, factor: f64) {
     }
     assert!(changed > 0, "{body} {curve} is in the record");
     let text = writer.into_inner().unwrap();
-    // As if it had been recorded like that: the gates, not the checksums, are to notice.
+    // With matching checksums, so that the gates must detect it.
     let sum: String = Sha256::digest(&text).iter().map(|b| format!("{b:02x}")).collect();
     let sums = record.join("SHA256SUMS");
     let others = std::fs::read_to_string(&sums).unwrap();
@@ -156,7 +156,7 @@ fn another_psi_fails_the_command_and_names_its_model() {
     assert_eq!(gate(&["--psi", "-1"]).status.code(), Some(2));
 }
 
-/// On everything built in. `tests/mutate.sh` runs this with a kernel's sign changed.
+/// On all built-in cases. `tests/mutate.sh` runs this with the sign of a kernel changed.
 #[test]
 fn the_gates_hold() {
     let folder = tempfile::tempdir().unwrap();
@@ -176,7 +176,7 @@ fn a_fem_curve_off_by_two_percent_fails_the_command_and_accepting_shows_it() {
         gate(at, &[&usual[..], &files, more].concat())
     };
 
-    // There is nothing to compare with yet; accepting is a command of its own.
+    // There are no accepted numbers yet; accepting them is a separate command.
     assert_eq!(gate(&[]).status.code(), Some(2));
     let accept = gate(&["--accept"]);
     assert_eq!(accept.status.code(), Some(0), "{}", said(&accept));
@@ -202,13 +202,13 @@ fn a_fem_curve_off_by_two_percent_fails_the_command_and_accepting_shows_it() {
         serde_json::from_slice(&gate(&["--json"]).stdout).expect("one JSON object");
     assert_eq!(json["hold"], false);
 
-    // Accepting it shows what changed, and only that curve did.
+    // Accepting lists the changes, and only that curve has changed.
     let accept = gate(&["--accept"]);
     let text = said(&accept);
     let changes: Vec<&str> = text.lines().filter(|l| l.contains(" -> ")).collect();
     assert!(!changes.is_empty());
     assert!(changes.iter().all(|l| l.contains("roller depth-centre")), "{text}");
-    // No number drifts any more; the limits are not up for acceptance, and the curve breaks one.
+    // Then no number drifts. The limits cannot be accepted, and the curve exceeds one.
     let after = gate(&[]);
     assert!(said(&after).contains("nothing moved"), "{}", said(&after));
     assert_eq!(after.status.code(), Some(1), "{}", said(&after));

@@ -1,4 +1,4 @@
-//! The program as its users meet it, and the files it reads: what runs the built program.
+//! Tests that run the program.
 
 mod bench;
 mod cli;

@@ -1,4 +1,4 @@
-//! `edgeline study` and `edgeline report` as a user meets them.
+//! `edgeline study` and `edgeline report`.
 
 use crate::support::{edgeline, rows, said};
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
         .unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", said(&done));
 
-    // Standard output holds one JSON object, which is the file, and nothing else.
+    // Standard output contains only one JSON object, the content of the file.
     let summary: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
     let file: serde_json::Value = serde_json::from_str(&text(&out.join("summary.json"))).unwrap();
     assert_eq!(summary["method_summary"], file["method_summary"]);
@@ -62,7 +62,7 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
         }
     }
 
-    // Every number of the error tables stands in study.csv: forty cells of them.
+    // Forty cells of the error tables are also in study.csv.
     let markdown = text(&out.join("report.md"));
     let (mut compared, mut method) = (0, "");
     let columns = ["pressure_rms", "pressure_max", "stress_rms", "stress_max", "von_mises_rms"];
@@ -83,14 +83,14 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
         }
     }
     assert_eq!(compared, 4 * 4 * 5);
-    // And those of the page are the same.
+    // The page has the same numbers.
     let page = text(&out.join("report.html"));
     for case in &cases {
         let cell = format!("<td>{:.4}</td>", of("guilbault", case, "von_mises_max"));
         assert!(page.contains(&cell), "{case}: {cell}");
     }
 
-    // The page is made of the run's files alone: made again, it is the same.
+    // The page is made from the run's files alone: rebuilt, it is the same.
     std::fs::remove_file(out.join("report.html")).unwrap();
     let again = edgeline(folder.path(), &["report", out.to_str().unwrap()]).output().unwrap();
     assert_eq!(again.status.code(), Some(0), "{}", said(&again));

@@ -1,5 +1,5 @@
-//! What the tests that run the program share: how it is started and what it left, a folder in which
-//! `edgeline fem` runs with the stand-ins of `tests/fake/`, and processes that are counted.
+//! Shared parts of the tests that run the program: its start and its files, a folder in which
+//! `edgeline fem` runs with the stand-ins of `tests/fake/`, and a count of processes.
 
 use std::collections::HashMap;
 use std::fs;
@@ -9,7 +9,7 @@ use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
 use tempfile::TempDir;
 
-/// The program, started in `folder`, with nothing from the outside that it might pick up.
+/// The program in `folder`, without variables of the environment that it reads.
 pub fn edgeline(folder: &Path, arguments: &[&str]) -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_edgeline"));
     command.current_dir(folder).env_remove("EDGELINE_PYTHON").args(arguments).stdin(Stdio::null());
@@ -32,7 +32,7 @@ pub fn number(row: &Row, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
-/// The names of all that is in a folder, sorted.
+/// The sorted names in a folder.
 pub fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> =
@@ -48,7 +48,7 @@ pub fn fake(name: &str) -> PathBuf {
 
 /// A folder in which `edgeline fem` runs.
 pub struct Bench {
-    /// Where the program is started; the run has the folder `run` in it.
+    /// The working folder, which contains the run's folder `run`.
     pub folder: TempDir,
 }
 
@@ -64,8 +64,8 @@ impl Bench {
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
         let mut command = edgeline(self.folder.path(), &["fem", case, "--out"]);
-        // A suite under nohup, or in the background of a script, would hand its ignored SIGHUP and SIGINT
-        // down, and edgeline respects that.
+        // Under nohup or in the background of a script, SIGHUP and SIGINT are ignored. Children
+        // inherit that, and edgeline respects it.
         // SAFETY: a plain system call that is async-signal-safe.
         unsafe {
             command.pre_exec(|| {
@@ -79,7 +79,7 @@ impl Bench {
         command
     }
 
-    /// `edgeline fem` with the stand-ins, which behave as `mode` says.
+    /// `edgeline fem` with the stand-ins, whose behaviour `mode` selects.
     pub fn fake(&self, mode: &str) -> Command {
         let mut command = self.live("flush-short");
         command
@@ -92,18 +92,18 @@ impl Bench {
         command
     }
 
-    /// What the stand-in was asked to do so far.
+    /// The calls of the stand-in so far.
     pub fn notes(&self) -> Vec<String> {
         let text = fs::read_to_string(self.folder.path().join("notes")).unwrap_or_default();
         text.lines().map(str::to_string).collect()
     }
 
-    /// The results, without what differs from run to run.
+    /// The results, without the parts that differ between runs.
     pub fn results(&self) -> [String; 2] {
         ["curves.csv", "pressure.csv"].map(|f| fs::read_to_string(self.out().join(f)).unwrap())
     }
 
-    /// Processes of the runs in this folder and below it, zombies aside.
+    /// Processes of the runs in this folder and below it, without zombies.
     pub fn processes(&self) -> Vec<i32> {
         let mark = format!("EDGELINE_RUN={}", self.out().canonicalize().unwrap().display());
         let pids = fs::read_dir("/proc").unwrap().flatten();
@@ -126,7 +126,7 @@ impl Bench {
     }
 }
 
-/// Runs to the end, which has to be a refusal with exit code 2, and returns what was said.
+/// Runs a command that must be refused with exit code 2, and returns the message.
 pub fn refused(command: &mut Command) -> String {
     let output = command.output().unwrap();
     let said = String::from_utf8(output.stderr).unwrap();
@@ -148,7 +148,7 @@ pub fn kill(pid: i32, signal: i32) {
     }
 }
 
-/// Waits for something to become true.
+/// Waits until a condition is true.
 pub fn wait_for(what: &str, condition: impl Fn() -> bool) {
     let until = Instant::now() + Duration::from_secs(20);
     while !condition() {

@@ -91,85 +91,82 @@ fn broken(text: &str, line: &str, with: &str) -> String {
     parse(&text.replacen(line, with, 1)).expect_err(with).to_string()
 }
 
+/// A line of a file, its replacement, and a part of the error.
+type Mistake = (&'static str, &'static str, &'static str);
+
+const MISTAKES: &[Mistake] = &[
+    ("poisson = 0.3", "poison = 0.3", "f.toml:5: unknown key roller.poison; did you mean poisson?"),
+    ("poisson = 0.3", "poisson = 0.5", "f.toml:5: roller.poisson = 0.5 is not valid"),
+    ("poisson = 0.3", "poisson = -0.1", "f.toml:5: roller.poisson = -0.1 is not valid"),
+    ("radius_m = 10e-3", "radius_m = 0", "f.toml:3: roller.radius_m = 0 is not valid"),
+    ("radius_m = 10e-3", "radius_m = nan", "f.toml:3: roller.radius_m = nan is not valid"),
+    ("radius_m = 10e-3", "radius_m = inf", "f.toml:3: roller.radius_m = inf is not valid"),
+    ("radius_m = 10e-3", "radius_m = 1e999", "f.toml:3: "),
+    ("radius_m = 10e-3", "radius_m = 0x10", "f.toml:3: roller.radius_m = 0x10 is not valid"),
+    ("radius_m = 10e-3", "radius_m = \"10\"", "f.toml:3: roller.radius_m = \"10\" is not valid"),
+    ("radius_m = 10e-3", "radius_m = [10]", "f.toml:3: roller.radius_m = [10] is not valid"),
+    (
+        "radius_m = 10e-3",
+        "radius = 10e-3",
+        "f.toml:3: unknown key roller.radius; did you mean radius_m?",
+    ),
+    ("radius_m = 10e-3", "", "f.toml:2: roller.radius_m is missing; add for example `radius_m"),
+    ("radius_m = 10e-3", "radius_m 10e-3", "f.toml:3: is not valid TOML"),
+    ("radius_m = 10e-3", "radius_m = 1\nradius_m = 2", "f.toml:4: is not valid TOML"),
+    ("young_pa = 210e9", "young_pa = 210", "f.toml:4: roller.young_pa = 210 is not valid"),
+    (
+        "L_r = 0.5",
+        "L_r = 1.01",
+        "f.toml:12: dimensionless.L_r = 1.01 is not valid: the roller is at most as long as the block",
+    ),
+    ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
+    ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
+    ("W = 5e-4", "w = 5e-4", "f.toml:10: unknown key dimensionless.w; did you mean W?"),
+    ("S_l = 5.0", "S_l = 0.1", "f.toml:11: dimensionless.S_l = 0.1 is not valid"),
+    (
+        "[block]",
+        "[block]\nlength_m = 1",
+        "f.toml:7: block.length_m = 1 is not valid: the lengths follow",
+    ),
+    ("[block]", "[blok]", "f.toml:6: unknown key blok; did you mean block?"),
+    ("name = \"one\"", "name = \"a/b\"", "f.toml:1: name = \"a/b\" is not valid"),
+    ("name = \"one\"", "name = 1", "f.toml:1: name = 1 is not valid: a text belongs here"),
+    ("name = \"one\"", "name = \"one\"\nroller = 3", "is not valid TOML"),
+    (
+        "[dimensionless]",
+        "[load]\nforce_n = 1\n[dimensionless]",
+        "f.toml:9: the load is given twice",
+    ),
+    (
+        "[dimensionless]",
+        "[accuracy]\ntolerance = 0.5\n[dimensionless]",
+        "f.toml:10: accuracy.tolerance = 0.5",
+    ),
+    ("[dimensionless]", "[factors]", "is a study file"),
+];
+
+const LOADED_MISTAKES: &[Mistake] = &[
+    (
+        "length_m = 40e-3",
+        "length_m = 19e-3",
+        "f.toml:8: block.length_m = 19e-3 is not valid: the block is shorter",
+    ),
+    ("length_m = 20e-3", "", "f.toml:2: roller.length_m is missing"),
+    ("force_n = 1000", "force_n = 1e12", "f.toml:12: load.force_n = 1e12 is not valid: W = "),
+    (
+        "force_n = 1000",
+        "force_n = 1000\nunit = 1",
+        "f.toml:13: unknown key load.unit; did you mean force_n?",
+    ),
+];
+
 #[test]
 fn errors_name_key_line_and_remedy() {
-    for (line, with, wanted) in [
-        (
-            "poisson = 0.3",
-            "poison = 0.3",
-            "f.toml:5: unknown key roller.poison; did you mean poisson?",
-        ),
-        ("poisson = 0.3", "poisson = 0.5", "f.toml:5: roller.poisson = 0.5 is not valid"),
-        ("poisson = 0.3", "poisson = -0.1", "f.toml:5: roller.poisson = -0.1 is not valid"),
-        ("radius_m = 10e-3", "radius_m = 0", "f.toml:3: roller.radius_m = 0 is not valid"),
-        ("radius_m = 10e-3", "radius_m = nan", "f.toml:3: roller.radius_m = nan is not valid"),
-        ("radius_m = 10e-3", "radius_m = inf", "f.toml:3: roller.radius_m = inf is not valid"),
-        ("radius_m = 10e-3", "radius_m = 1e999", "f.toml:3: "),
-        ("radius_m = 10e-3", "radius_m = 0x10", "f.toml:3: roller.radius_m = 0x10 is not valid"),
-        (
-            "radius_m = 10e-3",
-            "radius_m = \"10\"",
-            "f.toml:3: roller.radius_m = \"10\" is not valid",
-        ),
-        ("radius_m = 10e-3", "radius_m = [10]", "f.toml:3: roller.radius_m = [10] is not valid"),
-        (
-            "radius_m = 10e-3",
-            "radius = 10e-3",
-            "f.toml:3: unknown key roller.radius; did you mean radius_m?",
-        ),
-        ("radius_m = 10e-3", "", "f.toml:2: roller.radius_m is missing; add for example `radius_m"),
-        ("radius_m = 10e-3", "radius_m 10e-3", "f.toml:3: is not valid TOML"),
-        ("radius_m = 10e-3", "radius_m = 1\nradius_m = 2", "f.toml:4: is not valid TOML"),
-        ("young_pa = 210e9", "young_pa = 210", "f.toml:4: roller.young_pa = 210 is not valid"),
-        (
-            "L_r = 0.5",
-            "L_r = 1.01",
-            "f.toml:12: dimensionless.L_r = 1.01 is not valid: the roller is at most as long as the block",
-        ),
-        ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
-        ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
-        ("W = 5e-4", "w = 5e-4", "f.toml:10: unknown key dimensionless.w; did you mean W?"),
-        ("S_l = 5.0", "S_l = 0.1", "f.toml:11: dimensionless.S_l = 0.1 is not valid"),
-        (
-            "[block]",
-            "[block]\nlength_m = 1",
-            "f.toml:7: block.length_m = 1 is not valid: the lengths follow",
-        ),
-        ("[block]", "[blok]", "f.toml:6: unknown key blok; did you mean block?"),
-        ("name = \"one\"", "name = \"a/b\"", "f.toml:1: name = \"a/b\" is not valid"),
-        ("name = \"one\"", "name = 1", "f.toml:1: name = 1 is not valid: a text belongs here"),
-        ("name = \"one\"", "name = \"one\"\nroller = 3", "is not valid TOML"),
-        (
-            "[dimensionless]",
-            "[load]\nforce_n = 1\n[dimensionless]",
-            "f.toml:9: the load is given twice",
-        ),
-        (
-            "[dimensionless]",
-            "[accuracy]\ntolerance = 0.5\n[dimensionless]",
-            "f.toml:10: accuracy.tolerance = 0.5",
-        ),
-        ("[dimensionless]", "[factors]", "is a study file"),
-    ] {
-        let message = broken(DIMENSIONLESS, line, with);
-        assert!(message.contains(wanted), "{with}: {message}");
-    }
-    for (line, with, wanted) in [
-        (
-            "length_m = 40e-3",
-            "length_m = 19e-3",
-            "f.toml:8: block.length_m = 19e-3 is not valid: the block is shorter",
-        ),
-        ("length_m = 20e-3", "", "f.toml:2: roller.length_m is missing"),
-        ("force_n = 1000", "force_n = 1e12", "f.toml:12: load.force_n = 1e12 is not valid: W = "),
-        (
-            "force_n = 1000",
-            "force_n = 1000\nunit = 1",
-            "f.toml:13: unknown key load.unit; did you mean force_n?",
-        ),
-    ] {
-        let message = broken(LOADED, line, with);
-        assert!(message.contains(wanted), "{with}: {message}");
+    for (text, mistakes) in [(DIMENSIONLESS, MISTAKES), (LOADED, LOADED_MISTAKES)] {
+        for (line, with, wanted) in mistakes {
+            let message = broken(text, line, with);
+            assert!(message.contains(wanted), "{with}: {message}");
+        }
     }
     let cut = DIMENSIONLESS.split("[dimensionless]").next().unwrap();
     let message = parse(cut).unwrap_err().to_string();
