@@ -34,7 +34,7 @@ fn main() -> Result<()> {
         let end = scene.half_length;
         let curve = |points| Series {
             markers: false,
-            ..Series::curve(model.name(), look(model.name()), points)
+            ..Series::curve(model.name(), look(&model.into()), points)
         };
         let distances: Vec<f64> = (0..=60).map(|i| 0.1 * 50f64.powf(f64::from(i) / 60.0)).collect();
         panels[0].series.push(curve(

@@ -17,7 +17,7 @@ use crate::report::bench as files;
 use crate::solve::{Options, solve_group};
 use crate::study::Models;
 use crate::study::bench::{
-    self, Against, BEST, Bench, CaseBench, FemMeshes, Machine, Origin, Setup, Speedup,
+    self, Against, BEST, Bench, BenchSetup, CaseBench, FemMeshes, Machine, Origin, Speedup,
 };
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
@@ -177,7 +177,7 @@ fn measure(
     let cold = ColdRuns::new(&arguments.out);
     let benches = bench::run(
         cases,
-        &Setup {
+        &BenchSetup {
             models: Models {
                 methods: chosen_models(&arguments.methods),
                 repeats: usize::from(arguments.repeats),

@@ -44,7 +44,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
     let run = arguments.study.run(&study, arguments.repeats)?;
-    if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.answer.is_err()) {
+    if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.result.is_err()) {
         return Err(first_failure(&run));
     }
     let outcomes = gates(&arguments.study, &run)?;
@@ -75,7 +75,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 
 /// The built-in gates. Their thresholds apply to the built-in study; `edgeline gate` takes those of
 /// another study.
-fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::Outcome>> {
+fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome>> {
     if options.study.is_some() {
         return Ok(Vec::new());
     }
@@ -113,7 +113,7 @@ fn text(files: &StudyFiles, out: &Path) -> String {
 
 /// The reason why no case could be solved.
 fn first_failure(run: &StudyRun) -> Error {
-    let first = run.cases.iter().flat_map(|c| &c.methods).find_map(|m| m.answer.as_ref().err());
+    let first = run.cases.iter().flat_map(|c| &c.methods).find_map(|m| m.result.as_ref().err());
     Error::Value {
         key: "study".to_string(),
         value: run.study.clone(),

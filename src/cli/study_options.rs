@@ -13,7 +13,9 @@ use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
 use crate::study::bench::Bench;
 use crate::study::live::Live;
-use crate::study::{Models, Range, Reference, Setup, StudyRun, reference, run as run_study};
+use crate::study::{
+    Engine, Models, Range, Reference, StudyRun, StudySetup, reference, run as run_study,
+};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -76,12 +78,12 @@ impl StudyOptions {
             CASE_BYTES * (cases * (models + 1)) as f64,
             "give fewer cases or models, or use a sweep",
         )?;
-        let answers = self.fem_answers()?;
+        let references = self.references()?;
         let cold = ColdRuns::new(&self.out);
         let bar = progress_bar();
         let run = run_study(
             study,
-            &Setup {
+            &StudySetup {
                 models: Models {
                     methods,
                     repeats,
@@ -91,8 +93,9 @@ impl StudyOptions {
                     cold: &|case, method, threads| cold.seconds(case, method, threads),
                 },
                 range: self.range(),
-                reference: &|case| {
-                    answers.of(case, &|text| bar.set_message(format!("{}: {text}", case.name)))
+                references: &|case| {
+                    let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
+                    vec![(Engine::fenicsx(), references.of(case, &say))]
                 },
                 progress: &|done, all, what| show(&bar, done, all, what),
             },
@@ -102,7 +105,7 @@ impl StudyOptions {
         host::check_interrupt()?;
         for case in &run.cases {
             for m in &case.methods {
-                if let Err(message) = &m.answer {
+                if let Err(message) = &m.result {
                     say(&format!("warning: {} by {}: {message}", case.case.name, m.method));
                 }
             }
@@ -110,14 +113,14 @@ impl StudyOptions {
         Ok(run)
     }
 
-    /// Source of the FEM results.
-    fn fem_answers(&self) -> Result<FemAnswers> {
+    /// Source of the FEM curves.
+    fn references(&self) -> Result<FemCurves> {
         Ok(match self.fem {
-            FemSource::Live => FemAnswers::Live {
+            FemSource::Live => FemCurves::Live {
                 live: Live::new(self.options.settings(self.size.size), self.fem_repeats)?,
                 folder: self.out.join("fem"),
             },
-            FemSource::Recorded => FemAnswers::Recorded {
+            FemSource::Recorded => FemCurves::Recorded {
                 records: Records::read(self.reference.as_deref())?,
                 times: Bench::recorded()?,
             },
@@ -125,27 +128,27 @@ impl StudyOptions {
     }
 }
 
-/// FEM results for the cases of a study.
-enum FemAnswers {
+/// The FEM curves of a study's cases.
+enum FemCurves {
     /// Computed now, each in a subfolder of this folder.
     Live { live: Live, folder: PathBuf },
     /// Recorded, with times of one run if there are any.
     Recorded { records: Records, times: Bench },
 }
 
-impl FemAnswers {
-    /// The result of `case`, or why there is none; calls `progress` with the current step.
+impl FemCurves {
+    /// The curves of `case`, or why there are none. Calls `progress` with the current step.
     fn of(&self, case: &Case, progress: &dyn Fn(&str)) -> std::result::Result<Reference, String> {
         match self {
-            FemAnswers::Live { live, folder } => {
+            FemCurves::Live { live, folder } => {
                 live.run(case, &folder.join(&case.name), progress).map_err(|e| e.to_string())
             }
-            FemAnswers::Recorded { records, times } => {
+            FemCurves::Recorded { records, times } => {
                 let found = records.find(case).map_err(|e| e.to_string())?;
                 let record = found.ok_or_else(|| "there is no record of it".to_string())?;
-                let mut answer = reference::from_fem(&record);
-                answer.provenance.timed = times.timed(case);
-                Ok(answer)
+                let mut reference = reference::from_fem(&record);
+                reference.provenance.timed = times.timed(case);
+                Ok(reference)
             }
         }
     }

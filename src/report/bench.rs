@@ -1,12 +1,12 @@
 //! The files of `edgeline bench`: `pareto.csv`, `pareto.svg` and `bench.json`.
 
 use super::draw::{Figure, Look, Marker, Panel, Series, look};
-use super::table::{Table, number, optional};
+use super::table::{by_name, columns, to_csv};
 use crate::base::Result;
 use crate::host::write_set;
-use crate::study::Source;
-use crate::study::bench::{Accuracy, Against, Bench, CaseBench, Origin, Point, front};
+use crate::study::bench::{Against, Bench, BenchPoint, CaseBench, Deviation, Origin, front};
 use crate::study::factorial::median;
+use crate::study::{Engine, Source};
 use serde_json::Value;
 use std::path::Path;
 
@@ -17,7 +17,7 @@ use std::path::Path;
 /// [`crate::base::Error::Io`] when a file cannot be written.
 pub fn write(bench: &Bench, folder: &Path) -> Result<()> {
     let files = [
-        ("pareto.csv", table(bench).to_csv().into_bytes()),
+        ("pareto.csv", to_csv(&pareto_rows(bench), &bench.range).into_bytes()),
         ("pareto.svg", figure(bench).draw().to_svg().into_bytes()),
         ("bench.json", json(bench).into_bytes()),
     ];
@@ -64,7 +64,7 @@ fn lines(value: &Value, depth: usize, text: &mut String) {
 }
 
 /// Time and error of a point, where it has both.
-fn pair(point: &Point, against: Against) -> Option<(f64, f64)> {
+fn pair(point: &BenchPoint, against: Against) -> Option<(f64, f64)> {
     Some((point.seconds()?, point.error(against)?))
 }
 
@@ -74,71 +74,103 @@ fn front_of(case: &CaseBench, origin: Origin, against: Against) -> Vec<(f64, f64
     front(points.filter_map(|p| pair(p, against)).collect())
 }
 
-/// One row for each case and point. Errors are in p0, times in seconds; `setting` is a model's
-/// tolerance or a mesh's relative element size; `front_fem` and `front_limit` say whether no other
-/// point of the case and `origin` is better in both time and error.
-fn table(bench: &Bench) -> Table {
-    let mut header = ["case", "source", "origin", "setting", "unknowns", "err"].to_vec();
-    header.extend(["seconds", "seconds_spread", "repeats", "threads", "seconds_cold"]);
-    header.extend(["seconds_all_threads", "all_threads", "timed_on"]);
-    let mut header: Vec<String> = header.into_iter().map(String::from).collect();
-    for reference in ["fem", "limit"] {
-        for name in ["worst_rms", "pressure_rms", "pressure_max", "stress_rms", "stress_max"] {
-            header.push(format!("{name}_to_{reference}"));
-        }
-        header.push(format!("front_{reference}"));
-    }
-    let mut table = Table::new(header);
-    for case in &bench.cases {
-        for point in &case.points {
-            table.push(row(case, point));
-        }
-    }
-    table
+/// A row of `pareto.csv`: one point of a case. Errors are in p0, times in seconds.
+#[derive(Debug, Clone, PartialEq)]
+struct ParetoRow {
+    case: String,
+    source: Source,
+    origin: Origin,
+    /// A model's tolerance or a mesh's relative element size.
+    setting: f64,
+    unknowns: Option<u64>,
+    err: Option<String>,
+    seconds: Option<f64>,
+    seconds_spread: Option<f64>,
+    repeats: Option<usize>,
+    threads: Option<usize>,
+    seconds_cold: Option<f64>,
+    seconds_all_threads: Option<f64>,
+    all_threads: Option<usize>,
+    timed_on: String,
+    to_fem: [Option<f64>; MEASURES.len()],
+    /// Whether no other point of the case and origin is better in both time and error: yes or no.
+    front_fem: Option<String>,
+    to_limit: [Option<f64>; MEASURES.len()],
+    front_limit: Option<String>,
 }
 
-/// The cells of a point in the table's order.
-fn row(case: &CaseBench, point: &Point) -> Vec<String> {
-    let time = point.timing.as_ref();
-    let text = |v: Option<String>| v.unwrap_or_default();
-    let origin = match point.origin {
-        Origin::Model => "model",
-        Origin::LiveFem => "live-fem",
-        Origin::RecordedFem => "recorded-fem",
+/// A measure of a deviation.
+type Measure = fn(&Deviation) -> f64;
+
+/// The measures of a deviation by their names.
+const MEASURES: [(&str, Measure); 5] = [
+    ("worst_rms", |d| d.worst_rms),
+    ("pressure_rms", |d| d.pressure_rms),
+    ("pressure_max", |d| d.pressure_max),
+    ("stress_rms", |d| d.stress_rms),
+    ("stress_max", |d| d.stress_max),
+];
+
+by_name!(Origin);
+
+columns!(ParetoRow, _range, {
+    case => ["case"],
+    source => ["source"],
+    origin => ["origin"],
+    setting => ["setting"],
+    unknowns => ["unknowns"],
+    err => ["err"],
+    seconds => ["seconds"],
+    seconds_spread => ["seconds_spread"],
+    repeats => ["repeats"],
+    threads => ["threads"],
+    seconds_cold => ["seconds_cold"],
+    seconds_all_threads => ["seconds_all_threads"],
+    all_threads => ["all_threads"],
+    timed_on => ["timed_on"],
+    to_fem => MEASURES.map(|(name, _)| format!("{name}_to_fem")),
+    front_fem => ["front_fem"],
+    to_limit => MEASURES.map(|(name, _)| format!("{name}_to_limit")),
+    front_limit => ["front_limit"],
+});
+
+/// The rows of `pareto.csv`.
+fn pareto_rows(bench: &Bench) -> Vec<ParetoRow> {
+    let of_case = |case: &CaseBench| -> Vec<ParetoRow> {
+        case.points.iter().map(|point| pareto_row(case, point)).collect()
     };
-    let mut row = vec![
-        case.case.name.clone(),
-        point.source.to_string(),
-        origin.to_string(),
-        number(point.setting),
-        text(point.unknowns.map(|u| u.to_string())),
-        text(point.err.clone()),
-        optional(time.map(|t| t.median_s)),
-        optional(time.filter(|t| t.repeats > 1).map(|t| t.spread_s())),
-        text(time.map(|t| t.repeats.to_string())),
-        text(time.map(|t| t.threads.to_string())),
-        optional(time.and_then(|t| t.cold_s)),
-        optional(point.all_threads.map(|t| t.median_s)),
-        text(point.all_threads.map(|t| t.threads.to_string())),
-        point.machine.clone().unwrap_or_else(|| "this machine".to_string()),
-    ];
-    for (accuracy, against) in [(point.to_fem, Against::Fem), (point.to_limit, Against::Limit)] {
-        let get = |f: fn(&Accuracy) -> f64| optional(accuracy.as_ref().map(f));
-        let on_front = match pair(point, against) {
-            Some(p) if front_of(case, point.origin, against).contains(&p) => "yes",
-            Some(_) => "no",
-            None => "",
-        };
-        row.extend([
-            get(|a| a.worst_rms),
-            get(|a| a.pressure_rms),
-            get(|a| a.pressure_max),
-            get(|a| a.stress_rms),
-            get(|a| a.stress_max),
-            on_front.to_string(),
-        ]);
+    bench.cases.iter().flat_map(of_case).collect()
+}
+
+fn pareto_row(case: &CaseBench, point: &BenchPoint) -> ParetoRow {
+    let (time, all) = (point.timing.as_ref(), point.all_threads.as_ref());
+    let measures =
+        |deviation: Option<Deviation>| MEASURES.map(|(_, measure)| deviation.as_ref().map(measure));
+    let is_on_front = |against: Against| {
+        let own = pair(point, against)?;
+        let is_on = front_of(case, point.origin, against).contains(&own);
+        Some(if is_on { "yes" } else { "no" }.to_string())
+    };
+    ParetoRow {
+        case: case.case.name.clone(),
+        source: point.source.clone(),
+        origin: point.origin,
+        setting: point.setting,
+        unknowns: point.unknowns,
+        err: point.err.clone(),
+        seconds: time.map(|t| t.median_s),
+        seconds_spread: time.filter(|t| t.repeats > 1).map(|t| t.spread_s()),
+        repeats: time.map(|t| t.repeats),
+        threads: time.map(|t| t.threads),
+        seconds_cold: time.and_then(|t| t.cold_s),
+        seconds_all_threads: all.map(|t| t.median_s),
+        all_threads: all.map(|t| t.threads),
+        timed_on: point.machine.clone().unwrap_or_else(|| "this machine".to_string()),
+        to_fem: measures(point.to_fem),
+        front_fem: is_on_front(Against::Fem),
+        to_limit: measures(point.to_limit),
+        front_limit: is_on_front(Against::Limit),
     }
-    row
 }
 
 /// One entry of a panel: where it belongs, and its time and error.
@@ -150,7 +182,7 @@ struct Entry<'a> {
 }
 
 fn entries(case: &CaseBench, against: Against) -> Vec<Entry<'_>> {
-    let entry = |p: &'_ Point| pair(p, against).map(|at| (p.setting, at));
+    let entry = |p: &'_ BenchPoint| pair(p, against).map(|at| (p.setting, at));
     case.points
         .iter()
         .filter_map(|p| {
@@ -182,7 +214,8 @@ fn summed_up(cases: &[CaseBench], against: Against) -> Vec<Entry<'_>> {
 }
 
 fn panel(title: String, entries: &[Entry]) -> Panel {
-    let recorded = Look { marker: Marker::Diamond, dash: Some((2.0, 4.0)), ..look("fem") };
+    let ink = look(&Engine::fenicsx().into());
+    let recorded = Look { marker: Marker::Diamond, dash: Some((2.0, 4.0)), ..ink };
     let mut sources: Vec<(&Source, Origin)> = Vec::new();
     for e in entries {
         if !sources.contains(&(e.source, e.origin)) {
@@ -195,10 +228,10 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
         all.into_iter().map(|e| e.at).collect()
     };
     let best = front(points(&|e| e.origin == Origin::Model));
-    let line = Look { dash: Some((1.0, 3.0)), ..look("fem") };
+    let line = Look { dash: Some((1.0, 3.0)), ..ink };
     let front = Series { markers: false, ..Series::curve("front of the models", line, best) };
     let curves = sources.iter().map(|&(source, origin)| {
-        let own = look(source.name());
+        let own = look(source);
         let (name, look) = match origin {
             Origin::Model => (source.name(), own),
             Origin::LiveFem => ("FEM, this run", own),
@@ -249,6 +282,7 @@ fn figure(bench: &Bench) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::table::from_csv;
 
     #[test]
     fn the_times_of_all_cases_are_summed_up_by_median_and_worst() {
@@ -273,6 +307,15 @@ mod tests {
         assert_eq!(pairs, [(1e-2, (2.0, 0.4)), (1e-3, (4.0, 0.4))]);
         assert!(summed_up(&cases, Against::Limit).is_empty());
         assert_eq!(front_of(&cases[0], Origin::Model, Against::Fem), [(1.0, 0.1)]);
+    }
+
+    #[test]
+    fn the_table_is_read_as_it_is_written() {
+        let record = Bench::recorded().unwrap();
+        let text = to_csv(&pareto_rows(&record), &record.range);
+        let rows: Vec<ParetoRow> = from_csv(&text, Path::new("t"), &record.range).unwrap();
+        assert_eq!(to_csv(&rows, &record.range), text);
+        assert!(rows.iter().any(|r| r.front_fem.as_deref() == Some("yes")));
     }
 
     #[test]
@@ -307,7 +350,7 @@ mod tests {
     }
 
     fn json_accuracy(worst: f64) -> serde_json::Value {
-        serde_json::to_value(Accuracy {
+        serde_json::to_value(Deviation {
             worst_rms: worst,
             pressure_rms: 0.0,
             pressure_max: 0.0,

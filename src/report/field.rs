@@ -4,7 +4,7 @@
 //! x, sigma_xy and sigma_yz odd in y, everything else is even.
 
 use super::draw::{Figure, Map};
-use super::vtk::Grid;
+use super::vtk::VtkGrid;
 use crate::base::{Result, StressTensor};
 use crate::case::Case;
 use crate::solve::SolvedCase;
@@ -63,7 +63,7 @@ impl<'a> Quarter<'a> {
     /// The whole body in the global frame (m, Pa), in which z points into the block: the roller lies
     /// at z < 0 and its shears across z change their sign. The arrays are `sigma_xx_pa` ... `sigma_yz_pa`,
     /// `von_mises_pa` and `tau_max_pa`.
-    fn grid(&self) -> Grid {
+    fn grid(&self) -> VtkGrid {
         let roller = self.body == BodyKind::Roller;
         let mut zs: Vec<usize> = (0..self.axes[2].len()).collect();
         if roller {
@@ -91,15 +91,15 @@ impl<'a> Quarter<'a> {
             },
         );
         let arrays = arrays.collect();
-        Grid { axes_m: self.axes_m(zs.iter().map(|&k| side * self.axes[2][k])), arrays }
+        VtkGrid { axes_m: self.axes_m(zs.iter().map(|&k| side * self.axes[2][k])), arrays }
     }
 
     /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
-    fn pressure(&self) -> Grid {
+    fn pressure(&self) -> VtkGrid {
         let p0_pa = self.case.hertz().p0_pa;
         let value = |index: usize| ((-self.stress.at(index).zz * p0_pa) as f32).max(0.0);
         let values = self.mirrored(&[0], [false; 2], value);
-        Grid {
+        VtkGrid {
             axes_m: self.axes_m(std::iter::once(0.0)),
             arrays: vec![("pressure_pa".to_string(), values)],
         }

@@ -1,7 +1,7 @@
 //! The outcomes of gates as a table, as Markdown, as JUnit XML and as JSON.
 
 use crate::base::number::significant;
-use crate::study::gate::Outcome;
+use crate::study::gate::GateOutcome;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -11,7 +11,7 @@ fn number(value: Option<f64>) -> String {
 }
 
 /// How many gates hold, in words.
-pub fn headline(outcomes: &[Outcome]) -> String {
+pub fn headline(outcomes: &[GateOutcome]) -> String {
     let failed = outcomes.iter().filter(|o| !o.passed).count();
     if failed == 0 {
         format!("all {} gates hold", outcomes.len())
@@ -21,7 +21,7 @@ pub fn headline(outcomes: &[Outcome]) -> String {
 }
 
 /// A table for a terminal.
-pub fn table(outcomes: &[Outcome]) -> String {
+pub fn table(outcomes: &[GateOutcome]) -> String {
     let mut rows = vec![
         ["gate", "model", "value", "limit", "margin", "compared", "holds", "where"]
             .map(String::from),
@@ -60,11 +60,11 @@ pub fn table(outcomes: &[Outcome]) -> String {
 }
 
 /// A table in Markdown with the failed gates first.
-pub fn markdown(outcomes: &[Outcome]) -> String {
+pub fn markdown(outcomes: &[GateOutcome]) -> String {
     let mut text = format!("## Accuracy gates: {}\n\n", headline(outcomes));
     text.push_str("| gate | model | value | limit | margin | compared | holds | where |\n");
     text.push_str("|---|---|---:|---:|---:|---:|---|---|\n");
-    let mut sorted: Vec<&Outcome> = outcomes.iter().collect();
+    let mut sorted: Vec<&GateOutcome> = outcomes.iter().collect();
     sorted.sort_by_key(|o| o.passed);
     for o in sorted {
         let holds = if o.passed { "yes" } else { "**NO**" };
@@ -81,7 +81,7 @@ pub fn markdown(outcomes: &[Outcome]) -> String {
 }
 
 /// JUnit XML: a test case for each gate, its class the model.
-pub fn junit(outcomes: &[Outcome]) -> String {
+pub fn junit(outcomes: &[GateOutcome]) -> String {
     let failed = outcomes.iter().filter(|o| !o.passed).count();
     let total = outcomes.len();
     let mut text = format!(
@@ -111,7 +111,7 @@ pub fn junit(outcomes: &[Outcome]) -> String {
 }
 
 /// The outcomes for other programs.
-pub fn json(outcomes: &[Outcome]) -> Value {
+pub fn json(outcomes: &[GateOutcome]) -> Value {
     json!({
         "hold": !outcomes.is_empty() && outcomes.iter().all(|o| o.passed),
         "failed": outcomes.iter().filter(|o| !o.passed).count(),
@@ -141,8 +141,8 @@ mod tests {
     use super::*;
     use crate::study::gate::Kind;
 
-    fn outcomes() -> Vec<Outcome> {
-        let good = Outcome {
+    fn outcomes() -> Vec<GateOutcome> {
+        let good = GateOutcome {
             name: "pressure, RMS".to_string(),
             method: "quarter-space".to_string(),
             kind: Kind::Limit,
@@ -153,7 +153,7 @@ mod tests {
             compared: 18,
             note: "worst at a, contact, along-y, pressure".to_string(),
         };
-        let bad = Outcome {
+        let bad = GateOutcome {
             name: "a < b & \"c\"".to_string(),
             passed: false,
             value: None,

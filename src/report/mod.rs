@@ -10,10 +10,12 @@ pub mod page;
 pub mod plots;
 pub mod solution;
 pub mod study_files;
+pub mod study_rows;
 pub mod study_summary;
 pub mod summarise;
 pub mod sweep;
 pub mod table;
+mod tables;
 pub mod verdict;
 mod vtk;
 

@@ -5,10 +5,10 @@ use crate::body::EdgeModel;
 use crate::case::{Block, Roller};
 use crate::solve::Details;
 use crate::study::bench::{Machine, Speedup};
-use crate::study::gate::Outcome;
+use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
 use crate::study::timing::Timing;
-use crate::study::{BlockForm, Factor, Provenance, Range, Role, RollerForm};
+use crate::study::{BlockForm, Engine, Factor, Provenance, Range, Role, RollerForm};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -54,7 +54,7 @@ pub struct StudySummary {
     /// Whether there are gates and all hold.
     pub gates_hold: bool,
     /// Outcomes of the gates.
-    pub gates: Vec<Outcome>,
+    pub gates: Vec<GateOutcome>,
     /// What the effects say.
     pub effects_in_words: Vec<EffectText>,
     /// Ratios at equal error on record.
@@ -166,8 +166,11 @@ pub struct CaseSummary {
     /// The block.
     #[serde(with = "BlockForm")]
     pub block: Block,
-    /// FEM's part.
-    pub fem: CaseFem,
+    /// The reference that errors are taken against.
+    pub fem: CaseReference,
+    /// The others, if there are any.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub references: BTreeMap<Engine, CaseReference>,
     /// The models' parts.
     pub methods: BTreeMap<EdgeModel, CaseMethod>,
 }
@@ -184,30 +187,30 @@ pub enum RoleName {
     Extra,
 }
 
-/// FEM's part in a case.
+/// A reference in a case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
-pub enum CaseFem {
-    /// There is no answer.
+pub enum CaseReference {
+    /// There are no curves.
     Missing {
         /// Why.
         missing: String,
     },
-    /// Where the answer comes from.
-    Answer(Box<Provenance>),
+    /// Where the curves come from.
+    Found(Box<Provenance>),
 }
 
-/// A model's part in a case.
+/// A model in a case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum CaseMethod {
-    /// There is no answer.
+    /// There is no solution.
     Failed {
-        /// What went wrong.
+        /// The error.
         err: String,
     },
-    /// What the answer took.
-    Answer {
+    /// The cost of the solution.
+    Solved {
         /// Repeated timing on one thread and on all.
         timing: Vec<Timing>,
         /// How it was resolved.
@@ -224,30 +227,21 @@ impl RoleName {
             Role::Extra => RoleName::Extra,
         }
     }
-
-    /// The name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            RoleName::Corner => "corner",
-            RoleName::Centre => "centre",
-            RoleName::Extra => "extra",
-        }
-    }
 }
 
 impl CaseSummary {
-    /// Where FEM's answer comes from, if there is one.
+    /// Where the curves come from that errors are taken against, if there are any.
     pub fn provenance(&self) -> Option<&Provenance> {
         match &self.fem {
-            CaseFem::Answer(provenance) => Some(provenance),
-            CaseFem::Missing { .. } => None,
+            CaseReference::Found(provenance) => Some(provenance),
+            CaseReference::Missing { .. } => None,
         }
     }
 
-    /// How the models that have an answer were resolved.
+    /// How the models that have a solution were resolved.
     pub fn details(&self) -> impl Iterator<Item = (EdgeModel, &Details)> {
-        self.methods.iter().filter_map(|(method, answer)| match answer {
-            CaseMethod::Answer { details, .. } => Some((*method, &**details)),
+        self.methods.iter().filter_map(|(method, solved)| match solved {
+            CaseMethod::Solved { details, .. } => Some((*method, &**details)),
             CaseMethod::Failed { .. } => None,
         })
     }

@@ -2,16 +2,16 @@
 
 use super::effects_text;
 use super::study_summary::{
-    CaseFem, CaseMethod, CaseSummary, FemError, FemOrigin, MethodSummary, Program, RoleName, Span,
-    StudySummary,
+    CaseMethod, CaseReference, CaseSummary, FemError, FemOrigin, MethodSummary, Program, RoleName,
+    Span, StudySummary,
 };
 use super::verdict;
 use crate::body::EdgeModel;
 use crate::study::bench::{Machine, Speedup};
 use crate::study::effects::{Effects, NotAnalysed};
-use crate::study::gate::Outcome;
+use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
-use crate::study::{CaseRun, MethodRun, StudyRun};
+use crate::study::{CaseRun, MethodRun, ReferenceRun, StudyRun};
 
 /// What the files state about a run beyond its numbers.
 pub struct Context<'a> {
@@ -26,7 +26,7 @@ pub struct Context<'a> {
     /// Wall-clock seconds of the whole run.
     pub seconds: f64,
     /// Outcomes of the gates.
-    pub gates: &'a [Outcome],
+    pub gates: &'a [GateOutcome],
     /// Ratios at equal error on record, where FEM did not run now.
     pub speedups: &'a [Speedup],
 }
@@ -70,10 +70,10 @@ pub fn study_summary(
 fn case_summary(run: &CaseRun) -> CaseSummary {
     let (case, factors) = (&run.case, run.case.factors());
     let method = |m: &MethodRun| {
-        let part = match &m.answer {
-            Ok(a) => CaseMethod::Answer {
+        let part = match &m.result {
+            Ok(result) => CaseMethod::Solved {
                 timing: m.timing.clone(),
-                details: Box::new(a.solution.summary.details.clone()),
+                details: Box::new(result.solution.summary.details.clone()),
             },
             Err(err) => CaseMethod::Failed { err: err.clone() },
         };
@@ -90,11 +90,24 @@ fn case_summary(run: &CaseRun) -> CaseSummary {
         tolerance: case.accuracy.tolerance,
         roller: case.roller,
         block: case.block,
-        fem: match &run.reference {
-            Ok(reference) => CaseFem::Answer(Box::new(reference.provenance.clone())),
-            Err(reason) => CaseFem::Missing { missing: reason.clone() },
-        },
+        fem: run.references.first().map_or_else(
+            || CaseReference::Missing { missing: "the study has no reference".to_string() },
+            case_reference,
+        ),
+        references: run
+            .references
+            .iter()
+            .skip(1)
+            .map(|r| (r.engine.clone(), case_reference(r)))
+            .collect(),
         methods: run.methods.iter().map(method).collect(),
+    }
+}
+
+fn case_reference(run: &ReferenceRun) -> CaseReference {
+    match &run.result {
+        Ok(reference) => CaseReference::Found(Box::new(reference.provenance.clone())),
+        Err(reason) => CaseReference::Missing { missing: reason.clone() },
     }
 }
 
@@ -102,11 +115,14 @@ fn case_summary(run: &CaseRun) -> CaseSummary {
 fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
     let mut all: Vec<String> = not_analysed.iter().map(effects_text::not_analysed).collect();
     for c in &run.cases {
-        if let Err(reason) = &c.reference {
-            all.push(format!("{} is not compared with FEM: {reason}", c.case.name));
+        for r in &c.references {
+            if let Err(reason) = &r.result {
+                let (name, engine) = (&c.case.name, r.engine.title());
+                all.push(format!("{name} is not compared with {engine}: {reason}"));
+            }
         }
         for m in &c.methods {
-            if let Err(message) = &m.answer {
+            if let Err(message) = &m.result {
                 all.push(format!("{} by {} failed: {message}", c.case.name, m.method));
             }
         }
@@ -117,7 +133,7 @@ fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
 fn fem_error(run: &StudyRun) -> FemError {
     let summaries = || {
         let methods = run.cases.iter().flat_map(|c| &c.methods);
-        methods.filter_map(|m| m.answer.as_ref().ok()?.summary.as_ref())
+        methods.filter_map(|m| m.result.as_ref().ok()?.summary.as_ref())
     };
     FemError {
         pressure: summaries().filter_map(|s| s.ref_error_pressure).reduce(f64::max),
@@ -126,7 +142,7 @@ fn fem_error(run: &StudyRun) -> FemError {
 }
 
 /// The worst of one model over all cases.
-fn worst(run: &StudyRun, method: EdgeModel, gates: &[Outcome]) -> MethodSummary {
+fn worst(run: &StudyRun, method: EdgeModel, gates: &[GateOutcome]) -> MethodSummary {
     let runs = || {
         run.cases.iter().flat_map(move |c| {
             c.methods.iter().filter(move |m| m.method == method).map(move |m| (c, m))
@@ -136,12 +152,12 @@ fn worst(run: &StudyRun, method: EdgeModel, gates: &[Outcome]) -> MethodSummary 
     let largest = |response: Response| values(response).reduce(f64::max);
     let decades = values(Response::Log10Speedup).map(|d| (d, d));
     let decades = decades.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)));
-    let compared = |m: &MethodRun| m.answer.as_ref().is_ok_and(|answer| answer.summary.is_some());
+    let compared = |m: &MethodRun| m.result.as_ref().is_ok_and(|result| result.summary.is_some());
     let own = || gates.iter().filter(|g| g.method == method.name());
     MethodSummary {
         method,
         cases: runs().count(),
-        failed: runs().filter(|(_, m)| m.answer.is_err()).count(),
+        failed: runs().filter(|(_, m)| m.result.is_err()).count(),
         compared: runs().filter(|(_, m)| compared(m)).count(),
         pressure_rms: largest(Response::PRESSURE_RMS),
         pressure_max: largest(Response::PRESSURE_MAX),

@@ -1,83 +1,262 @@
-//! Tables of text as they stand in CSV files.
+//! Tables as CSV files. A row is a struct; one list says which columns each of its fields takes, and
+//! rows are written and read by that list.
 
+use crate::base::number::significant;
 use crate::base::{Error, Result};
 use crate::host::{check_memory, read_text};
-use serde_json::{Value, json};
+use crate::study::Range;
+use serde::Serialize;
+use serde::de::{DeserializeOwned, IntoDeserializer, value};
+use serde_json::Value;
+use std::iter::Enumerate;
 use std::path::Path;
+use std::slice::Iter;
 
-/// A CSV table: a header and rows of the same width.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Table {
-    /// Names of the columns.
-    pub header: Vec<String>,
-    /// The rows, each as wide as the header.
-    pub rows: Vec<Vec<String>>,
+/// A value of one cell.
+pub trait Cell: Sized {
+    /// Its text.
+    fn text(&self) -> String;
+
+    /// The value of a text; `None` where it is no such value.
+    fn parse(text: &str) -> Option<Self>;
 }
 
-impl Table {
-    /// An empty table with these columns.
-    pub fn new<S: Into<String>>(header: impl IntoIterator<Item = S>) -> Self {
-        Self { header: header.into_iter().map(Into::into).collect(), rows: Vec::new() }
-    }
+/// What takes one or more neighbouring cells of a row.
+pub trait Cells: Sized {
+    /// The cells' texts.
+    fn write(&self) -> Vec<String>;
 
-    /// Adds a row, which must be as wide as the header.
-    pub fn push(&mut self, row: Vec<String>) {
-        assert_eq!(row.len(), self.header.len(), "a row of another width than the header");
-        self.rows.push(row);
-    }
+    /// The value of the cells; `None` where they hold none.
+    fn read(cells: &[&str]) -> Option<Self>;
+}
 
-    /// Where the column called `name` stands.
-    pub fn column(&self, name: &str) -> Option<usize> {
-        self.header.iter().position(|h| h == name)
-    }
+/// A row of a table. [`columns!`] implements it.
+pub trait Row: Sized {
+    /// The names of the columns that each field takes. Some depend on the range of the errors.
+    fn columns(range: &Range) -> Vec<Vec<String>>;
 
-    /// The cell of a row in the column called `name`; empty where there is no such column.
-    pub fn text<'a>(&self, row: &'a [String], name: &str) -> &'a str {
-        self.column(name).map_or("", |c| row[c].as_str())
-    }
+    /// The texts of each field.
+    fn cells(&self) -> Vec<Vec<String>>;
 
-    /// The cell as a number; `None` where it is empty or is none.
-    pub fn number(&self, row: &[String], name: &str) -> Option<f64> {
-        self.text(row, name).parse().ok()
-    }
-
-    /// The cell as a JSON number; null where it is empty or is none.
-    pub fn json(&self, row: &[String], name: &str) -> Value {
-        self.number(row, name).map_or(Value::Null, |v| json!(v))
-    }
-
-    /// The table as CSV.
-    pub fn to_csv(&self) -> String {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        // Writing to memory fails only for rows of unequal width, which `push` refuses.
-        for row in std::iter::once(&self.header).chain(&self.rows) {
-            writer.write_record(row).expect("rows of equal width");
-        }
-        let bytes = writer.into_inner().expect("a vector takes all bytes");
-        String::from_utf8(bytes).expect("text in, text out")
-    }
-
-    /// Reads a CSV file.
+    /// Reads the cells of each field.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be read, [`Error::File`] with the line when it is no table.
-    pub fn read(path: &Path) -> Result<Self> {
-        let text = read(path)?;
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let refuse = |e: csv::Error| Error::File {
-            path: path.to_path_buf(),
-            line: e.position().map(|p| p.line() as usize),
-            message: e.to_string(),
-            remedy: "run the study again".to_string(),
-        };
-        let header = reader.headers().map_err(refuse)?.iter().map(String::from).collect();
-        let rows = reader
-            .records()
-            .map(|r| r.map(|r| r.iter().map(String::from).collect()))
-            .collect::<std::result::Result<_, _>>()
-            .map_err(refuse)?;
-        Ok(Self { header, rows })
+    /// The number of the field whose cells hold no such value.
+    fn from_cells(fields: &[&[&str]]) -> std::result::Result<Self, usize>;
+}
+
+/// Implements [`Row`] for a struct: `field => [names of its columns]`, in the order of the file. With
+/// `field as Short` the number is written by [`Short`]. The names may use the range of the errors.
+macro_rules! columns {
+    ($row:ty, $range:ident, { $($field:ident $(as $form:ident)? => $names:expr,)* }) => {
+        impl $crate::report::table::Row for $row {
+            fn columns($range: &$crate::study::Range) -> Vec<Vec<String>> {
+                vec![$($names.into_iter().map(String::from).collect()),*]
+            }
+
+            fn cells(&self) -> Vec<Vec<String>> {
+                vec![$($crate::report::table::Cells::write(
+                    &$crate::report::table::columns!(@form self.$field.clone() $(, $form)?)
+                )),*]
+            }
+
+            fn from_cells(fields: &[&[&str]]) -> std::result::Result<Self, usize> {
+                let mut fields = fields.iter().enumerate();
+                $(
+                    let $crate::report::table::columns!(@bind $field $(, $form)?) =
+                        $crate::report::table::next(&mut fields)?;
+                )*
+                Ok(Self { $($field),* })
+            }
+        }
+    };
+    (@bind $field:ident) => { $field };
+    (@bind $field:ident, $form:ident) => { $crate::report::table::$form($field) };
+    (@form $value:expr) => { $value };
+    (@form $value:expr, $form:ident) => { $crate::report::table::$form($value) };
+}
+pub(super) use columns;
+
+/// Reads the next field.
+///
+/// # Errors
+/// Its number, when its cells hold no such value.
+pub(super) fn next<T: Cells>(
+    fields: &mut Enumerate<Iter<&[&str]>>,
+) -> std::result::Result<T, usize> {
+    let (number, cells) = fields.next().ok_or(0usize)?;
+    T::read(cells).ok_or(number)
+}
+
+impl<T: Cell> Cells for T {
+    fn write(&self) -> Vec<String> {
+        vec![self.text()]
     }
+
+    fn read(cells: &[&str]) -> Option<Self> {
+        let [cell] = cells else { return None };
+        T::parse(cell)
+    }
+}
+
+impl<T: Cell, const N: usize> Cells for [T; N] {
+    fn write(&self) -> Vec<String> {
+        self.iter().map(Cell::text).collect()
+    }
+
+    fn read(cells: &[&str]) -> Option<Self> {
+        Vec::<T>::read(cells)?.try_into().ok()
+    }
+}
+
+impl<T: Cell> Cells for Vec<T> {
+    fn write(&self) -> Vec<String> {
+        self.iter().map(Cell::text).collect()
+    }
+
+    fn read(cells: &[&str]) -> Option<Self> {
+        cells.iter().map(|cell| T::parse(cell)).collect()
+    }
+}
+
+/// Seven significant digits; what is not a finite number is empty.
+impl Cell for f64 {
+    fn text(&self) -> String {
+        number(*self)
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        if text.is_empty() { Some(f64::NAN) } else { text.parse().ok() }
+    }
+}
+
+/// A number that was given or computed from such ones: ten significant digits, fewer than rounding
+/// leaves, and no more than it has.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Short(pub f64);
+
+impl Cell for Short {
+    fn text(&self) -> String {
+        significant(self.0, 10)
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        text.parse().ok().map(Self)
+    }
+}
+
+/// Nothing is an empty cell.
+impl<T: Cell> Cell for Option<T> {
+    fn text(&self) -> String {
+        self.as_ref().map(Cell::text).unwrap_or_default()
+    }
+
+    fn parse(text: &str) -> Option<Self> {
+        if text.is_empty() { Some(None) } else { T::parse(text).map(Some) }
+    }
+}
+
+/// Cells by `Display` and `FromStr`.
+macro_rules! by_text {
+    ($($plain:ty),*) => { $(
+        impl Cell for $plain {
+            fn text(&self) -> String {
+                self.to_string()
+            }
+
+            fn parse(text: &str) -> Option<Self> {
+                text.parse().ok()
+            }
+        }
+    )* };
+}
+
+by_text!(String, bool, u64, usize);
+
+/// Implements [`Cell`] by the names that serde gives the values.
+macro_rules! by_name {
+    ($($named:ty),*) => { $(
+        impl $crate::report::table::Cell for $named {
+            fn text(&self) -> String {
+                $crate::report::table::name(self)
+            }
+
+            fn parse(text: &str) -> Option<Self> {
+                $crate::report::table::from_name(text)
+            }
+        }
+    )* };
+}
+pub(super) use by_name;
+
+/// The name of a value in files.
+pub(super) fn name(value: &impl Serialize) -> String {
+    match serde_json::to_value(value) {
+        Ok(Value::String(name)) => name,
+        other => panic!("a name is a text, not {other:?}"),
+    }
+}
+
+/// The value of a name.
+pub(super) fn from_name<T: DeserializeOwned>(name: &str) -> Option<T> {
+    T::deserialize::<value::StrDeserializer<value::Error>>(name.into_deserializer()).ok()
+}
+
+/// Rows as CSV, with a header.
+pub fn to_csv<R: Row>(rows: &[R], range: &Range) -> String {
+    let header = R::columns(range).concat();
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    // Writing to memory fails only for rows of another width than the header.
+    writer.write_record(&header).expect("a vector takes all bytes");
+    for row in rows {
+        writer.write_record(row.cells().concat()).expect("a row as wide as the header");
+    }
+    let bytes = writer.into_inner().expect("a vector takes all bytes");
+    String::from_utf8(bytes).expect("text in, text out")
+}
+
+/// Reads rows from the text of a CSV file that stands at `path`.
+///
+/// # Errors
+/// [`Error::File`] with the line where the file has other columns, or a cell holds no such value.
+pub fn from_csv<R: Row>(text: &str, path: &Path, range: &Range) -> Result<Vec<R>> {
+    let refuse = |line: Option<u64>, message: String| Error::File {
+        path: path.to_path_buf(),
+        line: line.map(|l| l as usize),
+        message,
+        remedy: "run the study again".to_string(),
+    };
+    let columns = R::columns(range);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let of_csv = |e: csv::Error| refuse(e.position().map(|p| p.line()), e.to_string());
+    let header = reader.headers().map_err(of_csv)?;
+    let wanted = columns.concat();
+    if let Some(missing) = wanted.iter().find(|name| !header.iter().any(|h| h == *name)) {
+        return Err(refuse(Some(1), format!("has no column {missing}")));
+    }
+    if !header.iter().eq(&wanted) {
+        return Err(refuse(Some(1), "has other columns, or in another order".to_string()));
+    }
+    let mut rows = Vec::new();
+    for record in reader.records() {
+        let record = record.map_err(of_csv)?;
+        let cells: Vec<&str> = record.iter().collect();
+        let mut rest = &cells[..];
+        let fields: Vec<&[&str]> = columns
+            .iter()
+            .map(|names| {
+                let (field, after) = rest.split_at(names.len());
+                rest = after;
+                field
+            })
+            .collect();
+        rows.push(R::from_cells(&fields).map_err(|field| {
+            let line = record.position().map(|p| p.line());
+            let (names, cells) = (columns[field].join(", "), fields[field].join(", "));
+            refuse(line, format!("{names} cannot be '{cells}'"))
+        })?);
+    }
+    Ok(rows)
 }
 
 /// A number for a CSV cell, seven significant digits; empty for what is not a finite number.
@@ -113,18 +292,65 @@ pub fn read(path: &Path) -> Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Source;
+
+    #[derive(Debug, Clone, PartialEq)]
+    struct Sample {
+        name: String,
+        source: Source,
+        at: [f64; 2],
+        level: f64,
+        errors: Vec<Option<f64>>,
+    }
+
+    columns!(Sample, range, {
+        name => ["name"],
+        source => ["source"],
+        at => ["x", "y"],
+        level as Short => ["level"],
+        errors => range.pressure_c.iter().map(|c| format!("error_{c}C")),
+    });
+
+    fn sample() -> Sample {
+        Sample {
+            name: "with, comma and \"quote\"".to_string(),
+            source: crate::body::EdgeModel::Mirror.into(),
+            at: [-0.001_234_567_89, 0.0],
+            level: 0.1,
+            errors: vec![Some(f64::NAN), Some(2.0)],
+        }
+    }
 
     #[test]
-    fn tables_survive_the_file() {
-        let mut table = Table::new(["a", "b"]);
-        table.push(vec!["with, comma and \"quote\"".to_string(), number(-0.001_234_567_89)]);
-        table.push(vec![String::new(), optional(Some(f64::NAN))]);
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("t.csv");
-        std::fs::write(&path, table.to_csv()).unwrap();
-        let back = Table::read(&path).unwrap();
-        assert_eq!(back, table);
-        assert_eq!(back.number(&back.rows[0], "b"), Some(-0.001_234_568));
-        assert_eq!((back.number(&back.rows[1], "b"), back.text(&back.rows[0], "c")), (None, ""));
+    fn rows_survive_the_file() {
+        let range = Range::default();
+        let text = to_csv(&[sample()], &range);
+        let line = "\"with, comma and \"\"quote\"\"\",mirror,-1.234568e-3,0,0.1,,2.000000e0";
+        assert_eq!(text, format!("name,source,x,y,level,error_0.1C,error_0.2C\n{line}\n"));
+        let back: Vec<Sample> = from_csv(&text, Path::new("t.csv"), &range).unwrap();
+        let at = [-0.001_234_568, 0.0];
+        assert_eq!(back, [Sample { at, errors: vec![None, Some(2.0)], ..sample() }]);
+    }
+
+    #[test]
+    fn files_of_something_else_are_refused_with_their_place() {
+        let range = Range::default();
+        let text = to_csv(&[sample()], &range);
+        let refused = |text: String, range: &Range| {
+            from_csv::<Sample>(&text, Path::new("t.csv"), range).unwrap_err().to_string()
+        };
+        let one = Range { pressure_c: vec![0.3], ..Range::default() };
+        for (said, wanted) in [
+            (
+                refused(text.replace("-1.234568e-3", "left"), &range),
+                "t.csv:2: x, y cannot be 'left, 0'",
+            ),
+            (refused(text.replace("source", "from"), &range), "t.csv:1: has no column source"),
+            (refused(text.replace("x,y", "y,x"), &range), "in another order"),
+            (refused(text.clone(), &one), "has no column error_0.3C"),
+            (refused(text.replace(",2.0", ",2.0,"), &range), ":2:"),
+        ] {
+            assert!(said.contains(wanted), "{said}");
+        }
     }
 }

@@ -6,8 +6,10 @@ use super::summarise::Context;
 use super::*;
 use crate::body::EdgeModel;
 use crate::solve::{Avoided, WorkSummary};
+use crate::study::Source;
 use crate::study::bench::Machine;
 use crate::study::gate::{self, Baseline, Gates};
+use crate::study::response::Response;
 use crate::study::synthetic::{self, Twist};
 
 /// Files of a run on made-up solutions.
@@ -33,12 +35,10 @@ fn a_run_is_read_back_as_it_was_written() {
     let written = files(Twist::None);
     crate::host::write_set(folder.path(), &written.contents()).unwrap();
     let read = StudyFiles::read(folder.path()).unwrap();
-    assert_eq!(read.tables().map(|t| t.rows.len()), written.tables().map(|t| t.rows.len()));
-    assert_eq!(read.tables(), written.tables());
-    assert_eq!(read.summary, written.summary);
+    assert!(read == written, "every number has the digits of the files");
     assert_eq!(read.summary.cases.len(), 9);
     // Nine cases (eight corners and the centre), four methods and FEM.
-    assert_eq!(read.study.rows.len(), 45);
+    assert_eq!(read.study.len(), 45);
     assert!(StudyFiles::read(&folder.path().join("nowhere")).is_err());
 }
 
@@ -46,14 +46,34 @@ fn a_run_is_read_back_as_it_was_written() {
 fn a_failed_case_is_a_row_with_its_reason() {
     let run = files(Twist::Unsolved(EdgeModel::Mirror));
     let of_mirror: Vec<_> =
-        run.study.rows.iter().filter(|r| run.study.text(r, "source") == "mirror").collect();
+        run.study.iter().filter(|r| r.source == EdgeModel::Mirror.into()).collect();
     assert_eq!(of_mirror.len(), 9);
     for row in of_mirror {
-        assert!(run.study.text(row, "err").contains("did not converge"));
-        assert_eq!(run.study.text(row, "stress_rms"), "");
+        assert!(row.err.as_ref().is_some_and(|err| err.contains("did not converge")), "{row:?}");
+        assert_eq!(row.response(Response::STRESS_RMS), None);
     }
     let text = run.summary.not_done.join("\n");
     assert!(text.contains("by mirror failed"), "{text}");
+}
+
+#[test]
+fn a_second_reference_is_shown_beside_the_first_that_errors_are_taken_against() {
+    let (one, two) = (files(Twist::None), files(Twist::SecondReference));
+    assert_eq!(two.errors, one.errors);
+    let second: Source = synthetic::second_engine().into();
+    assert_eq!(two.study.iter().filter(|row| row.source == second).count(), 9);
+    assert_eq!(two.study.len(), one.study.len() + 9);
+    assert!(two.fem_error.len() == 2 * one.fem_error.len());
+    assert_eq!(two.summary.cases[0].references.len(), 1);
+    let folder = tempfile::tempdir().unwrap();
+    crate::host::write_set(folder.path(), &two.contents()).unwrap();
+    assert!(StudyFiles::read(folder.path()).unwrap() == two);
+    let plots = plots::all(&two);
+    let (_, pressure) = plots.iter().find(|(n, _)| n.ends_with("pressure.svg")).unwrap();
+    assert!(pressure.contains("another-code (band: its own error)"));
+    let html = page::html(&two).unwrap();
+    assert!(html.contains("another-code ran on") && html.contains("FEM ran on"));
+    assert!(page::markdown(&two).unwrap().contains("| another-code | unknowns |"));
 }
 
 #[test]
@@ -84,8 +104,8 @@ fn work_done_and_avoided_is_shown_by_reason() {
         Some(WorkSummary { done, avoided: Avoided { sources, ends, faded: 0, alike: 0 } })
     };
     for case in &mut run.summary.cases {
-        for (method, answer) in &mut case.methods {
-            let CaseMethod::Answer { details, .. } = answer else { panic!("all are solved") };
+        for (method, solved) in &mut case.methods {
+            let CaseMethod::Solved { details, .. } = solved else { panic!("all are solved") };
             details.work = match method {
                 EdgeModel::QuarterSpace => work(1200, 1200, 600),
                 EdgeModel::Mirror => work(7, 0, 0),
@@ -116,16 +136,15 @@ fn work_done_and_avoided_is_shown_by_reason() {
 fn ratios_are_shown_with_their_uncertainty_and_their_origin() {
     let run = files(Twist::None);
     // 15 s +- 0.3 s over 10 ms +- 0.4 ms: 1500 +- 67.
-    let row = run.study.rows.iter().find(|r| run.study.text(r, "case") == "w1e-3_sl5_lr1").unwrap();
-    let number = |name| run.study.number(row, name).unwrap();
-    assert!((number("speedup") - 1500.0).abs() < 1e-3);
-    assert!((number("speedup_spread") - 1500.0 * 0.02f64.hypot(0.04)).abs() < 1e-3);
-    assert!((number("log10_speedup") - 1500f64.log10()).abs() < 1e-6);
+    let row = run.study.iter().find(|r| r.case == "w1e-3_sl5_lr1").unwrap();
+    assert!((row.speedup.unwrap() - 1500.0).abs() < 1e-3);
+    assert!((row.speedup_spread.unwrap() - 1500.0 * 0.02f64.hypot(0.04)).abs() < 1e-3);
+    let decades = row.response(Response::Log10Speedup).unwrap();
+    assert!((decades - 1500f64.log10()).abs() < 1e-6);
     for text in [page::html(&run).unwrap(), page::markdown(&run).unwrap()] {
         assert!(text.contains("1,500 ± 67"));
         assert!(text.contains("edgeline bench --fem live"));
     }
     // Its effects are analysed like all others.
-    let rows = &run.effects.rows;
-    assert!(rows.iter().any(|r| run.effects.text(r, "response") == "log10_speedup"));
+    assert!(run.effects.iter().any(|r| r.response == Response::Log10Speedup));
 }

@@ -3,7 +3,7 @@
 use super::study_summary::{FemError, FemOrigin, Span, StudySummary};
 use crate::base::number::{duration, fixed, rounded, significant};
 use crate::study::bench::{Against, Speedup};
-use crate::study::gate::Outcome;
+use crate::study::gate::GateOutcome;
 use crate::study::timing::Ratio;
 
 /// Sentences for the head of a report, the most important first.
@@ -47,7 +47,7 @@ fn fraction(v: f64) -> String {
     if v != 0.0 && v.abs() < 5e-5 { significant(v, 1) } else { fixed(v, 4) }
 }
 
-fn gates(gates: &[Outcome]) -> String {
+fn gates(gates: &[GateOutcome]) -> String {
     let failed = gates.iter().filter(|g| !g.passed);
     let failed: Vec<String> = failed.map(|g| format!("{} ({})", g.name, g.method)).collect();
     match (gates.len(), failed.len()) {
@@ -123,7 +123,7 @@ mod tests {
 
     #[test]
     fn failed_gates_are_named() {
-        let good = Outcome {
+        let good = GateOutcome {
             name: "stress".to_string(),
             method: "mirror".to_string(),
             kind: Kind::Limit,
@@ -134,7 +134,7 @@ mod tests {
             compared: 0,
             note: String::new(),
         };
-        let bad = Outcome { name: "pressure".to_string(), passed: false, ..good.clone() };
+        let bad = GateOutcome { name: "pressure".to_string(), passed: false, ..good.clone() };
         assert_eq!(gates(&[bad, good]), "1 of 2 accuracy gates fail: pressure (mirror).");
     }
 

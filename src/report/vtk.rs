@@ -8,14 +8,14 @@ const HEADER: usize = size_of::<u64>();
 
 /// A field on a rectilinear grid, in SI units.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Grid {
+pub struct VtkGrid {
     /// Coordinates along x, y and z (m), each ascending.
     pub axes_m: [Vec<f64>; 3],
     /// Names and values of the arrays; x runs fastest, z slowest.
     pub arrays: Vec<(String, Vec<f32>)>,
 }
 
-impl Grid {
+impl VtkGrid {
     /// The file's bytes.
     ///
     /// # Panics
@@ -74,7 +74,7 @@ mod tests {
         let arrays = [("zeros", 0.0), ("sigma_zz_pa", 1.0)].map(|(name, scale)| {
             (name.to_string(), (0..6u8).map(|i| scale * f32::from(i)).collect())
         });
-        let grid = Grid { axes_m: axes, arrays: arrays.into() };
+        let grid = VtkGrid { axes_m: axes, arrays: arrays.into() };
         let bytes = grid.to_vtr();
         let marker = b"<AppendedData encoding=\"raw\">\n_";
         let start = bytes.windows(marker.len()).position(|w| w == marker).unwrap() + marker.len();

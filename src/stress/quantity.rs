@@ -26,6 +26,15 @@ impl Quantity {
         Quantity::TauMax,
     ];
 
+    /// Its place in [`Quantity::ALL`].
+    pub fn index(self) -> usize {
+        match self {
+            Quantity::Stress(i) => usize::from(i),
+            Quantity::VonMises => 6,
+            Quantity::TauMax => 7,
+        }
+    }
+
     /// The name used in files, e.g. `sigma_yy`.
     pub fn name(self) -> &'static str {
         match self {

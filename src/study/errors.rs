@@ -15,6 +15,9 @@ use crate::base::{Error, Result};
 use crate::stress::{Critical, Curves, Quantity, away_from_edge};
 use serde::{Deserialize, Serialize};
 
+/// The name that stands in place of a body for the contact pressure.
+pub const CONTACT: &str = "contact";
+
 /// Over which range errors are taken.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -38,7 +41,7 @@ pub struct ErrorRow {
     pub case: String,
     /// The source whose error this is.
     pub method: String,
-    /// `block`, `roller`, or `contact` for pressure.
+    /// `block`, `roller`, or [`CONTACT`] for the pressure.
     pub body: String,
     /// The curve or pressure line.
     pub curve: String,
@@ -220,7 +223,7 @@ pub fn compare(
         let value: Vec<f64> = index.iter().map(|&i| other.p[i]).collect();
         for &excluded_c in &range.pressure_c {
             let pair = Pair {
-                body: "contact",
+                body: CONTACT,
                 curve: &line.name,
                 quantity: "pressure",
                 excluded_c,

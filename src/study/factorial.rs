@@ -10,6 +10,7 @@
 //! twice the coefficient of a regression on coded levels -1 and +1.
 
 use crate::base::{Error, Result};
+use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
 /// One main effect or interaction.
@@ -46,7 +47,8 @@ pub struct Lenth {
 }
 
 /// How sure one can be that an effect is not noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Verdict {
     /// Beyond the simultaneous margin of error.
     Active,
@@ -54,17 +56,6 @@ pub enum Verdict {
     Likely,
     /// Within the margin of error.
     Noise,
-}
-
-impl Verdict {
-    /// The word used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            Verdict::Active => "active",
-            Verdict::Likely => "likely",
-            Verdict::Noise => "noise",
-        }
-    }
 }
 
 impl Lenth {

@@ -150,7 +150,7 @@ impl Kind {
 
 /// The outcome of one gate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Outcome {
+pub struct GateOutcome {
     /// What it is called.
     pub name: String,
     /// The method, or `all`.
@@ -245,8 +245,8 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
     let mut all = Vec::new();
     for case in &run.cases {
         for m in &case.methods {
-            let Ok(answer) = &m.answer else { continue };
-            for row in &answer.errors {
+            let Ok(result) = &m.result else { continue };
+            for row in &result.errors {
                 for (measure, value) in [("max", row.max), ("rms", row.rms), ("l1", row.l1)] {
                     all.push(Number {
                         case: case.case.name.clone(),
@@ -275,7 +275,7 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
             let response = |response: Response| response.value(case, m);
             whole("critical_value", response(Response::CriticalValue).map(f64::abs));
             whole("critical_depth", response(Response::CriticalDepth).map(f64::abs));
-            whole("load", Some(answer.solution.summary.load_error_rel));
+            whole("load", Some(result.solution.summary.load_error_rel));
             whole("speedup", response(Response::Log10Speedup).map(|d| 10f64.powf(d)));
         }
     }
@@ -306,7 +306,7 @@ impl Gate {
             && self.excluded_c.is_none_or(|c| n.excluded_c == Some(c))
     }
 
-    fn evaluate(&self, numbers: &[Number], failed_cases: &[String]) -> Outcome {
+    fn evaluate(&self, numbers: &[Number], failed_cases: &[String]) -> GateOutcome {
         let at_least = self.quantity == "speedup";
         let chosen: Vec<&Number> = numbers.iter().filter(|n| self.takes(n)).collect();
         // total_cmp puts a NaN above everything, so it is the worst of errors.
@@ -325,7 +325,7 @@ impl Gate {
             None => "nothing was compared".to_string(),
             Some(w) => format!("worst at {}", w.place()),
         };
-        Outcome {
+        GateOutcome {
             name: self.name.clone(),
             method: self.method.name().to_string(),
             kind: Kind::Limit,
@@ -435,12 +435,12 @@ impl Change {
 
 /// Evaluates all gates on a run. `baseline` are the accepted numbers for the drift gates, one for
 /// each method; without them (and with a `[drift]` in the file) the drift gates fail.
-pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> Vec<Outcome> {
+pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> Vec<GateOutcome> {
     let all = numbers(run);
     let failed = |method: EdgeModel| -> Vec<String> {
         run.cases
             .iter()
-            .filter(|c| c.methods.iter().any(|m| m.method == method && m.answer.is_err()))
+            .filter(|c| c.methods.iter().any(|m| m.method == method && m.result.is_err()))
             .map(|c| c.case.name.clone())
             .collect()
     };
@@ -467,13 +467,13 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
         }
     }
     if let Some(drift) = gates.drift {
-        let live = run.cases.iter().any(|c| c.reference.as_ref().is_ok_and(|r| r.provenance.live));
+        let live = run.cases.iter().any(|c| c.reference().is_some_and(|r| r.provenance.live));
         let limit = if live { drift.live } else { drift.recorded };
         let now = Baseline::of(run);
         outcomes.extend(run.methods.iter().map(|&m| drift_gate(m, limit, &now, baseline)));
     }
     if outcomes.len() == 1 {
-        outcomes.push(Outcome {
+        outcomes.push(GateOutcome {
             name: "any gate".to_string(),
             method: "all".to_string(),
             kind: Kind::Coverage,
@@ -489,12 +489,12 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
 }
 
 /// Every corner and the centre of the study must have a FEM answer to be compared with.
-fn coverage(run: &StudyRun) -> Outcome {
+fn coverage(run: &StudyRun) -> GateOutcome {
     let design: Vec<_> = run.cases.iter().filter(|c| c.role != Role::Extra).collect();
     let missing: Vec<&str> =
-        design.iter().filter(|c| c.reference.is_err()).map(|c| c.case.name.as_str()).collect();
-    let compared = run.cases.iter().filter(|c| c.reference.is_ok()).count();
-    Outcome {
+        design.iter().filter(|c| c.reference().is_none()).map(|c| c.case.name.as_str()).collect();
+    let compared = run.cases.iter().filter(|c| c.reference().is_some()).count();
+    GateOutcome {
         name: "every case of the design has a FEM answer".to_string(),
         method: "all".to_string(),
         kind: Kind::Coverage,
@@ -516,7 +516,7 @@ fn drift_gate(
     limit: f64,
     now: &Baseline,
     baseline: Option<&Baseline>,
-) -> Outcome {
+) -> GateOutcome {
     let of_method = |b: &Baseline| Baseline {
         version: b.version.clone(),
         numbers: b
@@ -546,7 +546,7 @@ fn drift_gate(
             }
         }
     };
-    Outcome {
+    GateOutcome {
         name: "drift from the accepted numbers".to_string(),
         method: method.name().to_string(),
         kind: Kind::Drift,

@@ -21,11 +21,11 @@ pub mod sweep;
 pub mod timing;
 
 pub use case_form::{BlockForm, RollerForm};
-pub use errors::{ErrorRow, Range};
+pub use errors::{CONTACT, ErrorRow, Range};
 pub use models::{Cold, Models, Solver};
 pub use run::{
-    Answer, CaseRun, Factor, FactorName, MethodRun, Provenance, Reference, Role, Setup, StudyRun,
-    Timed, run,
+    CaseRun, Factor, FactorName, FoundReference, MethodResult, MethodRun, Provenance, Reference,
+    ReferenceRun, Role, StudyRun, StudySetup, Timed, run,
 };
 pub use source::{Engine, Source};
 

@@ -38,13 +38,13 @@ pub(super) struct Attempt {
 }
 
 /// Contact problems to be solved: the cases of each by every model.
-pub(super) struct Work<'a> {
+pub(super) struct Jobs<'a> {
     cases: &'a [Case],
     models: &'a Models<'a>,
     jobs: Vec<(Vec<usize>, EdgeModel)>,
 }
 
-impl<'a> Work<'a> {
+impl<'a> Jobs<'a> {
     /// Puts cases together that are one problem.
     pub fn new(cases: &'a [Case], models: &'a Models<'a>) -> Self {
         let of_group = |group: Vec<usize>| models.methods.iter().map(move |&m| (group.clone(), m));
@@ -59,7 +59,7 @@ impl<'a> Work<'a> {
         self.jobs.len()
     }
 
-    /// Number of times that [`Work::run`] tells of a step.
+    /// Number of times that [`Jobs::run`] tells of a step.
     pub fn steps(&self) -> usize {
         self.jobs.len() * if self.models.repeats > 0 { 2 } else { 1 }
     }

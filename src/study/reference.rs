@@ -2,7 +2,6 @@
 //! meshes as FEM's own error at every point.
 
 use super::run::{Provenance, Reference};
-use super::source::Engine;
 use crate::fem::{self, MeshResult};
 
 /// From the reader of records or from a live run.
@@ -16,11 +15,7 @@ pub fn from_fem(reference: &fem::FemResults) -> Reference {
         Some(next) => finest.curves.clone().with_error_from(&next.curves),
         None => finest.curves.clone(),
     };
-    Reference {
-        engine: Engine::fenicsx(),
-        curves,
-        provenance: provenance(finest, reference.source == "live"),
-    }
+    Reference { curves, provenance: provenance(finest, reference.source == "live") }
 }
 
 fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
@@ -51,7 +46,7 @@ fn provenance(mesh: &MeshResult, live: bool) -> Provenance {
 mod tests {
     use super::*;
     use crate::stress::curves::CURVE_NAMES;
-    use crate::study::{Range, Source, errors};
+    use crate::study::{Engine, Range, Source, errors};
 
     #[test]
     fn a_record_is_its_own_reference() {
@@ -60,7 +55,7 @@ mod tests {
             let record = fem::FemResults::embedded(name).unwrap().unwrap();
             let reference = from_fem(&record);
             let half_length = record.case.factors().slenderness;
-            let again = (&Source::Engine(reference.engine.clone()), &reference.curves);
+            let again = (&Source::from(Engine::fenicsx()), &reference.curves);
             let rows =
                 errors::compare(name, half_length, &reference.curves, again, &Range::default())
                     .unwrap();

@@ -99,25 +99,22 @@ impl Response {
 
     /// Its value, where the case and model have one.
     pub fn value(self, case: &CaseRun, method: &MethodRun) -> Option<f64> {
-        let answer = method.answer.as_ref().ok()?;
-        let summary = answer.summary.as_ref()?;
+        let result = method.result.as_ref().ok()?;
+        let summary = result.summary.as_ref()?;
         match self {
             Self::Error(of, by) => {
                 let [max, rms] = match of {
                     Of::Pressure => *summary.pressure.first()?,
                     Of::Stress => summary.stress,
-                    Of::Quantity(quantity) => {
-                        let index = Quantity::ALL.iter().position(|q| *q == quantity)?;
-                        summary.quantities[index]
-                    }
+                    Of::Quantity(quantity) => summary.quantities[quantity.index()],
                 };
                 Some(match by {
                     Measure::Rms => rms,
                     Measure::Max => max,
                 })
             }
-            Self::CriticalValue => Some(answer.critical?.value - case.reference_critical?.value),
-            Self::CriticalDepth => Some(answer.critical?.at[2] - case.reference_critical?.at[2]),
+            Self::CriticalValue => Some(result.critical?.value - case.reference_critical()?.value),
+            Self::CriticalDepth => Some(result.critical?.at[2] - case.reference_critical()?.at[2]),
             Self::Log10Speedup => Some(speedup(case, method)?.value.log10()),
         }
     }
@@ -141,7 +138,7 @@ impl<'de> Deserialize<'de> for Response {
 /// where FEM ran in it, else from a record of both. Only times of one run on one machine are
 /// divided.
 pub fn speedup(case: &CaseRun, method: &MethodRun) -> Option<Ratio> {
-    let fem = &case.reference.as_ref().ok()?.provenance;
+    let fem = &case.reference()?.provenance;
     if fem.live {
         let spread = fem.seconds_spread.unwrap_or(0.0);
         return Some(Ratio::new((fem.seconds?, spread), method.timing.first()?.with_spread()));

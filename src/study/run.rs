@@ -1,7 +1,7 @@
 //! The run of a study: every case by every method, paired with FEM.
 
 use super::errors::{ErrorRow, ErrorSummary, Range, compare, critical_point, summarise};
-use super::models::{Attempt, Models, Work};
+use super::models::{Attempt, Jobs, Models};
 use super::source::Engine;
 use super::timing::Timing;
 use crate::base::Result;
@@ -13,28 +13,26 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// FEM's answer for one case, and where it comes from.
+/// The curves that an engine has for one case.
 #[derive(Debug, Clone)]
 pub struct Reference {
-    /// The engine that computed it.
-    pub engine: Engine,
-    /// Its curves.
+    /// The curves.
     pub curves: Curves,
-    /// Where it comes from and what it cost.
+    /// Where they come from and what they cost.
     pub provenance: Provenance,
 }
 
-/// Where a FEM answer comes from. What a record does not state is `None`.
+/// Where reference curves come from. What a record does not state is `None`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
-    /// Whether it was computed in this run, on this machine. Only then may its time be divided by
-    /// a time of this run.
+    /// Whether they were computed in this run, on this machine. Only then may their time be divided
+    /// by a time of this run.
     pub live: bool,
-    /// When it was computed.
+    /// When they were computed.
     pub date: Option<String>,
     /// The machine's processor.
     pub machine: Option<String>,
-    /// The command that computes it again.
+    /// The command that computes them again.
     pub command: Option<String>,
     /// Unknowns of both bodies.
     pub unknowns: Option<u64>,
@@ -46,8 +44,8 @@ pub struct Provenance {
     pub stages: BTreeMap<String, f64>,
     /// Versions of the programs used.
     pub versions: BTreeMap<String, String>,
-    /// Times of FEM and of the models from one run on one machine, where there is a record of them:
-    /// the ones whose ratio may be stated when the FEM answer is not of this run.
+    /// Times of FEM and of the models from one run on one machine, if there is a record of them: if
+    /// the curves are not of this run, only the ratio of these times may be stated.
     pub timed: Option<Timed>,
 }
 
@@ -86,16 +84,16 @@ pub enum Role {
     Extra,
 }
 
-/// What one method made of one case.
+/// The result of one method for one case.
 #[derive(Debug, Clone)]
-pub struct Answer {
+pub struct MethodResult {
     /// The solution.
     pub solution: Solution,
-    /// The most stressed place outside the range left out.
+    /// The most stressed point outside the excluded range.
     pub critical: Option<Critical>,
-    /// Errors against FEM; empty without a reference.
+    /// Errors against the case's first reference; empty without one.
     pub errors: Vec<ErrorRow>,
-    /// The errors summed up.
+    /// The errors in summary.
     pub summary: Option<ErrorSummary>,
 }
 
@@ -104,10 +102,21 @@ pub struct Answer {
 pub struct MethodRun {
     /// The method.
     pub method: EdgeModel,
-    /// Its answer, or what went wrong in words.
-    pub answer: std::result::Result<Answer, String>,
-    /// Repeated timing on one thread and on all, where it was asked for.
+    /// Its result, or the error in words.
+    pub result: std::result::Result<MethodResult, String>,
+    /// Repeated timing on one thread and on all; empty without timing.
     pub timing: Vec<Timing>,
+}
+
+/// One reference for one case.
+#[derive(Debug, Clone)]
+pub struct ReferenceRun {
+    /// The engine.
+    pub engine: Engine,
+    /// Its curves, or why there are none.
+    pub result: std::result::Result<Reference, String>,
+    /// The most stressed point outside the excluded range.
+    pub critical: Option<Critical>,
 }
 
 /// One case of a run.
@@ -117,12 +126,22 @@ pub struct CaseRun {
     pub case: Case,
     /// Its part in the study.
     pub role: Role,
-    /// FEM's answer, or why there is none.
-    pub reference: std::result::Result<Reference, String>,
-    /// FEM's most stressed place outside the range left out.
-    pub reference_critical: Option<Critical>,
-    /// The methods, in the order asked for.
+    /// The references. Errors are taken against the first.
+    pub references: Vec<ReferenceRun>,
+    /// The methods, in the order of the study.
     pub methods: Vec<MethodRun>,
+}
+
+impl CaseRun {
+    /// The curves that errors are taken against: those of the first reference.
+    pub fn reference(&self) -> Option<&Reference> {
+        self.references.first()?.result.as_ref().ok()
+    }
+
+    /// The most stressed point of the first reference outside the excluded range.
+    pub fn reference_critical(&self) -> Option<Critical> {
+        self.references.first()?.critical
+    }
 }
 
 /// A factor of the design that has two levels.
@@ -178,7 +197,7 @@ pub struct StudyRun {
     pub study: String,
     /// The factors with two levels; empty when a factor has more than two.
     pub factors: Vec<Factor>,
-    /// The methods asked for.
+    /// The methods.
     pub methods: Vec<EdgeModel>,
     /// The range of the errors.
     pub range: Range,
@@ -188,15 +207,19 @@ pub struct StudyRun {
     pub solves: usize,
 }
 
-/// What a run needs besides the study.
-pub struct Setup<'a> {
+/// The curves of an engine, or why there are none.
+pub type FoundReference = (Engine, std::result::Result<Reference, String>);
+
+/// The input of a run besides the study.
+pub struct StudySetup<'a> {
     /// The models.
     pub models: Models<'a>,
     /// Range of the errors.
     pub range: Range,
-    /// FEM's answer for a case, or why there is none.
-    pub reference: &'a dyn Fn(&Case) -> std::result::Result<Reference, String>,
-    /// Called with the number of steps done and of all steps, and what was just done.
+    /// Finds the references of a case, the one that errors are taken against first.
+    pub references: &'a dyn Fn(&Case) -> Vec<FoundReference>,
+    /// Called after each step with the number of finished steps, the number of all steps and the
+    /// step's name.
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
 }
 
@@ -232,81 +255,77 @@ fn role(case: &Case, study: &Study, factors: &[Factor]) -> Role {
     }
 }
 
-/// Runs the study. A case or method that fails is kept with its reason; nothing stops the rest.
-pub fn run(study: &Study, setup: &Setup) -> StudyRun {
+/// Runs the study. A case or method that fails is kept with its error; the others still run.
+pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
     let cases: Vec<Case> = study.cases().cloned().collect();
     let factors = design(study);
-    let work = Work::new(&cases, &setup.models);
-    let steps = cases.len() + work.steps();
+    let jobs = Jobs::new(&cases, &setup.models);
+    let steps = cases.len() + jobs.steps();
     let done = AtomicUsize::new(0);
     let step = |what: &str| {
         let n = done.fetch_add(1, Ordering::Relaxed) + 1;
         (setup.progress)(n, steps, what);
     };
 
-    let references: Vec<_> = cases
+    let references: Vec<Vec<ReferenceRun>> = cases
         .iter()
         .map(|case| {
-            let reference = (setup.reference)(case);
+            let found = (setup.references)(case);
             step(&format!("FEM of {}", case.name));
-            reference
+            found.into_iter().map(|found| reference_run(case, found, &setup.range)).collect()
         })
         .collect();
-
-    let attempts = work.run(&step);
-    let runs = cases
-        .iter()
-        .zip(references)
-        .zip(attempts)
-        .map(|((case, reference), attempts)| {
-            let answer = |attempt: Attempt| MethodRun {
-                method: attempt.method,
-                answer: attempt
-                    .solution
-                    .and_then(|s| answer(case, &reference, (attempt.method, s), &setup.range))
-                    .map_err(|e| e.to_string()),
-                timing: attempt.timing,
-            };
-            let half_length = case.factors().slenderness;
+    let runs =
+        cases.iter().zip(references).zip(jobs.run(&step)).map(|((case, references), attempts)| {
+            let reference = references.first().and_then(|r| r.result.as_ref().ok());
+            let method = |attempt| method_run(case, reference, attempt, &setup.range);
             CaseRun {
                 case: case.clone(),
                 role: role(case, study, &factors),
-                reference_critical: reference
-                    .as_ref()
-                    .ok()
-                    .and_then(|r| critical_point(&r.curves, half_length, setup.range.stress_c)),
-                methods: attempts.into_iter().map(answer).collect(),
-                reference,
+                methods: attempts.into_iter().map(method).collect(),
+                references,
             }
-        })
-        .collect();
+        });
     StudyRun {
         study: study.name.clone(),
+        cases: runs.collect(),
         factors,
         methods: setup.models.methods.clone(),
         range: setup.range.clone(),
-        solves: work.solves(),
-        cases: runs,
+        solves: jobs.solves(),
     }
 }
 
-/// Compares a solution with its case's reference.
-fn answer(
-    case: &Case,
-    reference: &std::result::Result<Reference, String>,
-    (method, solution): (EdgeModel, Solution),
-    range: &Range,
-) -> Result<Answer> {
+/// Looks for the most stressed point of a reference.
+fn reference_run(case: &Case, (engine, result): FoundReference, range: &Range) -> ReferenceRun {
     let half_length = case.factors().slenderness;
-    let own = (&method.into(), &solution.curves);
-    let errors = match reference {
-        Ok(r) => compare(&case.name, half_length, &r.curves, own, range)?,
-        Err(_) => Vec::new(),
+    let critical =
+        result.as_ref().ok().and_then(|r| critical_point(&r.curves, half_length, range.stress_c));
+    ReferenceRun { engine, result, critical }
+}
+
+/// Compares an attempt with its case's reference.
+fn method_run(
+    case: &Case,
+    reference: Option<&Reference>,
+    attempt: Attempt,
+    range: &Range,
+) -> MethodRun {
+    let Attempt { method, solution, timing } = attempt;
+    let half_length = case.factors().slenderness;
+    let compared = |solution: Solution| {
+        let own = (&method.into(), &solution.curves);
+        let errors = match reference {
+            Some(r) => compare(&case.name, half_length, &r.curves, own, range)?,
+            None => Vec::new(),
+        };
+        Ok(MethodResult {
+            critical: critical_point(&solution.curves, half_length, range.stress_c),
+            summary: summarise(&errors, range),
+            solution,
+            errors,
+        })
     };
-    Ok(Answer {
-        critical: critical_point(&solution.curves, half_length, range.stress_c),
-        summary: summarise(&errors, range),
-        solution,
-        errors,
-    })
+    let result: Result<MethodResult> = solution.and_then(compared);
+    MethodRun { method, result: result.map_err(|e| e.to_string()), timing }
 }

@@ -45,9 +45,17 @@ impl Source {
         }
     }
 
+    /// The engine, if this is a reference and no model.
+    pub fn engine(&self) -> Option<&Engine> {
+        match self {
+            Source::Model(_) => None,
+            Source::Engine(engine) => Some(engine),
+        }
+    }
+
     /// Whether this is a reference and no model.
     pub fn is_engine(&self) -> bool {
-        matches!(self, Source::Engine(_))
+        self.engine().is_some()
     }
 }
 

@@ -7,7 +7,7 @@ use crate::fem::{self, MeshResult};
 use crate::solve::{Details, PressureCell, Seconds, Solution, Summary};
 use crate::stress::{BodyKind, Curves, PressureLine, StressCurve, curves};
 use crate::study::bench::{FemMeshes, Mesh};
-use crate::study::run::{Provenance, Reference, Setup, StudyRun, Timed, run as run_study};
+use crate::study::run::{Provenance, Reference, StudyRun, StudySetup, Timed, run as run_study};
 use crate::study::timing::Timing;
 use crate::study::{Engine, Models, Range};
 use std::f64::consts::PI;
@@ -169,7 +169,12 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
     }
 }
 
-/// What is wrong with a run.
+/// Another reference than FEniCSx.
+pub fn second_engine() -> Engine {
+    serde_json::from_value("another-code".into()).unwrap()
+}
+
+/// What is special about a run.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Twist {
     /// Nothing.
@@ -180,8 +185,10 @@ pub enum Twist {
     ShearSign,
     /// One method's end effect is off by a factor.
     EndShare(EdgeModel, f64),
-    /// There are no FEM answers.
+    /// There are no reference curves.
     NoReference,
+    /// A second engine, [`second_engine`], has curves of its own.
+    SecondReference,
     /// One method solves nothing.
     Unsolved(EdgeModel),
 }
@@ -254,11 +261,11 @@ pub fn run(twist: Twist) -> StudyRun {
             timed: Some(timed),
             ..Default::default()
         };
-        Ok(Reference { engine: Engine::fenicsx(), curves, provenance })
+        Ok(Reference { curves, provenance })
     };
     run_study(
         &Study::built_in(),
-        &Setup {
+        &StudySetup {
             models: Models {
                 methods: EdgeModel::ALL.to_vec(),
                 repeats: 3,
@@ -266,7 +273,13 @@ pub fn run(twist: Twist) -> StudyRun {
                 cold: &|_, _, _| Some(0.02),
             },
             range: Range::default(),
-            reference: &reference,
+            references: &|case| {
+                let mut all = vec![(Engine::fenicsx(), reference(case))];
+                if twist == Twist::SecondReference {
+                    all.push((second_engine(), reference(case)));
+                }
+                all
+            },
             progress: &|_, _, _| {},
         },
     )

@@ -6,8 +6,8 @@ use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
 use edgeline::fem;
 use edgeline::solve::{Options, Solution, solve_group};
-use edgeline::study::gate::{self, Baseline, Outcome};
-use edgeline::study::{Models, Range, Setup, Solver, StudyRun, reference, run};
+use edgeline::study::gate::{self, Baseline, GateOutcome};
+use edgeline::study::{Engine, Models, Range, Solver, StudyRun, StudySetup, reference, run};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::Output;
@@ -20,16 +20,16 @@ const METHODS: [EdgeModel; 2] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 
 fn run_with(solver: &Solver) -> StudyRun {
     let study = Study::parse(STUDY, Path::new("small.toml")).unwrap();
-    let answer = |case: &Case| {
+    let recorded = |case: &Case| {
         let found = fem::FemResults::embedded_of(case).map_err(|e| e.to_string())?;
         found.map(|r| reference::from_fem(&r)).ok_or_else(|| "no record".to_string())
     };
     run(
         &study,
-        &Setup {
+        &StudySetup {
             models: Models { methods: METHODS.to_vec(), repeats: 0, solver, cold: &|_, _, _| None },
             range: Range::default(),
-            reference: &answer,
+            references: &|case| vec![(Engine::fenicsx(), recorded(case))],
             progress: &|_, _, _| {},
         },
     )
@@ -39,7 +39,7 @@ fn usual(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
     solve_group(cases, &Options::new(method))
 }
 
-fn failed(run: &StudyRun, accepted: &Baseline) -> Vec<Outcome> {
+fn failed(run: &StudyRun, accepted: &Baseline) -> Vec<GateOutcome> {
     let gates = gate::Gates::built_in().unwrap();
     let mut outcomes = gate::evaluate(run, &gates, Some(accepted));
     outcomes.retain(|o| !o.passed);
@@ -67,7 +67,7 @@ fn flipped_shears_are_named() {
         let drift =
             outcomes.iter().find(|o| o.kind == gate::Kind::Drift && o.method == method.name());
         let named =
-            |o: &Outcome| ["sigma_xz", "sigma_yz"].iter().any(|shear| o.note.contains(shear));
+            |o: &GateOutcome| ["sigma_xz", "sigma_yz"].iter().any(|shear| o.note.contains(shear));
         assert!(drift.is_some_and(named), "{method}: {outcomes:?}");
     }
     // The limits alone detect it too, without accepted numbers.

@@ -111,11 +111,13 @@ impl Sample<'_> {
 mod tests {
     use super::super::panel::look;
     use super::*;
+    use crate::study::Engine;
 
     #[test]
     fn a_legend_goes_on_in_a_new_row_before_it_is_cut() {
-        let series = ["one", "a name of some length", "another name of some length"]
-            .map(|name| Series::curve(name, look("fem"), vec![(0.0, 1.0), (1.0, 2.0)]));
+        let series = ["one", "a name of some length", "another name of some length"].map(|name| {
+            Series::curve(name, look(&Engine::fenicsx().into()), vec![(0.0, 1.0), (1.0, 2.0)])
+        });
         let panel = Panel { series: series.to_vec(), ..Default::default() };
         let figure = Figure { columns: 1, panels: vec![panel], ..Default::default() };
         let places = |width| figure.legend(width).iter().map(|(.., p)| *p).collect::<Vec<_>>();

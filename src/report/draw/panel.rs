@@ -6,6 +6,8 @@
 use super::axis::{extent, limits};
 use super::contour::Map;
 use super::picture::{Colour, INK, Style};
+use crate::body::EdgeModel;
+use crate::study::{Engine, Source};
 
 /// Shape of a marker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -42,16 +44,28 @@ impl Look {
     }
 }
 
-/// The look of a source by its name; sources that are not known look like FEM.
-pub fn look(source: &str) -> Look {
+/// The look of a source.
+pub fn look(source: &Source) -> Look {
     let look = |name, rgb, dash, marker| Look { colour: Colour { name, rgb }, dash, marker };
     let dash = |dash, gap| Some((dash, gap));
     match source {
-        "half-space" => look("c-half-space", [0xd5, 0x5e, 0x00], dash(2.0, 3.0), Marker::Triangle),
-        "mirror" => look("c-mirror", [0xb0, 0x60, 0x95], dash(5.0, 3.0), Marker::Cross),
-        "guilbault" => look("c-guilbault", [0x00, 0x8c, 0x67], dash(9.0, 4.0), Marker::Square),
-        "quarter-space" => look("c-quarter-space", [0x00, 0x72, 0xb2], None, Marker::Circle),
-        _ => Look { colour: INK, dash: None, marker: Marker::Disc },
+        Source::Model(EdgeModel::HalfSpace) => {
+            look("c-half-space", [0xd5, 0x5e, 0x00], dash(2.0, 3.0), Marker::Triangle)
+        }
+        Source::Model(EdgeModel::Mirror) => {
+            look("c-mirror", [0xb0, 0x60, 0x95], dash(5.0, 3.0), Marker::Cross)
+        }
+        Source::Model(EdgeModel::Guilbault) => {
+            look("c-guilbault", [0x00, 0x8c, 0x67], dash(9.0, 4.0), Marker::Square)
+        }
+        Source::Model(EdgeModel::QuarterSpace) => {
+            look("c-quarter-space", [0x00, 0x72, 0xb2], None, Marker::Circle)
+        }
+        Source::Engine(engine) => {
+            let is_first = *engine == Engine::fenicsx();
+            let marker = if is_first { Marker::Disc } else { Marker::Diamond };
+            Look { colour: INK, dash: None, marker }
+        }
     }
 }
 
@@ -221,7 +235,11 @@ mod tests {
 
     #[test]
     fn axes_leave_room_for_counted_points_only() {
-        let mut series = Series::curve("s", look("fem"), vec![(0.0, 1.0), (1.0, 2.0), (2.0, 99.0)]);
+        let mut series = Series::curve(
+            "s",
+            look(&Engine::fenicsx().into()),
+            vec![(0.0, 1.0), (1.0, 2.0), (2.0, 99.0)],
+        );
         series.beyond = vec![false, false, true];
         let panel = Panel { series: vec![series.clone()], ..Default::default() };
         let [x, y] = panel.limits();

@@ -3,39 +3,35 @@
 
 use crate::base::HertzScales;
 use crate::base::number::significant;
-use crate::report::plots;
+use crate::report::plots::Shown;
 use crate::report::study_files::StudyFiles;
+use crate::report::study_rows::{CurveRow, OwnErrorRow, PressureRow};
 use crate::report::study_summary::CaseSummary;
-use crate::study::{Engine, Source};
+use crate::stress::Quantity;
+use crate::study::CONTACT;
+use serde::Serialize;
 use serde_json::{Map, Value, json};
 
 /// All that the page's script draws.
 pub(super) fn data(files: &StudyFiles) -> Value {
-    let mut symbols = Map::new();
-    for (name, symbol) in plots::SYMBOLS {
-        symbols.insert(name.to_string(), json!(symbol));
-    }
-    let quantities: Vec<&str> = plots::SYMBOLS.iter().map(|(name, _)| *name).collect();
-    let models = files.summary.methods.iter().copied().map(Source::from);
-    let sources: Vec<Source> = models.chain([Engine::fenicsx().into()]).collect();
-    let cases: Vec<Value> =
-        files.summary.cases.iter().map(|case| case_data(files, case, &quantities)).collect();
+    let symbols: Map<String, Value> =
+        Shown::all().map(|shown| (shown.name().to_string(), json!(shown.symbol()))).collect();
+    let sources = files.sources();
+    let engines = sources.iter().filter_map(|source| source.engine());
+    let references = engines.map(|e| json!({ "name": e, "title": e.title() }));
+    let cases: Vec<Value> = files.summary.cases.iter().map(|case| case_data(files, case)).collect();
     json!({
         "cases": cases,
+        "references": references.collect::<Vec<_>>(),
         "sources": sources,
-        "quantities": quantities,
+        "quantities": Shown::all().map(Shown::name).collect::<Vec<_>>(),
         "symbols": symbols,
         "range": files.summary.range,
     })
 }
 
-/// A number of the explorer's data, five digits after the point.
-fn rounded_off(value: f64) -> Value {
-    json!((value * 1e5).round() / 1e5)
-}
-
 /// Curves and errors of one case, by `body/curve`.
-fn case_data(files: &StudyFiles, case: &CaseSummary, quantities: &[&str]) -> Value {
+fn case_data(files: &StudyFiles, case: &CaseSummary) -> Value {
     let name = &case.name;
     let label = format!(
         "{name} (W {}, S_l {}, L_r {})",
@@ -49,102 +45,112 @@ fn case_data(files: &StudyFiles, case: &CaseSummary, quantities: &[&str]) -> Val
         "S_l": case.slenderness,
         "c_m": case.hertz.c_m,
         "p0_pa": case.hertz.p0_pa,
-        "curves": curves(files, name, &case.hertz, quantities),
+        "curves": curves(files, case),
         "errors": errors(files, name),
     })
 }
 
-/// The curves of every source in the case called `name`.
-fn curves(
-    files: &StudyFiles,
-    name: &str,
-    hertz: &HertzScales,
-    quantities: &[&str],
-) -> Map<String, Value> {
-    let HertzScales { c_m, p0_pa, .. } = *hertz;
-    let mut curves: Map<String, Value> = Map::new();
+/// A number with five digits after the point.
+fn five_digits(value: f64) -> f64 {
+    (value * 1e5).round() / 1e5
+}
 
-    // Adds a value of a source at a point; the first source that comes to a curve brings the
-    // points along, and every source has the same.
-    let mut add = |key: String,
-                   source: &str,
-                   at: [f64; 3],
-                   values: Vec<(&str, f64)>,
-                   part: &str| {
-        let curve = curves.entry(key).or_insert_with(
-            || json!({ "points": [], "owner": source, "values": {}, "fem_error": {} }),
-        );
-        if curve["owner"] == source && part == "values" {
-            let point: Vec<Value> = at.iter().map(|v| rounded_off(v / c_m)).collect();
-            curve["points"].as_array_mut().expect("made above").push(json!(point));
-        }
-        let holder = if part == "values" {
-            let holder = curve[part].as_object_mut().expect("made above");
-            holder.entry(source).or_insert_with(|| json!({})).as_object_mut().expect("an object")
-        } else {
-            curve[part].as_object_mut().expect("made above")
+/// One curve with the values of all sources.
+#[derive(Serialize)]
+struct CurveData {
+    /// The running coordinate.
+    axis: &'static str,
+    /// Its values (C).
+    at: Vec<f64>,
+    /// The points (C).
+    points: Vec<[f64; 3]>,
+    /// The values (p0) of each source and quantity.
+    values: Map<String, Value>,
+    /// The own errors (p0) of the first reference, for each quantity.
+    fem_error: Map<String, Value>,
+}
+
+impl CurveData {
+    fn new(points_m: impl Iterator<Item = [f64; 3]>, c_m: f64) -> Self {
+        let points: Vec<[f64; 3]> =
+            points_m.map(|at_m| at_m.map(|v| five_digits(v / c_m))).collect();
+        // The running coordinate is the one that varies most.
+        let spread = |k: usize| {
+            let all = points.iter().map(|p| p[k]);
+            all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
         };
-        for (quantity, value) in values {
-            let list = holder.entry(quantity).or_insert_with(|| json!([]));
-            list.as_array_mut().expect("a list").push(rounded_off(value / p0_pa));
-        }
-    };
-    let pressure = &files.pressure;
-    for row in pressure.rows.iter().filter(|r| pressure.text(r, "case") == name) {
-        let get = |column| pressure.number(row, column).unwrap_or(f64::NAN);
-        let key = format!("contact/{}", pressure.text(row, "line"));
-        let values = vec![("pressure", get("p_pa"))];
-        add(key, pressure.text(row, "source"), [get("x_m"), get("y_m"), 0.0], values, "values");
+        let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
+        let at = points.iter().map(|p| p[axis]).collect();
+        let (values, fem_error) = (Map::new(), Map::new());
+        Self { axis: ["x", "y", "z"][axis], at, points, values, fem_error }
     }
-    for (table, part) in [(&files.curves, "values"), (&files.fem_error, "fem_error")] {
-        let columns: Vec<(&str, usize)> = quantities
-            .iter()
-            .filter_map(|&q| Some((q, table.column(&format!("{q}_pa"))?)))
-            .collect();
-        for row in table.rows.iter().filter(|r| table.text(r, "case") == name) {
-            let get = |column| table.number(row, column).unwrap_or(f64::NAN);
-            let key = format!("{}/{}", table.text(row, "body"), table.text(row, "curve"));
-            let at = [get("x_m"), get("y_m"), get("z_m")];
-            let values =
-                columns.iter().filter_map(|&(q, c)| Some((q, row[c].parse().ok()?))).collect();
-            add(key, table.text(row, "source"), at, values, part);
-        }
-    }
-    curves.values_mut().for_each(find_axis);
-    curves
 }
 
-/// Tells a curve's running coordinate and its values.
-fn find_axis(curve: &mut Value) {
-    let points: Vec<Vec<f64>> = serde_json::from_value(curve["points"].clone()).unwrap_or_default();
-    // The running coordinate is the one that varies.
-    let spread = |k: usize| {
-        let all = points.iter().map(|p| p[k]);
-        all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
-    };
-    let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
-    let map = curve.as_object_mut().expect("made above");
-    map.remove("owner");
-    map.insert("axis".to_string(), json!(["x", "y", "z"][axis]));
-    map.insert("at".to_string(), json!(points.iter().map(|p| p[axis]).collect::<Vec<_>>()));
+/// The curves of every source in a case, by `body/curve`.
+fn curves(files: &StudyFiles, case: &CaseSummary) -> Map<String, Value> {
+    let HertzScales { c_m, p0_pa, .. } = case.hertz;
+    let in_p0 = |value_pa: f64| five_digits(value_pa / p0_pa);
+    let mut all: Vec<(String, CurveData)> = Vec::new();
+    let own: Vec<&PressureRow> = files.pressure.iter().filter(|r| r.case == case.name).collect();
+    for rows in own.chunk_by(|a, b| (&a.source, &a.line) == (&b.source, &b.line)) {
+        let points = rows.iter().map(|r| [r.at_m[0], r.at_m[1], 0.0]);
+        let key = format!("{CONTACT}/{}", rows[0].line);
+        let curve = entry(&mut all, key, || CurveData::new(points, c_m));
+        let p: Vec<f64> = rows.iter().map(|r| in_p0(r.p_pa)).collect();
+        curve.values.insert(rows[0].source.to_string(), json!({ Shown::Pressure.name(): p }));
+    }
+    let own: Vec<&CurveRow> = files.curves.iter().filter(|r| r.case == case.name).collect();
+    let place = |r: &CurveRow| (r.source.clone(), r.body, r.curve.clone());
+    for rows in own.chunk_by(|a, b| place(a) == place(b)) {
+        let key = format!("{}/{}", rows[0].body.name(), rows[0].curve);
+        let curve = entry(&mut all, key, || CurveData::new(rows.iter().map(|r| r.at_m), c_m));
+        let quantities = Quantity::ALL.map(|of| {
+            let values: Vec<f64> = rows.iter().map(|r| in_p0(r.stress(of))).collect();
+            (of.name().to_string(), json!(values))
+        });
+        let quantities: Map<String, Value> = quantities.into_iter().collect();
+        curve.values.insert(rows[0].source.to_string(), Value::Object(quantities));
+    }
+    let first = files.sources().into_iter().find(|source| source.is_engine());
+    let is_own = |r: &&OwnErrorRow| r.case == case.name && first == Some(&r.source);
+    for row in files.fem_error.iter().filter(is_own) {
+        let key = format!("{}/{}", row.body, row.curve);
+        let Some((_, curve)) = all.iter_mut().find(|(k, _)| *k == key) else { continue };
+        let stresses = Quantity::ALL.map(|of| (Shown::Stress(of), row.stress(of)));
+        for (shown, error_pa) in stresses.into_iter().chain([(Shown::Pressure, row.pressure_pa)]) {
+            let list = curve.fem_error.entry(shown.name()).or_insert_with(|| json!([]));
+            let list = list.as_array_mut().expect("made above");
+            list.extend(error_pa.map(|error_pa| json!(in_p0(error_pa))));
+        }
+    }
+    all.into_iter().map(|(key, curve)| (key, json!(curve))).collect()
 }
 
-/// The errors of every model in the case called `name`.
+/// The curve of this key, made where there is none.
+fn entry(
+    all: &mut Vec<(String, CurveData)>,
+    key: String,
+    make: impl FnOnce() -> CurveData,
+) -> &mut CurveData {
+    let at = all.iter().position(|(k, _)| *k == key).unwrap_or_else(|| {
+        all.push((key, make()));
+        all.len() - 1
+    });
+    &mut all[at].1
+}
+
+/// The errors of every model in the case called `name`, by `body/curve` and quantity.
 fn errors(files: &StudyFiles, name: &str) -> Map<String, Value> {
-    let errors_table = &files.errors;
     let mut errors: Map<String, Value> = Map::new();
-    for row in errors_table.rows.iter().filter(|r| errors_table.text(r, "case") == name) {
-        let text = |column| errors_table.text(row, column);
-        let key = format!("{}/{}", text("body"), text("curve"));
-        let of_curve = errors.entry(key).or_insert_with(|| json!({}));
-        let slot = &mut of_curve[text("quantity")];
+    for row in files.errors.iter().filter(|row| row.case == name) {
+        let key = format!("{}/{}", row.body, row.curve);
+        let slot = &mut errors.entry(key).or_insert_with(|| json!({}))[&row.quantity];
         // Pressure has a row for each range; the first is the one of the summaries.
-        if slot.get(text("method")).is_none() {
-            let get = |column| errors_table.number(row, column).map_or(Value::Null, rounded_off);
-            slot[text("method")] = json!({ "max": get("max"), "rms": get("rms"), "l1": get("l1") });
-            let own = get("fem_error_max");
-            if !own.is_null() {
-                slot["fem_error_max"] = own;
+        if slot.get(&row.method).is_none() {
+            let [max, rms, l1] = [row.max, row.rms, row.l1].map(five_digits);
+            slot[&row.method] = json!({ "max": max, "rms": rms, "l1": l1 });
+            if let Some(own) = row.ref_error_max {
+                slot["fem_error_max"] = json!(five_digits(own));
             }
         }
     }

@@ -1,8 +1,8 @@
 //! What the page says about FEM: times beside the models', and versions.
 
 use crate::report::study_files::StudyFiles;
+use crate::study::Timed;
 use crate::study::bench::{Against, Speedup};
-use crate::study::{Source, Timed};
 use serde_json::{Value, json};
 
 /// FEM and models timed in one run, where the run's FEM curves are from elsewhere.
@@ -12,20 +12,14 @@ pub(super) fn timed(files: &StudyFiles) -> Option<Value> {
     for case in &files.summary.cases {
         let Some(timed) = case.provenance().and_then(|p| p.timed.as_ref()) else { continue };
         head.get_or_insert(timed);
-        let study = &files.study;
         let methods = files.summary.methods.iter().map(|&method| {
-            let source = Source::from(method);
-            let is_it = |r: &&Vec<String>| {
-                study.text(r, "case") == case.name && study.text(r, "source") == source.name()
-            };
-            let row = study.rows.iter().find(is_it);
-            let cell = |name: &str| row.and_then(|row| study.number(row, name));
-            let time = timed.methods.get(source.name());
+            let row = files.row(&case.name, &method.into());
+            let time = timed.methods.get(method.name());
             json!({
                 "seconds": time.map(|t| t.0),
                 "spread": time.map(|t| t.1),
-                "ratio": cell("speedup"),
-                "ratio_spread": cell("speedup_spread"),
+                "ratio": row.map(|row| row.speedup),
+                "ratio_spread": row.map(|row| row.speedup_spread),
             })
         });
         let methods: Vec<Value> = methods.collect();

@@ -20,7 +20,10 @@
     return e;
   };
   const colour = (source) => `var(--c-${source})`;
-  const title = (source) => (source === "fem" ? "FEM" : source);
+  // The first reference is the one that errors and differences are taken against.
+  const reference = data.references.length ? data.references[0].name : null;
+  const engine = (source) => data.references.find((r) => r.name === source);
+  const title = (source) => (engine(source) ? engine(source).title : source);
 
   function mark(source, x, y) {
     const at = { class: "mark", stroke: colour(source), fill: "none" };
@@ -69,7 +72,7 @@
     const lengthUnit = si ? caseData.c_m * 1e3 : 1;
     const stressUnit = si ? caseData.p0_pa * 1e-6 : 1;
     const difference = controls.show.value === "difference";
-    const fem = curve.values.fem && curve.values.fem[quantity];
+    const fem = curve.values[reference] && curve.values[reference][quantity];
     const series = [];
     for (const source of data.sources) {
       const raw = curve.values[source] && curve.values[source][quantity];
@@ -125,7 +128,7 @@
     for (const s of d.series) {
       for (const i of counted.length > 1 ? counted : visible) {
         take(s.values[i]);
-        if (s.source === "fem" && d.band && s.values[i] !== null) { take(s.values[i] - d.band[i]); take(s.values[i] + d.band[i]); }
+        if (s.source === reference && d.band && s.values[i] !== null) { take(s.values[i] - d.band[i]); take(s.values[i] + d.band[i]); }
       }
     }
     if (y0 > y1) [y0, y1] = [0, 1];
@@ -162,19 +165,19 @@
     parts.push(element("text", { class: "axis-title", x: 18, y: middle, "text-anchor": "middle", transform: `rotate(-90 18 ${middle})` }, d.yTitle));
     const layer = element("g", { "clip-path": "url(#inside)" });
     // FEM first: the methods' marks are hollow and leave its points to be seen.
-    for (const s of [...d.series].sort((a, b) => (b.source === "fem") - (a.source === "fem"))) {
+    for (const s of [...d.series].sort((a, b) => Boolean(engine(b.source)) - Boolean(engine(a.source)))) {
       const points = s.values.map((v, i) => (v === null ? null : [px(d.x[i]), py(v), i])).filter(Boolean);
-      if (s.source === "fem" && d.band) {
+      if (s.source === reference && d.band) {
         const up = points.map(([x, , i]) => `${x.toFixed(1)} ${py(s.values[i] + d.band[i]).toFixed(1)}`);
         const down = points.map(([x, , i]) => `${x.toFixed(1)} ${py(s.values[i] - d.band[i]).toFixed(1)}`).reverse();
         layer.append(element("path", { d: `M${[...up, ...down].join("L")}Z`, fill: colour("fem"), opacity: 0.16 }));
       }
-      if (s.source !== "fem" && points.length > 1) {
+      if (!engine(s.source) && points.length > 1) {
         layer.append(element("path", { class: "curve", "data-source": s.source, stroke: colour(s.source), "stroke-dasharray": DASH[s.source] || "none", d: `M${points.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}` }));
       }
       let last = null;
       for (const [x, y] of points) {
-        if (last && Math.hypot(x - last[0], y - last[1]) < (s.source === "fem" ? 7 : 12)) continue;
+        if (last && Math.hypot(x - last[0], y - last[1]) < (engine(s.source) ? 7 : 12)) continue;
         layer.append(mark(s.source, x, y));
         last = [x, y];
       }
@@ -193,7 +196,7 @@
 
   function sample(source) {
     const svg = element("svg", { width: 44, height: 16, "aria-hidden": "true" });
-    if (source !== "fem") svg.append(element("line", { class: "curve", x1: 1, x2: 43, y1: 8, y2: 8, stroke: colour(source), "stroke-dasharray": DASH[source] || "none" }));
+    if (!engine(source)) svg.append(element("line", { class: "curve", x1: 1, x2: 43, y1: 8, y2: 8, stroke: colour(source), "stroke-dasharray": DASH[source] || "none" }));
     svg.append(mark(source, 22, 8));
     return svg;
   }
@@ -202,7 +205,7 @@
   function readOut(d) {
     const { caseData, key, curve, quantity } = chosen();
     const body = byId("readout-rows");
-    const fem = curve.values.fem && curve.values.fem[quantity];
+    const fem = curve.values[reference] && curve.values[reference][quantity];
     const at = cursor !== null && cursor < d.x.length ? cursor : null;
     const p = at === null ? null : curve.points[at];
     byId("place").classList.toggle("unset", !p);
@@ -228,9 +231,9 @@
       const unit = d.stressUnit;
       cell(at === null ? "" : number(values[at] * unit, d.digitsY));
       const ownError = d.band && at !== null ? `± ${number(d.band[at], d.digitsY)}` : "";
-      cell(at === null ? "" : source === "fem" ? ownError : fem ? number((values[at] - fem[at]) * unit, d.digitsY) : "–");
+      cell(at === null ? "" : source === reference ? ownError : fem ? number((values[at] - fem[at]) * unit, d.digitsY) : "–");
       const e = errors[source];
-      cell(e ? number(e.max * unit, d.digitsY) : source === "fem" && errors.fem_error_max !== undefined ? `± ${number(errors.fem_error_max * unit, d.digitsY)}` : "");
+      cell(e ? number(e.max * unit, d.digitsY) : source === reference && errors.fem_error_max !== undefined ? `± ${number(errors.fem_error_max * unit, d.digitsY)}` : "");
       cell(e ? number(e.rms * unit, d.digitsY) : "");
       cell(e ? number(e.l1 * unit, d.digitsY) : "");
       return row;

@@ -7,6 +7,7 @@ use crate::base::number::{
 use crate::base::{Error, Result};
 use crate::report::plots;
 use crate::report::study_files::StudyFiles;
+use crate::study::{Engine, Source};
 use minijinja::{Environment, context};
 
 const PAGE: &str = include_str!("page.html");
@@ -67,7 +68,8 @@ fn render(
         caveats => CAVEATS,
         error_tables => errors::tables(files),
         times => times::rows(files),
-        any_ratio => files.study.rows.iter().any(|r| !files.study.text(r, "log10_speedup").is_empty()),
+        any_ratio => files.study.iter().any(|row| row.speedup.is_some()),
+        engines => engines(files),
         effects => effects::rows(files),
         details => solves::details(files),
         work => solves::work(files),
@@ -79,6 +81,12 @@ fn render(
         .get_template(name)
         .and_then(|t| t.render(context! { ..more, ..base }))
         .map_err(fault)
+}
+
+/// The references' names for readers, in the order of the times.
+fn engines(files: &StudyFiles) -> Vec<&str> {
+    let engines = files.sources().into_iter().filter_map(Source::engine);
+    engines.map(Engine::title).collect()
 }
 
 /// The forms in which templates write numbers.

@@ -14,7 +14,7 @@ mod speedup;
 #[cfg(test)]
 mod tests;
 
-pub use point::{Accuracy, Against, BEST, CURVES, CaseBench, Origin, Point, front};
+pub use point::{Against, BEST, BenchPoint, CURVES, CaseBench, Deviation, Origin, front};
 pub use record::{Bench, Machine};
-pub use run::{FemMeshes, Mesh, Setup, run};
+pub use run::{BenchSetup, FemMeshes, Mesh, run};
 pub use speedup::{Speedup, speedups};

@@ -12,12 +12,12 @@ use serde::{Deserialize, Serialize};
 /// The model whose ratio to FEM is stated; at the tightest tolerance it is the models' limit.
 pub const BEST: EdgeModel = EdgeModel::QuarterSpace;
 
-/// Curves of both bodies whose worst RMS is [`Accuracy::worst_rms`].
+/// Curves of both bodies whose worst RMS is [`Deviation::worst_rms`].
 pub const CURVES: [&str; 3] = ["surface-along-y", "surface-along-x", "depth-end"];
 
 /// How far an answer is from a reference (p0), outside the range that is left out.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub struct Accuracy {
+pub struct Deviation {
     /// The largest RMS of any one curve: of the pressure on its two lines, and of each stress on
     /// [`CURVES`]. This is the "error" of run time against error.
     pub worst_rms: f64,
@@ -31,7 +31,7 @@ pub struct Accuracy {
     pub stress_max: f64,
 }
 
-impl Accuracy {
+impl Deviation {
     /// From the rows of a comparison over `range`; `None` when nothing was compared.
     pub fn of(rows: &[ErrorRow], range: &Range) -> Option<Self> {
         let summary = summarise(rows, range)?;
@@ -79,7 +79,7 @@ pub enum Origin {
 
 /// One way to solve a case: what it took, and how good it is.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Point {
+pub struct BenchPoint {
     /// The model or FEM.
     pub source: Source,
     /// Where the time was taken.
@@ -100,16 +100,16 @@ pub struct Point {
     pub machine: Option<String>,
     /// Against FEM's finest mesh; for that mesh itself its difference to the next finest.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub to_fem: Option<Accuracy>,
+    pub to_fem: Option<Deviation>,
     /// Against quarter-space at the tightest tolerance; none for that solution itself.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub to_limit: Option<Accuracy>,
+    pub to_limit: Option<Deviation>,
     /// Why there is no answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub err: Option<String>,
 }
 
-impl Point {
+impl BenchPoint {
     /// A point that neither was timed nor compared.
     pub(super) fn new(source: impl Into<Source>, origin: Origin, setting: f64) -> Self {
         Self {
@@ -160,7 +160,7 @@ pub struct CaseBench {
     /// The FEM mesh that is the reference, in words.
     pub fem_reference: Option<String>,
     /// The points.
-    pub points: Vec<Point>,
+    pub points: Vec<BenchPoint>,
 }
 
 /// Of pairs of time and error those that no other beats in both, fastest first.

@@ -1,6 +1,6 @@
 //! A run as its file holds it, and the record that is built into the program.
 
-use super::point::{Against, CaseBench, Origin, Point};
+use super::point::{Against, BenchPoint, CaseBench, Origin};
 use super::speedup::{Speedup, speedups};
 use crate::base::{Error, Result};
 use crate::case::Case;
@@ -115,7 +115,7 @@ impl Bench {
         let live = found.points.iter().filter(|p| p.origin == Origin::LiveFem);
         let fem =
             live.filter(|p| p.timing.is_some()).min_by(|a, b| a.setting.total_cmp(&b.setting))?;
-        let same = |p: &&Point| (p.setting / case.accuracy.tolerance - 1.0).abs() < 1e-9;
+        let same = |p: &&BenchPoint| (p.setting / case.accuracy.tolerance - 1.0).abs() < 1e-9;
         let models = found.points.iter().filter(|p| p.origin == Origin::Model).filter(same);
         let methods: std::collections::BTreeMap<_, _> =
             models.filter_map(|p| Some((p.source.to_string(), p.timing?.with_spread()))).collect();

@@ -1,13 +1,13 @@
 //! The run: every case on FEM's meshes and by every model at every tolerance, compared with both
 //! references.
 
-use super::point::{Accuracy, BEST, CaseBench, Origin, Point};
+use super::point::{BEST, BenchPoint, CaseBench, Deviation, Origin};
 use crate::case::Case;
 use crate::fem::{self, Driver, MeshResult};
 use crate::stress::Curves;
 use crate::study::errors::Range;
 use crate::study::live::repeated;
-use crate::study::models::{Attempt, Models, Work};
+use crate::study::models::{Attempt, Jobs, Models};
 use crate::study::source::Engine;
 use crate::study::timing::Timing;
 use std::path::Path;
@@ -79,7 +79,7 @@ struct FemReference {
 }
 
 /// What a run needs.
-pub struct Setup<'a> {
+pub struct BenchSetup<'a> {
     /// The models, timed at least once.
     pub models: Models<'a>,
     /// Tolerances (p0), each once.
@@ -91,11 +91,11 @@ pub struct Setup<'a> {
 }
 
 /// A point with the curves of its answer.
-type Answered = (Point, Option<Curves>);
+type Answered = (BenchPoint, Option<Curves>);
 
 /// Runs every case on FEM's meshes, and then by every model at every tolerance. What fails is kept
 /// with its reason.
-pub fn run(cases: &[Case], setup: &Setup) -> Vec<CaseBench> {
+pub fn run(cases: &[Case], setup: &BenchSetup) -> Vec<CaseBench> {
     let stages = setup.tolerances.len() + 1;
     let fem: Vec<FemMeshes> = cases
         .iter()
@@ -140,10 +140,10 @@ fn models_at(
     step: &(dyn Fn(usize, usize, &str) + Sync),
 ) -> Vec<Vec<Answered>> {
     let cases: Vec<Case> = cases.iter().map(|c| c.clone().with_tolerance(tolerance)).collect();
-    let work = Work::new(&cases, models);
+    let jobs = Jobs::new(&cases, models);
     let done = AtomicUsize::new(0);
     let attempts =
-        work.run(&|what| step(done.fetch_add(1, Ordering::Relaxed) + 1, work.steps(), what));
+        jobs.run(&|what| step(done.fetch_add(1, Ordering::Relaxed) + 1, jobs.steps(), what));
     let of_model = |attempt: Attempt| {
         let (curves, err) = match attempt.solution {
             Ok(solution) => (Some(solution.curves), None),
@@ -151,11 +151,11 @@ fn models_at(
         };
         // No time counts for an answer that was not computed.
         let timing = |i: usize| curves.as_ref().and(attempt.timing.get(i)).copied();
-        let point = Point {
+        let point = BenchPoint {
             timing: timing(0),
             all_threads: timing(1),
             err,
-            ..Point::new(attempt.method, Origin::Model, tolerance)
+            ..BenchPoint::new(attempt.method, Origin::Model, tolerance)
         };
         (point, curves)
     };
@@ -164,10 +164,10 @@ fn models_at(
 
 /// The points of FEM, live meshes first.
 fn fem_points(meshes: &FemMeshes) -> Vec<Answered> {
-    let point = |origin, setting| Point::new(Engine::fenicsx(), origin, setting);
+    let point = |origin, setting| BenchPoint::new(Engine::fenicsx(), origin, setting);
     let live = meshes.live.iter().map(|(size, mesh)| match mesh {
         Ok(mesh) => (
-            Point {
+            BenchPoint {
                 unknowns: Some(mesh.result.summary.unknowns as u64),
                 timing: Some(mesh.timing),
                 ..point(Origin::LiveFem, *size)
@@ -175,12 +175,12 @@ fn fem_points(meshes: &FemMeshes) -> Vec<Answered> {
             Some(mesh.result.curves.clone()),
         ),
         Err(message) => {
-            (Point { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
+            (BenchPoint { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
         }
     });
     let recorded = meshes.recorded.iter().flat_map(|r| &r.meshes).map(|mesh| {
         let seconds = mesh.summary.total_seconds();
-        let point = Point {
+        let point = BenchPoint {
             unknowns: Some(mesh.summary.unknowns as u64),
             timing: Some(Timing::new(mesh.summary.ranks, &[seconds])),
             machine: Some(mesh.summary.processor().to_string()),
@@ -199,13 +199,13 @@ fn assess(
     limit: f64,
     range: &Range,
 ) -> CaseBench {
-    let is_limit = |p: &Point| p.source == BEST.into() && p.setting == limit;
+    let is_limit = |p: &BenchPoint| p.source == BEST.into() && p.setting == limit;
     let limit = points.iter().find(|(p, _)| is_limit(p)).and_then(|(_, s)| s.clone());
     let fem = Engine::fenicsx().into();
     // The finest mesh against itself would be exact.
     let own = reference
         .as_ref()
-        .and_then(|r| Accuracy::between(case, &r.finest, (&fem, r.next.as_ref()?), range));
+        .and_then(|r| Deviation::between(case, &r.finest, (&fem, r.next.as_ref()?), range));
     let points = points
         .into_iter()
         .map(|(mut point, curves)| {
@@ -215,12 +215,12 @@ fn assess(
                 if point.source.is_engine() && point.setting <= r.size {
                     return own;
                 }
-                Accuracy::between(case, &r.finest, (&source, &curves), range)
+                Deviation::between(case, &r.finest, (&source, &curves), range)
             });
             if !is_limit(&point) {
                 point.to_limit = limit
                     .as_ref()
-                    .and_then(|limit| Accuracy::between(case, limit, (&source, &curves), range));
+                    .and_then(|limit| Deviation::between(case, limit, (&source, &curves), range));
             }
             point
         })

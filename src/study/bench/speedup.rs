@@ -1,6 +1,6 @@
 //! FEM's time over a model's, at an error that both stay within.
 
-use super::point::{Against, BEST, CaseBench, Origin, Point};
+use super::point::{Against, BEST, BenchPoint, CaseBench, Origin};
 use crate::study::timing::Ratio;
 use serde::{Deserialize, Serialize};
 
@@ -45,13 +45,13 @@ pub fn speedups(cases: &[CaseBench], levels: &[f64]) -> Vec<Speedup> {
 }
 
 fn speedup(case: &CaseBench, level: f64, against: Against) -> Option<Speedup> {
-    let fastest = |chosen: &dyn Fn(&Point) -> bool, against: Against| {
-        let within = |p: &&Point| chosen(p) && p.error(against).is_some_and(|e| e <= level);
+    let fastest = |chosen: &dyn Fn(&BenchPoint) -> bool, against: Against| {
+        let within = |p: &&BenchPoint| chosen(p) && p.error(against).is_some_and(|e| e <= level);
         let timed = case.points.iter().filter(within).filter_map(|p| Some((p, p.timing?)));
         timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
     };
     let (fem, fem_time) = fastest(&|p| p.origin == Origin::LiveFem, Against::Fem)?;
-    let best = |p: &Point| p.origin == Origin::Model && p.source == BEST.into();
+    let best = |p: &BenchPoint| p.origin == Origin::Model && p.source == BEST.into();
     let (model, model_time) = fastest(&best, against)?;
     Some(Speedup {
         case: case.case.name.clone(),

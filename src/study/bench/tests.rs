@@ -16,7 +16,7 @@ fn cases() -> Vec<Case> {
 fn bench() -> Vec<CaseBench> {
     run(
         &cases(),
-        &Setup {
+        &BenchSetup {
             models: Models {
                 methods: vec![EdgeModel::Mirror, BEST],
                 repeats: 2,
@@ -30,9 +30,9 @@ fn bench() -> Vec<CaseBench> {
     )
 }
 
-fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> &'a Point {
+fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> &'a BenchPoint {
     let is_it =
-        |p: &&Point| p.source.name() == source && p.origin == origin && p.setting == setting;
+        |p: &&BenchPoint| p.source.name() == source && p.origin == origin && p.setting == setting;
     case.points.iter().find(is_it).unwrap()
 }
 

@@ -27,7 +27,7 @@ fn gates() -> Gates {
     parse(GATES, Path::new("gates.toml")).unwrap()
 }
 
-fn failed(outcomes: &[Outcome]) -> Vec<String> {
+fn failed(outcomes: &[GateOutcome]) -> Vec<String> {
     let failed = outcomes.iter().filter(|o| !o.passed);
     failed.map(|o| format!("{} {} {}: {}", o.kind.name(), o.method, o.name, o.note)).collect()
 }

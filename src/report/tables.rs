@@ -1,0 +1,255 @@
+//! The rows of a run's tables.
+
+use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
+use super::study_summary::RoleName;
+use crate::stress::{Critical, Curves, Quantity};
+use crate::study::effects::{self, Effects};
+use crate::study::factorial::half_normal_quantile;
+use crate::study::response::{self, Response};
+use crate::study::{CONTACT, CaseRun, ErrorRow, MethodRun, Range, ReferenceRun, Source, StudyRun};
+
+/// The machine of a time that was taken in the run.
+const HERE: &str = "this machine";
+
+/// One row for each case and source. Errors are in p0, depths in C. The seconds of a model are the
+/// median of warm repeats on one thread, those of FEM the wall-clock time of all stages.
+pub fn study(run: &StudyRun) -> Vec<StudyRow> {
+    let of_case = |case: &CaseRun| -> Vec<StudyRow> {
+        let methods = case.methods.iter().map(|m| method_row(case, m, &run.range));
+        methods.chain(case.references.iter().map(|r| reference_row(case, r, &run.range))).collect()
+    };
+    run.cases.iter().flat_map(of_case).collect()
+}
+
+impl StudyRow {
+    /// The row of a source without a result.
+    fn without_result(case: &CaseRun, source: Source, range: &Range) -> Self {
+        let (factors, hertz) = (case.case.factors(), case.case.hertz());
+        Self {
+            case: case.case.name.clone(),
+            source,
+            role: RoleName::of(&case.role),
+            load: factors.load,
+            slenderness: factors.slenderness,
+            length_ratio: factors.length_ratio,
+            c_m: hertz.c_m,
+            p0_pa: hertz.p0_pa,
+            load_n: case.case.load.force_n,
+            err: None,
+            converged: None,
+            iterations: None,
+            load_error_rel: None,
+            approach_m: None,
+            p_centre_pa: None,
+            p_max_pa: None,
+            p_max_at_m: [None; 2],
+            critical_body: None,
+            critical_von_mises_pa: None,
+            critical_at_m: [None; 3],
+            responses: vec![None; Response::all().count()],
+            pressure_further: vec![None; 2 * range.pressure_c.len().saturating_sub(1)],
+            fem_error_pressure: None,
+            fem_error_stress: None,
+            seconds: None,
+            seconds_spread: None,
+            seconds_cold: None,
+            seconds_all_threads: None,
+            threads: None,
+            speedup: None,
+            speedup_spread: None,
+            stages: [None; 3],
+            timed_on: None,
+            unknowns: None,
+        }
+    }
+
+    /// The row with the most stressed point.
+    fn with_critical(self, critical: Option<Critical>) -> Self {
+        let Some(critical) = critical else { return self };
+        Self {
+            critical_body: Some(critical.body),
+            critical_von_mises_pa: Some(critical.value * self.p0_pa),
+            critical_at_m: critical.at.map(|v| Some(v * self.c_m)),
+            ..self
+        }
+    }
+}
+
+fn method_row(case: &CaseRun, m: &MethodRun, range: &Range) -> StudyRow {
+    let row = StudyRow::without_result(case, m.method.into(), range);
+    let result = match &m.result {
+        Ok(result) => result,
+        Err(message) => return StudyRow { err: Some(message.clone()), ..row },
+    };
+    let (solved, errors) = (&result.solution.summary, result.summary.as_ref());
+    let (one, all) = (m.timing.first(), m.timing.get(1));
+    let ratio = response::speedup(case, m);
+    let further = errors.map(|e| e.pressure.iter().skip(1).flatten().map(|v| Some(*v)).collect());
+    StudyRow {
+        converged: Some(solved.converged),
+        iterations: Some(solved.iterations),
+        load_error_rel: Some(solved.load_error_rel),
+        approach_m: Some(solved.approach_m),
+        p_centre_pa: Some(solved.p_centre_pa),
+        p_max_pa: Some(solved.p_max_pa),
+        p_max_at_m: solved.p_max_at_m.map(Some),
+        responses: Response::all().map(|response| response.value(case, m)).collect(),
+        pressure_further: further.unwrap_or_else(|| row.pressure_further.clone()),
+        fem_error_pressure: errors.and_then(|e| e.ref_error_pressure),
+        fem_error_stress: errors.and_then(|e| e.ref_error_stress),
+        seconds: one.map(|t| t.median_s),
+        seconds_spread: one.filter(|t| t.repeats > 1).map(|t| t.spread_s()),
+        seconds_cold: one.and_then(|t| t.cold_s),
+        seconds_all_threads: all.map(|t| t.median_s),
+        threads: all.map(|t| t.threads),
+        speedup: ratio.map(|r| r.value),
+        speedup_spread: ratio.map(|r| r.plus_minus),
+        stages: [solved.seconds.setup, solved.seconds.contact, solved.seconds.stress].map(Some),
+        timed_on: Some(HERE.to_string()),
+        ..row.with_critical(result.critical)
+    }
+}
+
+fn reference_row(case: &CaseRun, r: &ReferenceRun, range: &Range) -> StudyRow {
+    let row = StudyRow::without_result(case, r.engine.clone().into(), range);
+    let reference = match &r.result {
+        Ok(reference) => reference,
+        Err(message) => return StudyRow { err: Some(message.clone()), ..row },
+    };
+    let p_centre = reference.curves.line("along-y").and_then(|line| line.p.first());
+    // The rows of the methods have the own error of the first reference, over the same points.
+    let is_first = case.references.first().is_some_and(|first| first.engine == r.engine);
+    let results = case.methods.iter().filter_map(|m| m.result.as_ref().ok());
+    let own = results.filter(|_| is_first).find_map(|result| result.summary.as_ref());
+    let from = &reference.provenance;
+    let here = from.live.then(|| HERE.to_string());
+    StudyRow {
+        p_centre_pa: p_centre.map(|p| p * row.p0_pa),
+        fem_error_pressure: own.and_then(|e| e.ref_error_pressure),
+        fem_error_stress: own.and_then(|e| e.ref_error_stress),
+        seconds: from.seconds,
+        seconds_spread: from.seconds_spread,
+        timed_on: here.or_else(|| from.machine.clone()),
+        unknowns: from.unknowns,
+        ..row.with_critical(r.critical)
+    }
+}
+
+/// The curves of every source of every case.
+fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, Source, &Curves)> {
+    run.cases.iter().flat_map(|case| {
+        let methods = case.methods.iter().filter_map(move |m| {
+            let result = m.result.as_ref().ok()?;
+            Some((case, m.method.into(), &result.solution.curves))
+        });
+        let references = case.references.iter().filter_map(move |r| {
+            let reference = r.result.as_ref().ok()?;
+            Some((case, r.engine.clone().into(), &reference.curves))
+        });
+        methods.chain(references)
+    })
+}
+
+/// The stresses of every source on the standard curves (Pa).
+pub fn curves(run: &StudyRun) -> Vec<CurveRow> {
+    let mut rows = Vec::new();
+    for (case, source, curves) in sources(run) {
+        let hertz = curves.hertz;
+        for curve in &curves.stress {
+            let points = curve.at.iter().zip(&curve.stress);
+            rows.extend(points.map(|(at, stress)| CurveRow {
+                case: case.case.name.clone(),
+                source: source.clone(),
+                body: curve.body,
+                curve: curve.name.clone(),
+                at_m: at.map(|v| v * hertz.c_m),
+                stress_pa: Quantity::ALL.map(|quantity| quantity.of(stress) * hertz.p0_pa),
+            }));
+        }
+    }
+    rows
+}
+
+/// The contact pressure of every source on the pressure lines (Pa).
+pub fn pressure(run: &StudyRun) -> Vec<PressureRow> {
+    let mut rows = Vec::new();
+    for (case, source, curves) in sources(run) {
+        let hertz = curves.hertz;
+        for line in &curves.pressure {
+            rows.extend(line.at.iter().zip(&line.p).map(|(at, p)| PressureRow {
+                case: case.case.name.clone(),
+                source: source.clone(),
+                line: line.name.clone(),
+                at_m: at.map(|v| v * hertz.c_m),
+                p_pa: p * hertz.p0_pa,
+            }));
+        }
+    }
+    rows
+}
+
+/// The own errors of the references (Pa), one row for each point that has one.
+pub fn own_errors(run: &StudyRun) -> Vec<OwnErrorRow> {
+    let references = run.cases.iter().flat_map(|case| {
+        case.references.iter().filter_map(move |r| Some((case, r, r.result.as_ref().ok()?)))
+    });
+    let mut rows = Vec::new();
+    for (case, run, reference) in references {
+        let hertz = reference.curves.hertz;
+        let row = |body: &str, curve: &str, at: [f64; 3]| OwnErrorRow {
+            case: case.case.name.clone(),
+            body: body.to_string(),
+            curve: curve.to_string(),
+            at_m: at.map(|v| v * hertz.c_m),
+            pressure_pa: None,
+            stress_pa: [None; Quantity::ALL.len()],
+            source: run.engine.clone().into(),
+        };
+        for line in &reference.curves.pressure {
+            rows.extend(line.at.iter().zip(line.own_error.iter().flatten()).map(|(at, e)| {
+                let pressure_pa = Some(e * hertz.p0_pa);
+                OwnErrorRow { pressure_pa, ..row(CONTACT, &line.name, [at[0], at[1], 0.0]) }
+            }));
+        }
+        for curve in &reference.curves.stress {
+            rows.extend(curve.at.iter().zip(curve.own_error.iter().flatten()).map(|(at, e)| {
+                let stress_pa = e.map(|v| Some(v * hertz.p0_pa));
+                OwnErrorRow { stress_pa, ..row(curve.body.name(), &curve.name, *at) }
+            }));
+        }
+    }
+    rows
+}
+
+/// The errors of every model in every case (p0, C).
+pub fn errors(run: &StudyRun) -> Vec<ErrorRow> {
+    let results = run.cases.iter().flat_map(|c| &c.methods).filter_map(|m| m.result.as_ref().ok());
+    results.flat_map(|result| result.errors.iter().cloned()).collect()
+}
+
+/// The effects on every response of every model.
+pub fn effects(run: &StudyRun, all: &[Effects]) -> Vec<EffectRow> {
+    let of_response = |e: &Effects| -> Vec<EffectRow> {
+        let a = &e.analysis;
+        let mut order: Vec<usize> = (0..a.effects.len()).collect();
+        order.sort_by(|&i, &j| a.effects[i].value.abs().total_cmp(&a.effects[j].value.abs()));
+        let rank = |i: usize| order.iter().position(|&j| j == i).expect("every effect is ranked");
+        let row = |(i, effect): (usize, &crate::study::factorial::Effect)| EffectRow {
+            method: e.method,
+            response: e.response,
+            unit: e.response.unit().to_string(),
+            term: effects::term(&run.factors, &effect.factors),
+            effect: effect.value,
+            half_normal_quantile: half_normal_quantile(rank(i), a.effects.len()),
+            pse: a.lenth.map(|l| l.pse),
+            me: a.lenth.map(|l| l.me),
+            sme: a.lenth.map(|l| l.sme),
+            verdict: a.lenth.map(|l| l.verdict(effect.value)),
+            mean: a.mean,
+            centre: e.centre,
+            curvature: a.curvature,
+        };
+        a.effects.iter().enumerate().map(row).collect()
+    };
+    all.iter().flat_map(of_response).collect()
+}
