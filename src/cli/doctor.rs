@@ -8,7 +8,8 @@ use crate::case::builtin_case;
 use crate::fem::{FemResults, tools};
 use crate::solve::{Options, solve};
 use clap::Args;
-use serde_json::{Value, json};
+use serde::Serialize;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Reports what is installed, which interpreter finite elements would use, and what to install.
@@ -31,12 +32,75 @@ pub(super) struct Arguments {
     json: bool,
 }
 
+/// The findings, as `--json` prints them.
+#[derive(Serialize)]
+struct Findings {
+    version: &'static str,
+    solver: SolverFindings,
+    /// Number of recorded cases.
+    records: usize,
+    fem: FemFindings,
+}
+
+/// The solve of a built-in case.
+#[derive(Serialize)]
+struct SolverFindings {
+    works: bool,
+    milliseconds: f64,
+}
+
+/// The tools for finite elements; a missing one is `None`.
+#[derive(Serialize)]
+struct FemFindings {
+    ready: bool,
+    gmsh: Option<String>,
+    /// The interpreter that finite elements would use.
+    interpreter: Option<String>,
+    interpreters: Vec<Interpreter>,
+    mpirun: Option<String>,
+    blas: Option<String>,
+}
+
+/// An interpreter that was checked.
+#[derive(Serialize)]
+struct Interpreter {
+    path: String,
+    /// The option or variable that names it, or the usual place.
+    source: &'static str,
+    /// Versions of the imported packages; `None` if it does not import dolfinx.
+    imports: Option<BTreeMap<String, String>>,
+}
+
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = builtin_case("flush-short").expect("a built-in case")?;
-    let solution = solve(&case, &Options::new(EdgeModel::QuarterSpace))?;
-    let solver_ms = solution.summary.seconds.total * 1e3;
-    let records = FemResults::embedded_names().count();
+    let summary = solve(&case, &Options::new(EdgeModel::QuarterSpace))?.summary;
+    let findings = Findings {
+        version: env!("CARGO_PKG_VERSION"),
+        solver: SolverFindings {
+            works: summary.converged,
+            milliseconds: summary.seconds.total * 1e3,
+        },
+        records: FemResults::embedded_names().count(),
+        fem: fem_findings(&arguments),
+    };
+    if arguments.json {
+        print_json(&findings)?;
+    } else {
+        print(&text(&findings))?;
+    }
+    if arguments.fem && !findings.fem.ready {
+        let tool = if findings.fem.gmsh.is_none() { "gmsh" } else { "dolfinx" };
+        return Err(Error::Missing {
+            tool: tool.into(),
+            searched: "see the findings above".into(),
+            remedy: tools::INSTALL.into(),
+        });
+    }
+    Ok(Exit::Done)
+}
 
+/// Looks for the tools for finite elements.
+fn fem_findings(arguments: &Arguments) -> FemFindings {
     let gmsh = tools::version(&arguments.gmsh);
     let mpirun = tools::version(Path::new("mpirun"));
     let mut interpreters = Vec::new();
@@ -46,81 +110,54 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         if imports.is_some() && chosen.is_none() {
             chosen = Some(path.clone());
         }
-        interpreters.push(
-            json!({"path": path.display().to_string(), "source": source, "imports": imports}),
-        );
+        interpreters.push(Interpreter { path: path.display().to_string(), source, imports });
     }
-    let blas = chosen.as_deref().and_then(tools::blas);
-    let fast_blas = blas.as_deref().is_none_or(|name| !tools::is_slow_blas(name));
-    let fem_ready = gmsh.is_some() && chosen.is_some();
-    let findings = json!({
-        "version": env!("CARGO_PKG_VERSION"),
-        "solver": {"works": solution.summary.converged, "milliseconds": solver_ms},
-        "records": records,
-        "fem": {
-            "ready": fem_ready,
-            "gmsh": gmsh,
-            "interpreter": chosen.as_ref().map(|path| path.display().to_string()),
-            "interpreters": interpreters,
-            "mpirun": mpirun,
-            "blas": blas,
-        },
-    });
-    if arguments.json {
-        print_json(&findings)?;
-    } else {
-        print(&text(&findings, fast_blas))?;
+    FemFindings {
+        ready: gmsh.is_some() && chosen.is_some(),
+        gmsh,
+        interpreter: chosen.as_ref().map(|path| path.display().to_string()),
+        interpreters,
+        mpirun,
+        blas: chosen.as_deref().and_then(tools::blas),
     }
-    if arguments.fem && !fem_ready {
-        return Err(Error::Missing {
-            tool: if gmsh.is_none() { "gmsh".into() } else { "dolfinx".to_string() },
-            searched: "see the findings above".into(),
-            remedy: tools::INSTALL.into(),
-        });
-    }
-    Ok(Exit::Done)
 }
 
 /// The findings for a reader.
-fn text(findings: &Value, fast_blas: bool) -> String {
-    let fem = &findings["fem"];
-    let or = |value: &Value, otherwise: &str| match value.as_str() {
-        Some(text) => text.to_string(),
-        None => otherwise.to_string(),
+fn text(findings: &Findings) -> String {
+    let fem = &findings.fem;
+    let or = |value: &Option<String>, otherwise: &str| {
+        value.clone().unwrap_or_else(|| otherwise.to_string())
     };
     let mut lines = vec![
-        format!("edgeline {}", or(&findings["version"], "")),
+        format!("edgeline {}", findings.version),
         format!(
             "semi-analytical solver: works ({} for a built-in case)",
-            duration(findings["solver"]["milliseconds"].as_f64().unwrap_or(f64::NAN) * 1e-3)
+            duration(findings.solver.milliseconds * 1e-3)
         ),
-        format!("recorded finite-element cases: {}", findings["records"]),
-        format!("gmsh: {}", or(&fem["gmsh"], "not found")),
+        format!("recorded finite-element cases: {}", findings.records),
+        format!("gmsh: {}", or(&fem.gmsh, "not found")),
     ];
-    for interpreter in fem["interpreters"].as_array().into_iter().flatten() {
-        let path = or(&interpreter["path"], "");
-        let source = or(&interpreter["source"], "");
-        let imports = match interpreter["imports"].as_object() {
-            Some(versions) => versions
-                .iter()
-                .map(|(name, version)| format!("{name} {}", or(version, "")))
-                .collect::<Vec<_>>()
-                .join(", "),
+    for Interpreter { path, source, imports } in &fem.interpreters {
+        let imports = match imports {
+            Some(versions) => {
+                let all = versions.iter().map(|(name, version)| format!("{name} {version}"));
+                all.collect::<Vec<_>>().join(", ")
+            }
             None => "does not import dolfinx".to_string(),
         };
-        let mark = if interpreter["path"] == fem["interpreter"] { " <- taken" } else { "" };
+        let mark = if fem.interpreter.as_ref() == Some(path) { " <- taken" } else { "" };
         lines.push(format!("interpreter {path} ({source}): {imports}{mark}"));
     }
-    lines.push(format!("mpirun: {}", or(&fem["mpirun"], "not found (needed for --ranks only)")));
-    lines.push(format!("BLAS: {}", or(&fem["blas"], "not known")));
-    if !fast_blas {
+    lines.push(format!("mpirun: {}", or(&fem.mpirun, "not found (needed for --ranks only)")));
+    lines.push(format!("BLAS: {}", or(&fem.blas, "not known")));
+    if fem.blas.as_deref().is_some_and(tools::is_slow_blas) {
         lines.push(
             "  this BLAS makes direct solves several times slower than they need be; \
              on Debian or Ubuntu: apt-get install libopenblas0-serial"
                 .into(),
         );
     }
-    if fem["ready"] == true {
+    if fem.ready {
         lines.push("finite elements: ready".into());
     } else {
         lines.push(format!("finite elements: not ready; {}", tools::INSTALL));

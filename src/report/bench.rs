@@ -10,8 +10,8 @@ use crate::study::{Engine, Source};
 use serde_json::Value;
 use std::path::Path;
 
-/// Writes the three files into a folder that is there; `bench.json`, which says that the run is
-/// complete, last.
+/// Writes the three files into an existing folder, `bench.json` last: its presence means that the
+/// run is complete.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
@@ -24,8 +24,8 @@ pub fn write(bench: &Bench, folder: &Path) -> Result<()> {
     write_set(folder, &files)
 }
 
-/// The text of `bench.json`: a line for each case, point and ratio, so that versions of a record can
-/// be compared line by line.
+/// The text of `bench.json`, with a line for each case, point and ratio, so that versions of a
+/// record can be compared line by line.
 pub fn json(bench: &Bench) -> String {
     let value = serde_json::to_value(bench).expect("a run is plain numbers and words");
     let mut text = String::new();
@@ -34,8 +34,8 @@ pub fn json(bench: &Bench) -> String {
     text
 }
 
-/// Adds a value: the run itself and lists of objects with a line for each entry, all else on one
-/// line.
+/// Adds a value. The run itself and lists of objects have a line for each entry; any other value is
+/// on one line.
 fn lines(value: &Value, depth: usize, text: &mut String) {
     let inner = "\n".to_string() + &"  ".repeat(depth + 1);
     let outer = "\n".to_string() + &"  ".repeat(depth);
@@ -63,7 +63,7 @@ fn lines(value: &Value, depth: usize, text: &mut String) {
     }
 }
 
-/// Time and error of a point, where it has both.
+/// Time and error of a point, if it has both.
 fn pair(point: &BenchPoint, against: Against) -> Option<(f64, f64)> {
     Some((point.seconds()?, point.error(against)?))
 }
@@ -114,24 +114,24 @@ const MEASURES: [(&str, Measure); 5] = [
 by_name!(Origin);
 
 columns!(ParetoRow, _range, {
-    case => ["case"],
-    source => ["source"],
-    origin => ["origin"],
-    setting => ["setting"],
-    unknowns => ["unknowns"],
-    err => ["err"],
-    seconds => ["seconds"],
-    seconds_spread => ["seconds_spread"],
-    repeats => ["repeats"],
-    threads => ["threads"],
-    seconds_cold => ["seconds_cold"],
-    seconds_all_threads => ["seconds_all_threads"],
-    all_threads => ["all_threads"],
-    timed_on => ["timed_on"],
+    case,
+    source,
+    origin,
+    setting,
+    unknowns,
+    err,
+    seconds,
+    seconds_spread,
+    repeats,
+    threads,
+    seconds_cold,
+    seconds_all_threads,
+    all_threads,
+    timed_on,
     to_fem => MEASURES.map(|(name, _)| format!("{name}_to_fem")),
-    front_fem => ["front_fem"],
+    front_fem,
     to_limit => MEASURES.map(|(name, _)| format!("{name}_to_limit")),
-    front_limit => ["front_limit"],
+    front_limit,
 });
 
 /// The rows of `pareto.csv`.
@@ -173,7 +173,7 @@ fn pareto_row(case: &CaseBench, point: &BenchPoint) -> ParetoRow {
     }
 }
 
-/// One entry of a panel: where it belongs, and its time and error.
+/// One entry of a panel: its source, and its time and error.
 struct Entry<'a> {
     source: &'a Source,
     origin: Origin,
@@ -192,7 +192,7 @@ fn entries(case: &CaseBench, against: Against) -> Vec<Entry<'_>> {
         .collect()
 }
 
-/// Over all cases that have a point: its median time and worst error.
+/// The median time and the worst error of each point over all cases that have it.
 fn summed_up(cases: &[CaseBench], against: Against) -> Vec<Entry<'_>> {
     let mut groups: Vec<(Entry, Vec<f64>)> = Vec::new();
     for entry in cases.iter().flat_map(|c| entries(c, against)) {
@@ -249,8 +249,8 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
     }
 }
 
-/// Run time against error: all cases together where there are several, then each; against what at least
-/// one case has.
+/// Run time against error: all cases together if there are several, then each case. A reference
+/// that no case has is left out.
 fn figure(bench: &Bench) -> Figure {
     let titles: Vec<(Against, String)> = [
         (Against::Fem, "against FEM's finest mesh".to_string()),

@@ -1,4 +1,5 @@
-//! Tables of results column by column: numbers stay numbers until a file or another program takes them.
+//! Tables of results column by column: numbers stay numbers until a file or another program takes
+//! them.
 
 /// A table; its columns are equally long.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,8 +44,8 @@ impl Values {
 }
 
 impl Columns {
-    /// The table with these rows, each the columns' names with their values; a table of no row has no
-    /// column. All rows have the columns of the first one.
+    /// The table with these rows, each the columns' names with their values; a table of no row has
+    /// no column. All rows have the columns of the first one.
     pub fn of_rows(
         name: &'static str,
         rows: impl IntoIterator<Item = Vec<(String, Value)>>,
@@ -68,8 +69,8 @@ impl Columns {
         Self { name, columns }
     }
 
-    /// The table as CSV; the numbers have as many digits as it takes to read them back exactly. Texts
-    /// are names and need no quotes.
+    /// The table as CSV; the numbers have as many digits as it takes to read them back exactly.
+    /// Texts are names and need no quotes.
     pub fn to_csv(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
         let mut text = names.join(",") + "\n";

@@ -1,4 +1,4 @@
-//! What the factors of a study do to the errors, in words.
+//! The effects of a study's factors on the errors, in words.
 
 use super::study_summary::EffectText;
 use crate::base::number::{signed, significant};
@@ -9,11 +9,11 @@ use crate::study::effects::{Effects, NotAnalysed, term};
 use crate::study::factorial::{Effect, Lenth, Verdict};
 use crate::study::response::{Measure, Of, Response};
 
-/// The responses that the report puts into words and plots.
+/// The responses that the report describes in words and plots.
 pub const TOLD: [Response; 4] =
     [Response::PRESSURE_RMS, Response::STRESS_RMS, Response::VON_MISES_MAX, Response::Log10Speedup];
 
-/// What a response is.
+/// A response in words.
 pub fn label(response: Response) -> String {
     match response {
         Response::Error(of, by) => {
@@ -56,14 +56,14 @@ pub fn not_analysed(reason: &NotAnalysed) -> String {
     }
 }
 
-/// What the effects on [`TOLD`] say.
+/// The effects on [`TOLD`] in words.
 pub fn told(run: &StudyRun, effects: &[Effects]) -> Vec<EffectText> {
     let told = effects.iter().filter(|e| TOLD.contains(&e.response));
     told.map(|e| EffectText { method: e.method, response: e.response, text: words(run, e) })
         .collect()
 }
 
-/// What matters for one response.
+/// The effects on one response in words.
 fn words(run: &StudyRun, effects: &Effects) -> String {
     let (response, analysis) = (effects.response, &effects.analysis);
     let unit = response.unit();
@@ -110,7 +110,7 @@ fn words(run: &StudyRun, effects: &Effects) -> String {
     text
 }
 
-/// Which of the effects, largest first, stand out by Lenth's limits.
+/// The effects, largest first, that exceed Lenth's limits.
 fn outstanding(ranked: &[&Effect], lenth: &Lenth, describe: &dyn Fn(&Effect) -> String) -> String {
     let with = |verdict: Verdict| -> Vec<String> {
         let chosen = ranked.iter().filter(|e| lenth.verdict(e.value) == verdict);

@@ -14,8 +14,8 @@ use rayon::prelude::*;
 /// Number of grid points of a quarter of a body across, along and into it.
 pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
 
-/// How far the field goes from the middle of the contact in x, beyond the roller's end in y, and
-/// into the body in z (C).
+/// Extent of the field from the middle of the contact in x, beyond the roller's end in y, and into
+/// the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
 
 /// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards: finer towards
@@ -27,7 +27,8 @@ fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     let x = shares(counts[0]).map(|t| REACH[0] * t).collect();
     let mut y: Vec<f64> =
         shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
-    // The sine of a right angle need not be exactly 1, and the end face is a special place.
+    // The computed sine of a right angle may differ from 1, but the last point must be on the end
+    // face.
     y[counts[1] - 1] = half;
     let ledge = half / factors.length_ratio - half;
     if body == BodyKind::Block && ledge > 1e-9 * half {
@@ -60,9 +61,9 @@ impl<'a> Quarter<'a> {
         self.stress.at((k * y.len() + j) * x.len() + i)
     }
 
-    /// The whole body in the global frame (m, Pa), in which z points into the block: the roller lies
-    /// at z < 0 and its shears across z change their sign. The arrays are `sigma_xx_pa` ... `sigma_yz_pa`,
-    /// `von_mises_pa` and `tau_max_pa`.
+    /// The whole body in the global frame (m, Pa), in which z points into the block: the roller
+    /// lies at z < 0 and its shears across z change their sign. The arrays are `sigma_xx_pa` ...
+    /// `sigma_yz_pa`, `von_mises_pa` and `tau_max_pa`.
     fn grid(&self) -> VtkGrid {
         let roller = self.body == BodyKind::Roller;
         let mut zs: Vec<usize> = (0..self.axes[2].len()).collect();
@@ -71,7 +72,7 @@ impl<'a> Quarter<'a> {
         }
         let side = if roller { -1.0 } else { 1.0 };
         let p0_pa = self.case.hertz().p0_pa;
-        // What is even or odd in x and y is computed once and copied.
+        // The quarter is computed once and mirrored.
         let quarter: Vec<[f32; 8]> = (0..self.stress.len())
             .into_par_iter()
             .map(|index| {
@@ -94,7 +95,7 @@ impl<'a> Quarter<'a> {
         VtkGrid { axes_m: self.axes_m(zs.iter().map(|&k| side * self.axes[2][k])), arrays }
     }
 
-    /// The contact pressure: what sigma_zz is on the loaded surface, in a grid of one layer.
+    /// The contact pressure, which is -sigma_zz on the loaded surface, in a grid of one layer.
     fn pressure(&self) -> VtkGrid {
         let p0_pa = self.case.hertz().p0_pa;
         let value = |index: usize| ((-self.stress.at(index).zz * p0_pa) as f32).max(0.0);
@@ -110,8 +111,8 @@ impl<'a> Quarter<'a> {
         (1..count).rev().map(|i| (i, -1.0)).chain((0..count).map(|i| (i, 1.0)))
     }
 
-    /// A scalar of the layers `zs` of the whole body, from its `value` at each point of the quarter;
-    /// `odd` in x and in y.
+    /// A scalar of the layers `zs` of the whole body, from its `value` at each point of the
+    /// quarter; `odd` in x and in y.
     fn mirrored(&self, zs: &[usize], odd: [bool; 2], value: impl Fn(usize) -> f32) -> Vec<f32> {
         let [nx, ny] = [self.axes[0].len(), self.axes[1].len()];
         let sign = |odd: bool, side: f32| if odd { side } else { 1.0 };
@@ -137,8 +138,8 @@ impl<'a> Quarter<'a> {
         [whole(&self.axes[0]), whole(&self.axes[1]), z.map(|z| z * c_m).collect()]
     }
 
-    /// Whether a point is near enough to the roller's edge for stresses to be singular: contours are
-    /// cut there at the largest value outside, and the largest value is looked for outside.
+    /// Whether a point is in the excluded surroundings of the roller's edge, where stresses may be
+    /// singular. Contours there are limited to the largest value outside.
     fn at_edge(&self, j: usize, k: usize) -> bool {
         let at = [0.0, self.axes[1][j], self.axes[2][k]];
         !away_from_edge(at, self.case.factors().slenderness, EDGE)
@@ -235,7 +236,7 @@ mod tests {
         let case = Case::find(Path::new("half-short")).unwrap();
         let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
         let quarter = |body| Quarter::new(&solved, body, [5, 7, 6]).unwrap();
-        // The block's grid goes on beyond the roller's end.
+        // The block's grid extends beyond the roller's end.
         assert_eq!(quarter(BodyKind::Block).stress.len(), 5 * (7 + 3) * 6);
         let quarter = quarter(BodyKind::Roller);
         assert_eq!(quarter.stress.len(), 5 * 7 * 6);

@@ -1,4 +1,4 @@
-//! The outcomes of gates as a table, as Markdown, as JUnit XML and as JSON.
+//! The outcomes of gates as a table, Markdown, JUnit XML and JSON.
 
 use crate::base::number::significant;
 use crate::study::gate::GateOutcome;
@@ -10,7 +10,7 @@ fn number(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_string(), |v| significant(v, 5))
 }
 
-/// How many gates hold, in words.
+/// The number of gates that hold, in words.
 pub fn headline(outcomes: &[GateOutcome]) -> String {
     let failed = outcomes.iter().filter(|o| !o.passed).count();
     if failed == 0 {
@@ -119,7 +119,8 @@ pub fn json(outcomes: &[GateOutcome]) -> Value {
     })
 }
 
-/// Text within XML: the five characters with a meaning, and controls that XML does not allow.
+/// Escapes text for XML: the five special characters, and control characters, which XML does not
+/// allow.
 fn escape(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in text.chars() {

@@ -1,4 +1,4 @@
-//! One file per form of output.
+//! The files that the program writes.
 
 pub mod bench;
 pub mod columns;

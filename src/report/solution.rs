@@ -1,5 +1,5 @@
-//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv` and
-//! `points.csv`.
+//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv`
+//! and `points.csv`.
 
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
@@ -8,8 +8,8 @@ use crate::host::{Lock, write_set};
 use crate::solve::{Options, Solution};
 use std::path::Path;
 
-/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV, and
-/// `summary.json` last, so that its presence means that all are there.
+/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as
+/// CSV, and `summary.json` last, so that its presence means that all are there.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
@@ -74,7 +74,7 @@ fn curves(solution: &Solution) -> Columns {
     Columns { name: "curves", columns }
 }
 
-/// The points that were asked for, in their order.
+/// The requested points, in their order.
 fn points(solution: &Solution, options: &Options) -> Columns {
     let bodies = options.points.iter().map(|point| point.body.name().to_string()).collect();
     let rows = options.points.iter().zip(&solution.points);

@@ -1,5 +1,5 @@
-//! The files of a study's run: tables and `summary.json`. Plots, page and Markdown are made from these
-//! files alone, so that all they show can be looked up there.
+//! The files of a study's run: tables and `summary.json`. Plots, page and Markdown are made from
+//! these files alone, so that all they show can be looked up there.
 
 use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
 use super::study_summary::StudySummary;

@@ -85,40 +85,40 @@ pub struct StudyRow {
 }
 
 columns!(StudyRow, range, {
-    case => ["case"],
-    source => ["source"],
-    role => ["role"],
+    case,
+    source,
+    role,
     load as Short => [FactorName::Load.name()],
     slenderness as Short => [FactorName::Slenderness.name()],
     length_ratio as Short => [FactorName::LengthRatio.name()],
-    c_m => ["c_m"],
-    p0_pa => ["p0_pa"],
-    load_n => ["load_n"],
-    err => ["err"],
-    converged => ["converged"],
-    iterations => ["iterations"],
-    load_error_rel => ["load_error_rel"],
-    approach_m => ["approach_m"],
-    p_centre_pa => ["p_centre_pa"],
-    p_max_pa => ["p_max_pa"],
+    c_m,
+    p0_pa,
+    load_n,
+    err,
+    converged,
+    iterations,
+    load_error_rel,
+    approach_m,
+    p_centre_pa,
+    p_max_pa,
     p_max_at_m => ["p_max_x_m", "p_max_y_m"],
-    critical_body => ["critical_body"],
-    critical_von_mises_pa => ["critical_von_mises_pa"],
+    critical_body,
+    critical_von_mises_pa,
     critical_at_m => ["critical_x_m", "critical_y_m", "critical_z_m"],
     responses => Response::all().map(Response::name),
     pressure_further => further(range),
-    fem_error_pressure => ["fem_error_pressure"],
-    fem_error_stress => ["fem_error_stress"],
-    seconds => ["seconds"],
-    seconds_spread => ["seconds_spread"],
-    seconds_cold => ["seconds_cold"],
-    seconds_all_threads => ["seconds_all_threads"],
-    threads => ["threads"],
-    speedup => ["speedup"],
-    speedup_spread => ["speedup_spread"],
+    fem_error_pressure,
+    fem_error_stress,
+    seconds,
+    seconds_spread,
+    seconds_cold,
+    seconds_all_threads,
+    threads,
+    speedup,
+    speedup_spread,
     stages => ["seconds_setup", "seconds_contact", "seconds_stress"],
-    timed_on => ["timed_on"],
-    unknowns => ["unknowns"],
+    timed_on,
+    unknowns,
 });
 
 /// The columns of the pressure's errors for each range but the first, which is that of the
@@ -163,10 +163,10 @@ pub struct CurveRow {
 }
 
 columns!(CurveRow, _range, {
-    case => ["case"],
-    source => ["source"],
-    body => ["body"],
-    curve => ["curve"],
+    case,
+    source,
+    body,
+    curve,
     at_m => ["x_m", "y_m", "z_m"],
     stress_pa => quantities(),
 });
@@ -199,11 +199,11 @@ pub struct PressureRow {
 }
 
 columns!(PressureRow, _range, {
-    case => ["case"],
-    source => ["source"],
-    line => ["line"],
+    case,
+    source,
+    line,
     at_m => ["x_m", "y_m"],
-    p_pa => ["p_pa"],
+    p_pa,
 });
 
 /// A row of `fem_error.csv`: a reference's own error at a point.
@@ -226,13 +226,13 @@ pub struct OwnErrorRow {
 }
 
 columns!(OwnErrorRow, _range, {
-    case => ["case"],
-    body => ["body"],
-    curve => ["curve"],
+    case,
+    body,
+    curve,
     at_m => ["x_m", "y_m", "z_m"],
-    pressure_pa => ["pressure_pa"],
+    pressure_pa,
     stress_pa => quantities(),
-    source => ["source"],
+    source,
 });
 
 impl OwnErrorRow {
@@ -244,18 +244,18 @@ impl OwnErrorRow {
 
 // `errors.csv`.
 columns!(ErrorRow, _range, {
-    case => ["case"],
-    method => ["method"],
-    body => ["body"],
-    curve => ["curve"],
-    quantity => ["quantity"],
-    excluded_c as Short => ["excluded_c"],
-    points => ["points"],
-    max => ["max"],
+    case,
+    method,
+    body,
+    curve,
+    quantity,
+    excluded_c as Short,
+    points,
+    max,
     max_at => ["max_x_c", "max_y_c", "max_z_c"],
-    rms => ["rms"],
-    l1 => ["l1"],
-    peak => ["peak"],
+    rms,
+    l1,
+    peak,
     peak_at => ["peak_x_c", "peak_y_c", "peak_z_c"],
     peak_ref => ["peak_fem"],
     peak_ref_at => ["peak_fem_x_c", "peak_fem_y_c", "peak_fem_z_c"],
@@ -295,17 +295,17 @@ pub struct EffectRow {
 }
 
 columns!(EffectRow, _range, {
-    method => ["method"],
-    response => ["response"],
-    unit => ["unit"],
-    term => ["term"],
-    effect => ["effect"],
-    half_normal_quantile => ["half_normal_quantile"],
-    pse => ["pse"],
-    me => ["me"],
-    sme => ["sme"],
-    verdict => ["verdict"],
-    mean => ["mean"],
-    centre => ["centre"],
-    curvature => ["curvature"],
+    method,
+    response,
+    unit,
+    term,
+    effect,
+    half_normal_quantile,
+    pse,
+    me,
+    sme,
+    verdict,
+    mean,
+    centre,
+    curvature,
 });

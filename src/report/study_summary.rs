@@ -1,4 +1,4 @@
-//! `summary.json` of a study: what the run states beside its tables.
+//! `summary.json` of a study: the facts about a run beside its tables.
 
 use crate::base::HertzScales;
 use crate::body::EdgeModel;
@@ -12,13 +12,13 @@ use crate::study::{BlockForm, Engine, Factor, Provenance, Range, Role, RollerFor
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Where the FEM answers of a run come from.
+/// The origin of a run's FEM curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum FemOrigin {
-    /// From records.
+    /// Records.
     Recorded,
-    /// Computed in the run.
+    /// The run itself.
     Live,
 }
 
@@ -33,7 +33,7 @@ pub struct StudySummary {
     pub date: String,
     /// The command.
     pub command: String,
-    /// Where FEM's answers come from.
+    /// The origin of the FEM curves.
     pub fem: FemOrigin,
     /// The machine.
     pub machine: Machine,
@@ -47,19 +47,19 @@ pub struct StudySummary {
     pub factors: Vec<Factor>,
     /// Number of contact problems solved.
     pub contact_problems_solved: usize,
-    /// The worst of each model.
+    /// The worst numbers of each model.
     pub method_summary: Vec<MethodSummary>,
-    /// The largest error that FEM states of itself.
+    /// The largest own error of FEM.
     pub fem_error: FemError,
     /// Whether there are gates and all hold.
     pub gates_hold: bool,
     /// Outcomes of the gates.
     pub gates: Vec<GateOutcome>,
-    /// What the effects say.
+    /// The effects in words.
     pub effects_in_words: Vec<EffectText>,
     /// Ratios at equal error on record.
     pub speedups: Vec<Speedup>,
-    /// What was left out, one sentence each.
+    /// What is missing, one sentence each.
     pub not_done: Vec<String>,
     /// The cases, in the study's order.
     pub cases: Vec<CaseSummary>,
@@ -76,16 +76,16 @@ pub struct Program {
     pub version: String,
 }
 
-/// The worst of one model over all cases (p0), and its times (s).
+/// The worst errors of one model over all cases (p0), and its times (s).
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct MethodSummary {
     /// The model.
     pub method: EdgeModel,
     /// Number of cases.
     pub cases: usize,
-    /// Those without an answer.
+    /// Number of cases without a solution.
     pub failed: usize,
-    /// Those compared with FEM.
+    /// Number of cases compared with FEM.
     pub compared: usize,
     /// [`Response::PRESSURE_RMS`].
     pub pressure_rms: Option<f64>,
@@ -105,7 +105,7 @@ pub struct MethodSummary {
     pub speedup: Option<Span>,
     /// Number of gates on this model.
     pub gates: usize,
-    /// Those that hold.
+    /// Number of these that hold.
     pub gates_passed: usize,
 }
 
@@ -118,7 +118,7 @@ pub struct Span {
     pub high: f64,
 }
 
-/// The largest error that FEM states of itself over the range of the comparison (p0).
+/// The largest own error of FEM over the range of the comparison (p0).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct FemError {
     /// Of a pressure.
@@ -127,7 +127,7 @@ pub struct FemError {
     pub stress: Option<f64>,
 }
 
-/// What the effects on one response of one model say.
+/// The effects on one response of one model in words.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EffectText {
     /// The model.
@@ -143,7 +143,7 @@ pub struct EffectText {
 pub struct CaseSummary {
     /// Its name.
     pub name: String,
-    /// Its part in the study.
+    /// Its role in the study.
     pub role: RoleName,
     /// W.
     #[serde(rename = "W")]
@@ -168,14 +168,14 @@ pub struct CaseSummary {
     pub block: Block,
     /// The reference that errors are taken against.
     pub fem: CaseReference,
-    /// The others, if there are any.
+    /// The other references by engine.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub references: BTreeMap<Engine, CaseReference>,
-    /// The models' parts.
+    /// The models.
     pub methods: BTreeMap<EdgeModel, CaseMethod>,
 }
 
-/// The part that a case plays in its study.
+/// The role of a case in its study.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum RoleName {
@@ -196,7 +196,7 @@ pub enum CaseReference {
         /// Why.
         missing: String,
     },
-    /// Where the curves come from.
+    /// The origin of the curves.
     Found(Box<Provenance>),
 }
 
@@ -213,7 +213,7 @@ pub enum CaseMethod {
     Solved {
         /// Repeated timing on one thread and on all.
         timing: Vec<Timing>,
-        /// How it was resolved.
+        /// The resolution and other details of the solver.
         details: Box<Details>,
     },
 }
@@ -230,7 +230,7 @@ impl RoleName {
 }
 
 impl CaseSummary {
-    /// Where the curves come from that errors are taken against, if there are any.
+    /// The origin of the curves that errors are taken against, if there are any.
     pub fn provenance(&self) -> Option<&Provenance> {
         match &self.fem {
             CaseReference::Found(provenance) => Some(provenance),
@@ -238,7 +238,7 @@ impl CaseSummary {
         }
     }
 
-    /// How the models that have a solution were resolved.
+    /// The solver's details of each model that has a solution.
     pub fn details(&self) -> impl Iterator<Item = (EdgeModel, &Details)> {
         self.methods.iter().filter_map(|(method, solved)| match solved {
             CaseMethod::Solved { details, .. } => Some((*method, &**details)),

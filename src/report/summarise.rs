@@ -1,4 +1,4 @@
-//! What a run of a study comes to: its `summary.json`.
+//! The summary of a study's run: the content of `summary.json`.
 
 use super::effects_text;
 use super::study_summary::{
@@ -13,21 +13,21 @@ use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
 use crate::study::{CaseRun, MethodRun, ReferenceRun, StudyRun};
 
-/// What the files state about a run beyond its numbers.
+/// The facts about a run beside its numbers.
 pub struct Context<'a> {
     /// When it ran (UTC, ISO 8601).
     pub date: &'a str,
     /// The command.
     pub command: &'a str,
-    /// Where FEM's answers come from.
+    /// The origin of the FEM curves.
     pub fem: FemOrigin,
-    /// This machine.
+    /// The machine.
     pub machine: Machine,
     /// Wall-clock seconds of the whole run.
     pub seconds: f64,
     /// Outcomes of the gates.
     pub gates: &'a [GateOutcome],
-    /// Ratios at equal error on record, where FEM did not run now.
+    /// Recorded ratios at equal error; empty if FEM runs live.
     pub speedups: &'a [Speedup],
 }
 
@@ -111,7 +111,7 @@ fn case_reference(run: &ReferenceRun) -> CaseReference {
     }
 }
 
-/// What was left out: analyses, then comparisons and solves, one sentence each.
+/// What is missing: analyses, then comparisons and solves, one sentence each.
 fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
     let mut all: Vec<String> = not_analysed.iter().map(effects_text::not_analysed).collect();
     for c in &run.cases {
@@ -141,7 +141,7 @@ fn fem_error(run: &StudyRun) -> FemError {
     }
 }
 
-/// The worst of one model over all cases.
+/// The worst numbers of one model over all cases.
 fn worst(run: &StudyRun, method: EdgeModel, gates: &[GateOutcome]) -> MethodSummary {
     let runs = || {
         run.cases.iter().flat_map(move |c| {

@@ -1,5 +1,5 @@
-//! The CSV file of a sweep: one row a case in the order of the input, written as the rows come, so
-//! that a run that is stopped at any moment goes on where it was.
+//! The CSV file of a sweep: one row for each case, in the order of the input. Rows are written as
+//! soon as they are known, so that a stopped run can be continued.
 
 use super::columns::Value;
 use super::table::number;
@@ -21,7 +21,7 @@ pub struct RowLabel {
     pub cells: Vec<String>,
     /// The edge model.
     pub method: &'static str,
-    /// The tolerance asked for on the command line.
+    /// The tolerance of the command line.
     pub tolerance: Option<f64>,
 }
 
@@ -54,7 +54,8 @@ const CRITICAL: [(&str, Number); 5] = [
     ("critical_z_m", |_, found| found.critical.at[2] * found.hertz.c_m),
 ];
 
-/// The results of a row by their columns, in their order; of a row that failed, only `err` is there.
+/// The results of a row by their columns, in their order; of a row that failed, only `err` is
+/// there.
 pub fn results(outcome: &Outcome) -> Vec<(String, Value)> {
     let solved = outcome.as_ref().ok();
     let number = |name: &str, of: &dyn Fn(&Case, &KeyResults) -> f64| {
@@ -75,7 +76,7 @@ pub fn results(outcome: &Outcome) -> Vec<(String, Value)> {
     row
 }
 
-/// A text that takes no second line, so that a line of the file is a row.
+/// The text on one line, so that each line of the file is a row.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
@@ -88,32 +89,47 @@ fn line(cells: &[String]) -> String {
     String::from_utf8(bytes).expect("text in, text out")
 }
 
+/// Opens a file, or creates it, and locks it for other processes.
+fn open_locked(path: &Path) -> Result<File> {
+    let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
+    let mut options = OpenOptions::new();
+    let file = options.read(true).write(true).create(true).truncate(false).open(path);
+    let file = file.map_err(io("open"))?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(Error::Busy { path: path.to_path_buf(), pid: None }),
+        // Some file systems have no locks. There the user must not start two runs into one file.
+        Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => Ok(file),
+        Err(TryLockError::Error(e)) => Err(io("lock")(e)),
+    }
+}
+
 /// The file of a running sweep, locked for other processes.
 #[derive(Debug)]
 pub struct SweepFile {
     path: PathBuf,
     file: File,
-    /// The rows that are to be written, in order, and which is next.
+    /// The rows of the file in order, and the place of the next one.
     order: Vec<usize>,
     next: usize,
-    /// Rows that came before one that is written before them.
+    /// Rows that wait for an earlier row.
     waiting: BTreeMap<usize, String>,
-    /// Rows that were there already.
+    /// Number of rows of an earlier run.
     kept: usize,
-    /// Rows with an `err`, those that were there already included.
+    /// Number of rows with an `err`, including those of an earlier run.
     failed: usize,
 }
 
 impl SweepFile {
-    /// Makes the file or goes on with one that is there. `columns` are the sweep's own; `order` holds
-    /// the indices of the rows that belong into the file, ascending; `label` tells what a row is called, so
-    /// that the file of another sweep is not gone on with.
+    /// Creates the file or continues an existing one. `columns` are the sweep's own; `order` holds
+    /// the indices of the rows of the file, ascending; `label` gives the label of a row, by which
+    /// the file of another sweep is recognised and refused.
     ///
-    /// A last line without its end, as a killed run leaves it, is dropped.
+    /// An incomplete last line, which a killed run may leave, is removed.
     ///
     /// # Errors
-    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it holds something
-    /// else than the beginning of this sweep, and [`Error::Io`].
+    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it is not the
+    /// beginning of this sweep, and [`Error::Io`].
     pub fn open(
         path: &Path,
         columns: &[String],
@@ -121,22 +137,7 @@ impl SweepFile {
         label: impl Fn(usize) -> RowLabel,
     ) -> Result<Self> {
         let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
-        let mut file = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)
-            .map_err(io("open"))?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => {
-                return Err(Error::Busy { path: path.to_path_buf(), pid: None });
-            }
-            // A file system without locks: two runs into one file are then the user's own care.
-            Err(TryLockError::Error(e)) if e.kind() == std::io::ErrorKind::Unsupported => {}
-            Err(TryLockError::Error(e)) => return Err(io("lock")(e)),
-        }
+        let mut file = open_locked(path)?;
         let header: Vec<String> = std::iter::once("row".to_string())
             .chain(columns.iter().map(|c| one_line(c)))
             .chain(["method".to_string()])
@@ -144,12 +145,12 @@ impl SweepFile {
             .collect();
         let header = line(&header);
         let size = file.metadata().map_err(io("read"))?.len();
-        let what = format!("going on with {}", path.display());
+        let what = format!("continuing {}", path.display());
         check_memory(&what, size as f64, "give another --out")?;
         let mut bytes = Vec::new();
         file.read_to_end(&mut bytes).map_err(io("read"))?;
         let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
-        // A row that was cut off may end within a character.
+        // An incomplete row may end within a character.
         let text = String::from_utf8_lossy(&bytes[..whole]);
         let mut own = Self {
             path: path.to_path_buf(),
@@ -177,7 +178,7 @@ impl SweepFile {
         Ok(own)
     }
 
-    /// Checks the rows that are there.
+    /// Checks the existing rows.
     fn recognise(&mut self, text: &str, label: &impl Fn(usize) -> RowLabel) -> Result<()> {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
         for (i, record) in reader.records().enumerate() {
@@ -214,12 +215,12 @@ impl SweepFile {
         }
     }
 
-    /// Rows that were there already.
+    /// Number of rows of an earlier run.
     pub fn kept(&self) -> usize {
         self.kept
     }
 
-    /// Rows with an `err`.
+    /// Number of rows with an `err`.
     pub fn failed(&self) -> usize {
         self.failed
     }
@@ -229,7 +230,7 @@ impl SweepFile {
         self.order[self.next..].binary_search(&row).is_ok()
     }
 
-    /// Takes a row; it is written, whole, as soon as all rows before it are.
+    /// Adds a row. It is written as soon as all rows before it are written.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be written.
@@ -256,7 +257,7 @@ impl SweepFile {
 
     fn append(&mut self, text: &str, rows: usize) -> Result<()> {
         let io = |source| Error::Io { action: "write", path: self.path.clone(), source };
-        // Rows in a file that somebody removed are lost: there is no name to read them by.
+        // Rows in a removed file would be lost: it has no name any more.
         let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
         let there = std::fs::metadata(&self.path).map_err(io)?;
         if identity(there) != identity(self.file.metadata().map_err(io)?) {
@@ -269,7 +270,7 @@ impl SweepFile {
         Ok(())
     }
 
-    /// Makes sure that the rows outlive a power cut.
+    /// Stores the rows on the disk, so that they survive a power cut.
     ///
     /// # Errors
     /// [`Error::Io`] when they cannot be stored.

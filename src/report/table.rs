@@ -1,5 +1,5 @@
-//! Tables as CSV files. A row is a struct; one list says which columns each of its fields takes, and
-//! rows are written and read by that list.
+//! Tables as CSV files. A row is a struct; one list says which columns each of its fields takes,
+//! and rows are written and read by that list.
 
 use crate::base::number::significant;
 use crate::base::{Error, Result};
@@ -45,13 +45,19 @@ pub trait Row: Sized {
     fn from_cells(fields: &[&[&str]]) -> std::result::Result<Self, usize>;
 }
 
-/// Implements [`Row`] for a struct: `field => [names of its columns]`, in the order of the file. With
-/// `field as Short` the number is written by [`Short`]. The names may use the range of the errors.
+/// Implements [`Row`] for a struct by the list of its fields in the order of the file. A field is
+/// the column of its name; `field => [names]` names its columns, which may depend on the range of
+/// the errors. [`Short`] writes the number of `field as Short`.
 macro_rules! columns {
-    ($row:ty, $range:ident, { $($field:ident $(as $form:ident)? => $names:expr,)* }) => {
+    ($row:ty, $range:ident, { $($field:ident $(as $form:ident)? $(=> $names:expr)?,)* }) => {
         impl $crate::report::table::Row for $row {
             fn columns($range: &$crate::study::Range) -> Vec<Vec<String>> {
-                vec![$($names.into_iter().map(String::from).collect()),*]
+                vec![$(
+                    $crate::report::table::columns!(@names $field $(, $names)?)
+                        .into_iter()
+                        .map(String::from)
+                        .collect()
+                ),*]
             }
 
             fn cells(&self) -> Vec<Vec<String>> {
@@ -70,6 +76,8 @@ macro_rules! columns {
             }
         }
     };
+    (@names $field:ident) => { [stringify!($field)] };
+    (@names $field:ident, $names:expr) => { $names };
     (@bind $field:ident) => { $field };
     (@bind $field:ident, $form:ident) => { $crate::report::table::$form($field) };
     (@form $value:expr) => { $value };
@@ -304,10 +312,10 @@ mod tests {
     }
 
     columns!(Sample, range, {
-        name => ["name"],
-        source => ["source"],
+        name,
+        source,
         at => ["x", "y"],
-        level as Short => ["level"],
+        level as Short,
         errors => range.pressure_c.iter().map(|c| format!("error_{c}C")),
     });
 

@@ -16,9 +16,9 @@ pub fn sentences(summary: &StudySummary) -> Vec<String> {
     all
 }
 
-/// How far the models are off FEM.
+/// The deviations of the models from FEM.
 fn accuracy(summary: &StudySummary) -> Vec<String> {
-    // The last method is the most complete one: the others are measured by how much they miss.
+    // The last method is the most complete one. For the others the largest error is given.
     let Some((best, others)) = summary.method_summary.split_last() else { return Vec::new() };
     let name = best.method;
     let first = match (best.pressure_rms, best.stress_rms, best.stress_max) {
@@ -42,7 +42,7 @@ fn accuracy(summary: &StudySummary) -> Vec<String> {
     std::iter::once(first).chain((!missed.is_empty()).then_some(others)).collect()
 }
 
-/// Four digits after the point; smaller numbers as such.
+/// Four digits after the point; one significant digit for smaller numbers.
 fn fraction(v: f64) -> String {
     if v != 0.0 && v.abs() < 5e-5 { significant(v, 1) } else { fixed(v, 4) }
 }
@@ -57,7 +57,7 @@ fn gates(gates: &[GateOutcome]) -> String {
     }
 }
 
-/// The largest error that FEM states of itself.
+/// The largest own error of FEM.
 fn fem_error(own: &FemError) -> Option<String> {
     Some(format!(
         "FEM itself changes by up to {} p0 in pressure and {} p0 in a stress from its second finest \
@@ -97,7 +97,7 @@ fn time(summary: &StudySummary) -> Option<String> {
     Some(text)
 }
 
-/// What the record of times says at the smallest error that a FEM mesh of it reached.
+/// The recorded ratios at the smallest error that a recorded FEM mesh reached.
 fn equal_error(speedups: &[Speedup]) -> Option<String> {
     let own = || speedups.iter().filter(|s| s.against == Against::Limit);
     let level = own().map(|s| s.level).reduce(f64::min)?;

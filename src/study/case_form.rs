@@ -1,5 +1,5 @@
-//! The form of a case in the files of runs, `bench.json` and `summary.json`: serde takes it by
-//! `with`. A body's material is a table of its own there, where case files and records have none.
+//! The form of a case in the files of runs, `bench.json` and `summary.json`, for serde's `with`.
+//! There a body's material is a table of its own; in case files and records it is not.
 
 use crate::base::Material;
 use crate::case::{Accuracy, Block, Case, Load, Roller};

@@ -1,14 +1,15 @@
-//! Two-level designs, full and fractional, and what is confounded in them.
+//! Two-level designs, full and fractional, and their aliases.
 //!
-//! A design 2^(k-p) has k factors, each at two levels, in 2^(k-p) runs. The first k - p factors, the
-//! basic ones, run through all of their combinations; each of the others is a product of basic
-//! factors that its generator names, `E = ABCD`. A product of factors that is the same in all runs is
-//! a word of the defining relation. Two effects are aliases, and only their sum can be estimated,
-//! where their product is such a word. The resolution is the length of the shortest word: with III
-//! a main effect is confounded with interactions of two factors, with V with those of four.
+//! A design 2^(k-p) has k factors, each at two levels, in 2^(k-p) runs. The first k - p factors are
+//! the basic factors; the runs contain all combinations of their levels. Each other factor is a
+//! product of basic factors, which its generator names: `E = ABCD`. A product of factors that is
+//! the same in all runs is a word of the defining relation. Two effects are aliases if their
+//! product is such a word: only their sum can be estimated. The resolution is the length of the
+//! shortest word. In a design of resolution III a main effect is confounded with interactions of
+//! two factors, in one of resolution V with those of four.
 //!
-//! Source: D. C. Montgomery, "Design and Analysis of Experiments", 8th edition, 2013, chapter 8. Its
-//! examples are the tests.
+//! Source: D. C. Montgomery, "Design and Analysis of Experiments", 8th edition, 2013, chapter 8.
+//! Its examples are the tests.
 
 use super::factorial::Effect;
 use crate::base::{Error, Result};
@@ -17,7 +18,7 @@ use std::fmt;
 /// Letters of the factors, in their order; I is the identity.
 const LETTERS: &[u8] = b"ABCDEFGHJKLMNOP";
 
-/// Most runs of a design, to refuse what nobody means.
+/// Largest number of runs of a design; a larger one is a mistake.
 const MAX_RUNS: usize = 4096;
 
 /// A product of factors with its sign, such as `-ABD`; without a factor it is `I`.
@@ -29,7 +30,7 @@ pub struct Word {
 }
 
 impl Word {
-    /// Reads a word such as `ABC` or `-BD`. `None` where a letter is no factor's or is there twice.
+    /// Reads a word such as `ABC` or `-BD`. `None` if a letter is no factor or occurs twice.
     pub fn parse(text: &str) -> Option<Self> {
         let text = text.trim();
         let (letters, negative) = match text.strip_prefix('-') {
@@ -143,8 +144,8 @@ impl Design {
         self.basic + self.generated.len()
     }
 
-    /// The levels, +1 or -1, of all factors in each run, in standard order: the first factor changes
-    /// fastest.
+    /// The levels, +1 or -1, of all factors in each run, in standard order: the first factor
+    /// changes fastest.
     pub fn runs(&self) -> Vec<Vec<i8>> {
         let level = |run: usize, factor: usize| if run >> factor & 1 == 1 { 1 } else { -1 };
         (0..1 << self.basic)
@@ -260,8 +261,8 @@ mod tests {
         words(&short).join(" + ")
     }
 
-    /// What the words of the defining relation say holds in every run, and the runs are all different
-    /// and balanced.
+    /// What the words of the defining relation say holds in every run, and the runs are all
+    /// different and balanced.
     fn check_runs(design: &Design) {
         let runs = design.runs();
         for word in design.defining_relation() {

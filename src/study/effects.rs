@@ -1,4 +1,4 @@
-//! What the factors of a study do to the errors.
+//! The effects of the factors of a study on the errors.
 
 use super::factorial::{self, Analysis};
 use super::response::Response;
@@ -20,18 +20,18 @@ pub struct Effects {
     pub centre: Option<f64>,
 }
 
-/// What could not be analysed.
+/// An analysis that is not possible.
 #[derive(Debug, Clone, PartialEq)]
 pub enum NotAnalysed {
-    /// Anything: the study is no two-level design.
+    /// None at all: the study is no two-level design.
     NoDesign,
-    /// Anything: not all corners could be compared.
+    /// None at all: not all corners could be compared.
     NothingCompared,
     /// A response of these methods, which have no value of it at some corner.
     Response(Response, Vec<EdgeModel>),
 }
 
-/// Analyses every response of every method. The second list says what could not be analysed.
+/// Analyses every response of every method. The second list has the analyses that are not possible.
 pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
     if run.factors.is_empty() {
         return (Vec::new(), vec![NotAnalysed::NoDesign]);

@@ -1,9 +1,9 @@
 //! Error measures of a source against a reference on the same points.
 //!
 //! Lengths are in units of C, stresses and pressures in units of p0. The roller's edge is the line
-//! y = S_l, z = 0 (any x): stress and pressure are singular or very steep there, so points nearer
-//! to it than a stated distance are left out. The distance is measured in space; on `depth-end` it
-//! is the depth.
+//! y = S_l, z = 0 (any x): stress and pressure are singular or very steep there. Points nearer to
+//! it than a given distance are excluded. The distance is measured in space; on `depth-end` it is
+//! the depth.
 //!
 //! With e the difference at the retained points and w trapezoid weights of the curve's arc length
 //! (segments with a point left out do not count), the measures are
@@ -18,13 +18,13 @@ use serde::{Deserialize, Serialize};
 /// The name that stands in place of a body for the contact pressure.
 pub const CONTACT: &str = "contact";
 
-/// Over which range errors are taken.
+/// The range over which errors are taken.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Range {
-    /// Distance from the roller's edge within which stresses are left out (C), >= 0.
+    /// Distance from the roller's edge within which stresses are excluded (C), >= 0.
     pub stress_c: f64,
-    /// The same for pressure (C); one set of rows for each, the first is the one of the summaries.
+    /// The same for pressure (C): one set of rows for each distance. Summaries use the first.
     pub pressure_c: Vec<f64>,
 }
 
@@ -47,9 +47,9 @@ pub struct ErrorRow {
     pub curve: String,
     /// A [`Quantity`]'s name or `pressure`.
     pub quantity: String,
-    /// Distance from the roller's edge left out (C).
+    /// Excluded distance from the roller's edge (C).
     pub excluded_c: f64,
-    /// Points that were compared.
+    /// Number of points compared.
     pub points: usize,
     /// Largest difference (p0).
     pub max: f64,
@@ -156,7 +156,7 @@ fn matching(reference: &[[f64; 3]], at: &[[f64; 3]], what: &str) -> Result<Vec<u
         .collect()
 }
 
-/// One comparison: what it is called, and the numbers of both sides on the reference's points.
+/// One comparison: its names, and the values of both sides at the reference's points.
 struct Pair<'a> {
     body: &'a str,
     curve: &'a str,
@@ -199,11 +199,11 @@ impl Pair<'_> {
     }
 }
 
-/// Errors of `candidate`, the answer of `source`, against `reference`: one row for each quantity of each
-/// curve of the reference and for each pressure line and range.
+/// Errors of `candidate`, the curves of `source`, against `reference`: one row for each quantity of
+/// each curve of the reference, and one for each pressure line and range.
 ///
 /// `half_length` is the roller's half-length S_l (C). Curves of the reference that the candidate
-/// was not asked for are left out; a curve that it has, but on other points, is an error.
+/// does not have are left out; a curve on other points is an error.
 ///
 /// # Errors
 /// [`Error::Value`] when a point of the reference is missing from the candidate's curve.
@@ -259,8 +259,8 @@ pub fn compare(
 }
 
 /// The largest von Mises stress of all curves. On a depth curve the parabola through the largest
-/// point and its neighbours gives value and depth, so that the place is not tied to the sampling.
-/// `None` when no point is left.
+/// point and its neighbours gives value and depth, so that the place does not depend on the
+/// sampling. `None` when no point is left.
 pub fn critical_point(curves: &Curves, half_length: f64, excluded_c: f64) -> Option<Critical> {
     let mut best: Option<Critical> = None;
     for curve in &curves.stress {
@@ -313,8 +313,8 @@ pub struct ErrorSummary {
     pub ref_error_stress: Option<f64>,
 }
 
-/// Sums up the rows of one source in one case. The RMS over several curves is the root of the mean
-/// of their squares, each curve counting the same. `None` when there is nothing to sum up.
+/// Summarises the rows of one source in one case. The RMS over several curves is the root of the
+/// mean of their squares, with equal weights for all curves. `None` without rows.
 pub fn summarise(rows: &[ErrorRow], range: &Range) -> Option<ErrorSummary> {
     let both = |select: &dyn Fn(&ErrorRow) -> bool| -> Option<[f64; 2]> {
         let chosen: Vec<&ErrorRow> = rows.iter().filter(|r| select(r)).collect();

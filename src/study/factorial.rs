@@ -1,9 +1,8 @@
 //! Effects of a two-level factorial study.
 //!
-//! A study is deterministic: repeating a run gives the same numbers, so there are no replicates to
-//! estimate an error from. Lenth's pseudo standard error takes the effects that look inactive for
-//! noise instead (R. V. Lenth, "Quick and Easy Analysis of Unreplicated Factorials",
-//! Technometrics 31 (1989) 469-473). What it calls noise is here the sum of all small effects.
+//! A study is deterministic: a repeated run gives the same numbers, so no error can be estimated
+//! from replicates. Instead, Lenth's pseudo standard error treats the small effects as noise (R. V.
+//! Lenth, "Quick and Easy Analysis of Unreplicated Factorials", Technometrics 31 (1989) 469-473).
 //!
 //! An effect is the mean of the response at the factor's high level less the mean at its low level
 //! (for an interaction: where the product of the coded levels is +1 less where it is -1), so it is
@@ -29,7 +28,7 @@ pub struct Analysis {
     pub mean: f64,
     /// All 2^k - 1 effects in standard order (A, B, AB, C, AC, BC, ABC).
     pub effects: Vec<Effect>,
-    /// Lenth's limits; `None` for fewer than three effects, of which no limit can be made.
+    /// Lenth's limits; `None` for fewer than three effects.
     pub lenth: Option<Lenth>,
     /// Mean of the corners less the mean at the centre, where the study has a centre point.
     pub curvature: Option<f64>,
@@ -46,7 +45,7 @@ pub struct Lenth {
     pub sme: f64,
 }
 
-/// How sure one can be that an effect is not noise.
+/// How an effect compares with Lenth's limits.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Verdict {
@@ -68,14 +67,14 @@ impl Lenth {
         let magnitudes: Vec<f64> = effects.iter().map(|e| e.abs()).collect();
         let s0 = 1.5 * median(magnitudes.clone());
         let small: Vec<f64> = magnitudes.into_iter().filter(|&e| e < 2.5 * s0).collect();
-        // All effects are zero, or more than half of them are: nothing is left to call noise.
+        // More than half of the effects are zero: no small effect is left.
         let pse = if small.is_empty() { 0.0 } else { 1.5 * median(small) };
         let t = StudentsT::new(0.0, 1.0, m as f64 / 3.0).ok()?;
         let simultaneous = 0.5 * (1.0 + 0.95f64.powf(1.0 / m as f64));
         Some(Self { pse, me: t.inverse_cdf(0.975) * pse, sme: t.inverse_cdf(simultaneous) * pse })
     }
 
-    /// What the limits say of an effect.
+    /// Classifies an effect by the limits.
     pub fn verdict(&self, effect: f64) -> Verdict {
         if effect.abs() > self.sme {
             Verdict::Active
@@ -97,7 +96,8 @@ pub fn median(mut values: Vec<f64>) -> f64 {
 /// Analyses one response of a full two-level design.
 ///
 /// `coded[i]` are the levels (-1 or +1) of the factors in run i, in any order of the runs;
-/// `response[i]` is what came out. `centre` is the response at the centre point, if one was run.
+/// `response[i]` is the response of run i. `centre` is the response at the centre point, if there
+/// is one.
 ///
 /// # Errors
 /// [`Error::Value`] when the runs are not every combination exactly once, or a response is not

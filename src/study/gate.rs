@@ -1,8 +1,8 @@
-//! Accuracy gates: limits that the numbers of a study must keep, and drift against the numbers
-//! that were accepted last.
+//! Accuracy gates: limits for the numbers of a study, and the drift from the numbers that were
+//! accepted last.
 //!
-//! A gate takes the worst of all numbers that it selects. One that selects nothing fails: a filter
-//! with a slip in it must not look like a pass.
+//! A gate takes the worst of all numbers that it selects. A gate that selects nothing fails: a
+//! wrong filter must not look like a pass.
 
 use super::response::Response;
 use super::run::{Role, StudyRun};
@@ -25,7 +25,7 @@ pub struct Gates {
     /// Absolute limits.
     #[serde(default)]
     pub gate: Vec<Gate>,
-    /// How far any number may move from the accepted one.
+    /// The largest change of a number from the accepted one.
     pub drift: Option<Drift>,
 }
 
@@ -43,7 +43,7 @@ impl Gates {
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Gate {
-    /// What it is called in tables.
+    /// Its name in tables.
     pub name: String,
     /// The edge model.
     pub method: EdgeModel,
@@ -53,19 +53,19 @@ pub struct Gate {
     /// `max`, `rms` or `l1`; left out for the last four quantities.
     #[serde(default)]
     pub measure: Option<String>,
-    /// Names of cases; `*` at the end stands for anything.
+    /// Names of cases; a final `*` matches any ending.
     #[serde(default)]
     pub cases: Vec<String>,
-    /// Names of curves or pressure lines; `*` at the end stands for anything.
+    /// Names of curves or pressure lines; a final `*` matches any ending.
     #[serde(default)]
     pub curves: Vec<String>,
     /// `block` or `roller`.
     #[serde(default)]
     pub body: Option<String>,
-    /// Only numbers with this distance left out around the roller's edge (C).
+    /// Only numbers with this excluded distance from the roller's edge (C).
     #[serde(default)]
     pub excluded_c: Option<f64>,
-    /// What must not be exceeded (p0; C for a depth; a speed-up must not fall short of it).
+    /// The upper limit (p0; C for a depth), or the lower limit of a speed-up.
     pub limit: f64,
 }
 
@@ -79,7 +79,7 @@ pub struct Drift {
     pub live: f64,
 }
 
-/// A number that gates look at.
+/// A number that gates can select.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Number {
     /// The case.
@@ -92,7 +92,7 @@ pub struct Number {
     pub curve: String,
     /// As in [`Gate::quantity`].
     pub quantity: String,
-    /// Distance left out (C), where that applies.
+    /// Excluded distance (C), if there is one.
     pub excluded_c: Option<f64>,
     /// `max`, `rms`, `l1`, or empty.
     pub measure: &'static str,
@@ -101,7 +101,7 @@ pub struct Number {
 }
 
 impl Number {
-    /// Where it belongs, in words.
+    /// Its case, curve and quantity in words.
     fn place(&self) -> String {
         let mut text = self.case.clone();
         for part in [&self.body, &self.curve, &self.quantity] {
@@ -113,7 +113,7 @@ impl Number {
         text
     }
 
-    /// The key under which it is accepted.
+    /// Its key among the accepted numbers.
     fn key(&self) -> String {
         let excluded = self.excluded_c.map(|c| format!(" {c}")).unwrap_or_default();
         let (case, method) = (&self.case, self.method);
@@ -125,7 +125,7 @@ impl Number {
     }
 }
 
-/// What a gate holds to.
+/// The kind of a gate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Kind {
@@ -133,7 +133,7 @@ pub enum Kind {
     Limit,
     /// The accepted numbers.
     Drift,
-    /// Answers to all that was asked.
+    /// A result for every case.
     Coverage,
 }
 
@@ -151,11 +151,11 @@ impl Kind {
 /// The outcome of one gate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GateOutcome {
-    /// What it is called.
+    /// Its name.
     pub name: String,
     /// The method, or `all`.
     pub method: String,
-    /// What it holds to.
+    /// The kind of gate.
     pub kind: Kind,
     /// Whether it holds.
     pub passed: bool,
@@ -163,11 +163,11 @@ pub struct GateOutcome {
     pub value: Option<f64>,
     /// Its limit.
     pub limit: f64,
-    /// How far the value is from the limit, positive on the good side.
+    /// Distance of the value from the limit, positive if the gate holds.
     pub margin: Option<f64>,
-    /// How many numbers were looked at.
+    /// Number of numbers compared.
     pub compared: usize,
-    /// Where the worst value is, or why the gate failed, in words.
+    /// The place of the worst value, or why the gate failed, in words.
     pub note: String,
 }
 
@@ -181,7 +181,7 @@ pub struct Baseline {
     pub numbers: BTreeMap<String, BTreeMap<String, f64>>,
 }
 
-/// A number whose accepted value is another one, or that is only on one side.
+/// A number that differs from its accepted value, or that only one side has.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
     /// Where, and which measure.
@@ -192,10 +192,10 @@ pub struct Change {
     pub now: Option<f64>,
 }
 
-/// Parses a thresholds file that stands at `path`.
+/// Parses the text of the thresholds file `path`.
 ///
 /// # Errors
-/// [`Error::File`] with the line when it is not TOML, has an unknown key, an unknown name or a
+/// [`Error::File`] with the line when it is not TOML, or has an unknown key, an unknown name or a
 /// limit that is not a positive number.
 pub fn parse(text: &str, path: &Path) -> Result<Gates> {
     let refuse = |line: Option<usize>, message: String, remedy: &str| Error::File {
@@ -282,7 +282,7 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
     all
 }
 
-/// Whether `name` is selected by a list of names, where `*` at the end stands for anything.
+/// Whether a list of names selects `name`; a final `*` matches any ending, an empty list anything.
 fn selects(list: &[String], name: &str) -> bool {
     list.is_empty()
         || list.iter().any(|l| match l.strip_suffix('*') {
@@ -361,7 +361,7 @@ impl Baseline {
         baseline
     }
 
-    /// Parses accepted numbers that stand at `path`.
+    /// Parses the text of the file of accepted numbers `path`.
     ///
     /// # Errors
     /// [`Error::File`] when they are not what [`Baseline::to_json`] writes.
@@ -392,8 +392,8 @@ impl Baseline {
         )
     }
 
-    /// What differs between accepted numbers and those of now, by more than `limit`, largest
-    /// change first; what is only on one side comes before that.
+    /// The numbers that differ from the accepted ones by more than `limit`, largest change first.
+    /// Numbers that only one side has come before them.
     pub fn changes(&self, now: &Baseline, limit: f64) -> Vec<Change> {
         let flat = |b: &Baseline| -> BTreeMap<String, f64> {
             b.numbers
@@ -421,7 +421,7 @@ impl Baseline {
 }
 
 impl Change {
-    /// |now - accepted|; `None` when one of them is not there.
+    /// |now - accepted|; `None` if one of them is missing.
     pub fn size(&self) -> Option<f64> {
         Some((self.now? - self.accepted?).abs())
     }
@@ -452,8 +452,8 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
             .filter(|g| run.methods.contains(&g.method))
             .map(|g| g.evaluate(&all, &failed(g.method))),
     );
-    // A fast wrong answer is no answer: a speed-up counts only where every accuracy gate of its
-    // method holds.
+    // The speed of a wrong solution is worth nothing: a speed-up counts only if every accuracy gate
+    // of its method holds.
     let inaccurate: Vec<String> =
         outcomes.iter().filter(|o| !o.passed).map(|o| o.method.clone()).collect();
     for (outcome, gate) in outcomes
@@ -488,7 +488,7 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
     outcomes
 }
 
-/// Every corner and the centre of the study must have a FEM answer to be compared with.
+/// Every corner and the centre of the study must have a reference to be compared with.
 fn coverage(run: &StudyRun) -> GateOutcome {
     let design: Vec<_> = run.cases.iter().filter(|c| c.role != Role::Extra).collect();
     let missing: Vec<&str> =
@@ -529,7 +529,7 @@ fn drift_gate(
     let now = of_method(now);
     let accepted = baseline.map(of_method).unwrap_or_default();
     let compared: usize = now.numbers.values().map(BTreeMap::len).sum();
-    // The two that are asked for: what moved beyond the limit, and the largest move of all.
+    // Changes beyond the limit, and the largest change.
     let beyond = accepted.changes(&now, limit);
     let largest = accepted.changes(&now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
     let note = if baseline.is_none() {

@@ -1,10 +1,10 @@
-//! Which cases one solution serves.
+//! The cases that one solution serves.
 
 use crate::solve::SceneKey;
 use std::collections::HashMap;
 
-/// Indices of the cases of each scene, in the order of first appearance; what has no key stands
-/// alone.
+/// Indices of the cases of each scene, in the order of first appearance. A case without a key has a
+/// group of its own.
 pub fn groups(keys: impl IntoIterator<Item = Option<SceneKey>>) -> Vec<Vec<usize>> {
     let mut index: HashMap<SceneKey, usize> = HashMap::new();
     let mut groups: Vec<Vec<usize>> = Vec::new();

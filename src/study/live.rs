@@ -1,4 +1,4 @@
-//! FEM run within a study: on this machine, in this run.
+//! FEM that runs within a study, on this machine.
 
 use super::reference::from_fem;
 use super::run::Reference;
@@ -8,10 +8,10 @@ use crate::case::Case;
 use crate::fem::{self, Driver, FemSettings, MeshResult};
 use std::path::Path;
 
-/// Runs `case` by one driver `repeats` times (at least once), each in a folder of its own below
-/// `folder`: the first result, and the wall-clock times of all.
+/// Runs `case` by one driver `repeats` times (at least once), each in its own folder below
+/// `folder`. Returns the first result and the wall-clock times of all runs.
 ///
-/// A run that is done there already is not done again: its time is that of the run that left it.
+/// A run that is finished in its folder is not repeated: its recorded time is used.
 ///
 /// # Errors
 /// As [`Driver::run`].
@@ -32,10 +32,11 @@ pub fn repeated(
     Ok((first, timing))
 }
 
-/// How much coarser the second mesh is, whose difference to the first is FEM's own error.
+/// Ratio of the element sizes of the second mesh and the first. Their difference is FEM's own
+/// error.
 const COARSER: f64 = 1.4;
 
-/// Live FEM: the drivers of the mesh asked for and of a coarser one.
+/// Live FEM: the drivers of the requested mesh and of a coarser one.
 pub struct Live {
     fine: Driver,
     coarse: Driver,
@@ -56,7 +57,7 @@ impl Live {
         })
     }
 
-    /// Solves a case in folders below `folder`; `progress` is told what goes on.
+    /// Solves a case in folders below `folder`, and reports its steps to `progress`.
     ///
     /// # Errors
     /// As [`Driver::run`].

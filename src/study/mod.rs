@@ -1,7 +1,7 @@
 //! Pairing of curves, error measures, factorial effects, timing, gates, and the run of a study.
 //!
-//! Everything here works in units of C and p0 (see [`crate::base::HertzScales`]): a study compares
-//! cases of different loads, and the fraction of p0 is what a user can judge.
+//! All lengths are in units of C and all stresses in units of p0 (see
+//! [`crate::base::HertzScales`]): a study compares cases of different loads.
 
 pub mod bench;
 mod case_form;

@@ -1,4 +1,4 @@
-//! Cases by models: cases of one problem are solved together, and each solve is timed by itself.
+//! Solves and times cases by models. Cases of one problem are solved together.
 
 use super::groups::groups;
 use super::timing::{self, Timing};
@@ -8,36 +8,36 @@ use crate::case::Case;
 use crate::solve::{Scene, Solution};
 use rayon::prelude::*;
 
-/// Solves cases that share a scene by one edge model, one answer a case in their order.
+/// Solves cases that share a scene by one edge model: one solution for each case, in their order.
 pub type Solver<'a> = dyn Fn(&[Case], EdgeModel) -> Vec<Result<Solution>> + Sync + 'a;
 
-/// Seconds of one case by one model on this many threads in a process of its own, where that can be
-/// measured.
+/// Seconds of one case by one model on this number of threads in a separate process; `None` where
+/// it cannot be measured.
 pub type Cold<'a> = dyn Fn(&Case, EdgeModel, usize) -> Option<f64> + Sync + 'a;
 
-/// The models to run, and how.
+/// The models of a run.
 pub struct Models<'a> {
-    /// Models to run.
+    /// The models.
     pub methods: Vec<EdgeModel>,
     /// Warm repeats of the timing; 0 leaves the timing out.
     pub repeats: usize,
-    /// Solves cases that differ only in scale by one method, one result each, in order.
+    /// Solves cases that differ only in scale by one model: one result for each, in their order.
     pub solver: &'a Solver<'a>,
-    /// Takes the time of a solve in a process of its own.
+    /// Measures the time of a solve in a separate process.
     pub cold: &'a Cold<'a>,
 }
 
-/// What one model makes of one case.
+/// The attempt of one model to solve one case.
 pub(super) struct Attempt {
     /// The model.
     pub method: EdgeModel,
     /// Its solution.
     pub solution: Result<Solution>,
-    /// Repeated timing on one thread and on all, where it was asked for.
+    /// Repeated timing on one thread and on all; empty without timing.
     pub timing: Vec<Timing>,
 }
 
-/// Contact problems to be solved: the cases of each by every model.
+/// The contact problems to solve: each with its cases, by every model.
 pub(super) struct Jobs<'a> {
     cases: &'a [Case],
     models: &'a Models<'a>,
@@ -45,7 +45,7 @@ pub(super) struct Jobs<'a> {
 }
 
 impl<'a> Jobs<'a> {
-    /// Puts cases together that are one problem.
+    /// Groups the cases that are one problem.
     pub fn new(cases: &'a [Case], models: &'a Models<'a>) -> Self {
         let of_group = |group: Vec<usize>| models.methods.iter().map(move |&m| (group.clone(), m));
         // Which cases share a scene does not depend on the edge model; any will do.
@@ -59,13 +59,13 @@ impl<'a> Jobs<'a> {
         self.jobs.len()
     }
 
-    /// Number of times that [`Jobs::run`] tells of a step.
+    /// Number of steps that [`Jobs::run`] reports.
     pub fn steps(&self) -> usize {
         self.jobs.len() * if self.models.repeats > 0 { 2 } else { 1 }
     }
 
-    /// Solves all problems and times them: for each case the models in their order. `step` is told
-    /// what was just done, from any thread.
+    /// Solves all problems and times them. The result has the models of each case, in their order.
+    /// Every thread reports its finished steps to `step`.
     pub fn run(&self, step: &(dyn Fn(&str) + Sync)) -> Vec<Vec<Attempt>> {
         let solved: Vec<Vec<Result<Solution>>> = self
             .jobs
@@ -92,7 +92,7 @@ impl<'a> Jobs<'a> {
         attempts
     }
 
-    /// Times one case of a problem, on one thread and on all: the others only differ in scale.
+    /// Times one case of a problem, on one thread and on all. The others differ only in scale.
     fn timing(&self, case: &Case, method: EdgeModel, step: &dyn Fn(&str)) -> Vec<Timing> {
         if self.models.repeats == 0 {
             return Vec::new();

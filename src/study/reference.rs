@@ -1,14 +1,14 @@
-//! FEM's answers on the study's terms: recorded or live results with the difference of the two finest
-//! meshes as FEM's own error at every point.
+//! FEM results as a reference of a study: recorded or live curves. The difference of the two finest
+//! meshes is FEM's own error at each point.
 
 use super::run::{Provenance, Reference};
 use crate::fem::{self, MeshResult};
 
-/// From the reader of records or from a live run.
+/// The reference of a record or of a live run.
 ///
-/// The error at a point is the difference of the finest mesh to the next; none is stated for a
-/// single mesh. It is not multiplied by Richardson's factor, which is known only where the meshes
-/// converge with an order: a band of the plain difference is there for every curve.
+/// The error at a point is the difference of the two finest meshes; a single mesh has none. It is
+/// not multiplied by Richardson's factor, which requires a known order of convergence. The plain
+/// difference exists for every curve.
 pub fn from_fem(reference: &fem::FemResults) -> Reference {
     let finest = reference.finest();
     let curves = match reference.meshes.get(1) {

@@ -1,15 +1,14 @@
-//! The numbers of a case and model whose dependence on the factors is analysed.
+//! The responses: numbers of a case and model whose dependence on the factors is analysed.
 
 use super::run::{CaseRun, MethodRun};
 use super::timing::Ratio;
 use crate::stress::Quantity;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
-/// A number per case and model whose dependence on the factors is analysed. In files it is its
-/// name.
+/// A number of a case and model whose dependence on the factors is analysed. Files hold its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// The error of what is named, by the measure.
+    /// An error of a quantity in a measure.
     Error(Of, Measure),
     /// Error of the largest von Mises stress (p0).
     CriticalValue,
@@ -19,7 +18,7 @@ pub enum Response {
     Log10Speedup,
 }
 
-/// What an error is of.
+/// The quantity of an error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
     /// The contact pressure.
@@ -30,7 +29,7 @@ pub enum Of {
     Quantity(Quantity),
 }
 
-/// How an error over curves is measured.
+/// The measure of an error over curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Root mean square.
@@ -97,7 +96,7 @@ impl Response {
         }
     }
 
-    /// Its value, where the case and model have one.
+    /// Its value for a case and model, if it exists.
     pub fn value(self, case: &CaseRun, method: &MethodRun) -> Option<f64> {
         let result = method.result.as_ref().ok()?;
         let summary = result.summary.as_ref()?;
@@ -134,9 +133,8 @@ impl<'de> Deserialize<'de> for Response {
     }
 }
 
-/// How many times as long FEM takes as the model on one thread, with its uncertainty: from this run
-/// where FEM ran in it, else from a record of both. Only times of one run on one machine are
-/// divided.
+/// The ratio of FEM's time to the model's on one thread, with its uncertainty: from this run if FEM
+/// ran in it, else from a record of both. Only times of one run on one machine are divided.
 pub fn speedup(case: &CaseRun, method: &MethodRun) -> Option<Ratio> {
     let fem = &case.reference()?.provenance;
     if fem.live {

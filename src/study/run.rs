@@ -52,7 +52,7 @@ pub struct Provenance {
 /// Times of FEM and of the models that solved the same case in one run on one machine.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Timed {
-    /// When it was.
+    /// The date.
     pub date: String,
     /// The machine's processor.
     pub machine: String,
@@ -73,7 +73,7 @@ pub struct Timed {
     pub methods: BTreeMap<String, (f64, f64)>,
 }
 
-/// The part that a case plays in its study.
+/// The role of a case in its study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Role {
     /// A corner of the design, with the coded levels of the design's factors.
@@ -124,7 +124,7 @@ pub struct ReferenceRun {
 pub struct CaseRun {
     /// The case.
     pub case: Case,
-    /// Its part in the study.
+    /// Its role in the study.
     pub role: Role,
     /// The references. Errors are taken against the first.
     pub references: Vec<ReferenceRun>,
@@ -147,7 +147,7 @@ impl CaseRun {
 /// A factor of the design that has two levels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Which one.
+    /// Its name.
     pub name: FactorName,
     /// Its low level.
     pub low: f64,
@@ -223,8 +223,8 @@ pub struct StudySetup<'a> {
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
 }
 
-/// The factors with two levels, and the coded levels of a case. A factor with one level is not a
-/// factor; with three or more levels of any there is no two-level design.
+/// The factors with two levels. A factor with one level does not count; if any has three levels or
+/// more, there is no two-level design.
 fn design(study: &Study) -> Vec<Factor> {
     let levels = [
         (FactorName::Load, &study.load_levels),

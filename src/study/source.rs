@@ -1,10 +1,10 @@
-//! Where an answer comes from.
+//! The source of a result: an edge model or a reference.
 
 use crate::body::EdgeModel;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// An edge model, or an engine that models are compared with. In files it is its name.
+/// An edge model, or an engine that models are compared with. Files hold its name.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum Source {
@@ -14,13 +14,13 @@ pub enum Source {
     Engine(Engine),
 }
 
-/// A finite-element code, or whatever else gives reference curves, by its name in files.
+/// A finite-element code or another origin of reference curves, by its name in files.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Engine(String);
 
 impl Engine {
-    /// gmsh and FEniCSx, whose name in files is `fem`.
+    /// gmsh and FEniCSx; the name in files is `fem`.
     pub fn fenicsx() -> Self {
         Self("fem".to_string())
     }

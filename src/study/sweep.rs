@@ -1,5 +1,5 @@
-//! A run over thousands of cases: similar cases are solved once, a case that fails is a result like
-//! any other, and the work can be cut into shards and gone on with.
+//! A run over thousands of cases. Similar cases are solved once. A case that fails has a row like
+//! any other. The rows can be divided into shards, and a stopped run can be continued.
 
 use super::groups::groups as scenes;
 use crate::base::{Error, Result};
@@ -11,7 +11,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 
-/// One part of a sweep that is cut into several.
+/// One part of a sweep that is divided into several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
     /// Which one, from 1.
@@ -76,10 +76,10 @@ pub struct Settings {
     pub tolerance: Option<f64>,
 }
 
-/// A row's outcome: its case and key results, or what went wrong in words.
+/// The outcome of a row: its case and key results, or the error in words.
 pub type Outcome = std::result::Result<(Case, KeyResults), String>;
 
-/// Rows that one contact problem answers.
+/// Rows that share one contact problem.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group {
     /// Their indices, ascending.
@@ -95,9 +95,10 @@ fn case_of(sweep: &dyn Cases, i: usize, settings: &Settings) -> std::result::Res
     })
 }
 
-/// The sweep's rows by the contact problem that answers them, in the order of their first rows.
+/// The sweep's rows by contact problem, in the order of their first rows.
 ///
-/// A shard gets every n-th problem with all of its rows, so that no problem is solved by two.
+/// A shard has every n-th problem with all of its rows, so that no two shards solve the same
+/// problem.
 pub fn groups(sweep: &dyn Cases, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
     let key = |case: Case| Scene::new(&case, settings.method, None).key();
     let keys: Vec<Option<SceneKey>> = (0..sweep.rows())
@@ -109,11 +110,12 @@ pub fn groups(sweep: &dyn Cases, settings: &Settings, shard: Option<Shard>) -> V
     groups.into_iter().skip(shard.index - 1).step_by(shard.count).collect()
 }
 
-/// Solves `groups` on `jobs` threads and hands every row's outcome to `done` as it comes, from any of
-/// the threads. A problem is solved by one thread: with many of them that wastes nothing.
+/// Solves `groups` on `jobs` threads. Each thread passes the outcome of a row to `done` as soon as
+/// it is known. One thread solves one problem: with many problems no thread is idle.
 ///
 /// # Errors
-/// The first error of `done`, which also stops the run; or [`Error::Io`] when threads cannot be had.
+/// The first error of `done`, which also stops the run; or [`Error::Io`] when no thread can be
+/// started.
 pub fn run(
     sweep: &dyn Cases,
     settings: &Settings,
@@ -129,7 +131,7 @@ pub fn run(
         failed.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(e);
     };
     let work = || {
-        // What is parallel within a problem stays on this thread.
+        // Parallel parts of a problem run on this thread alone.
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool,
             Err(e) => {
@@ -176,7 +178,7 @@ fn solve_rows(
     }
     let mut handed = 0;
     let mut fault = Ok(());
-    // A fault of the program in one case of thousands is that case's.
+    // A panic in one case must not end the run: it becomes the error of that case.
     let solved = catch_unwind(AssertUnwindSafe(|| {
         key_results(&cases, settings.method, |i, results| {
             if fault.is_ok() {

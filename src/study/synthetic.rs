@@ -12,10 +12,10 @@ use crate::study::timing::Timing;
 use crate::study::{Engine, Models, Range};
 use std::f64::consts::PI;
 
-/// What the made-up FEM answer differs by from the quarter-space one (p0).
+/// Difference of the made-up FEM curves from those of quarter-space (p0).
 pub const SHIFT: f64 = 0.003;
 
-/// How much a model makes of the ends: a share of the end effect in pressure and stress.
+/// The share of the end effect in pressure and stress for each model.
 fn end_share(method: EdgeModel) -> f64 {
     match method {
         EdgeModel::HalfSpace => 1.0,
@@ -26,7 +26,7 @@ fn end_share(method: EdgeModel) -> f64 {
 }
 
 /// A solution of `case` whose end effect is `share`; `shift` (p0) is added to all normal stresses
-/// and the pressure, to tell a "reference" from a method.
+/// and the pressure, so that a reference differs from a model.
 fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution {
     let half = case.factors().slenderness;
     let end = |y: f64| share * (-(half - y).abs() / 0.8).exp();
@@ -84,8 +84,8 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
     }
 }
 
-/// The summary of a made-up solution with these pressures (p0) at the centre and at most, there at y
-/// (C).
+/// The summary of a made-up solution with these pressures (p0) at the centre and at most, there at
+/// y (C).
 fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> Summary {
     let hertz = case.hertz();
     let HertzScales { c_m, p0_pa, .. } = hertz;
@@ -133,7 +133,7 @@ pub fn mesh_shift(size: f64) -> f64 {
 pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
     let mesh = |size: f64| {
         let method = EdgeModel::QuarterSpace;
-        let answer = solution(case, method, end_share(method), mesh_shift(size));
+        let solved = solution(case, method, end_share(method), mesh_shift(size));
         let summary = serde_json::json!({
             "versions": { "processor": "a made-up processor" },
             "ranks": 1,
@@ -141,16 +141,16 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
             "load_error_rel": 0.0,
             "equilibrium_residual": 0.0,
             "complementarity_residual": 0.0,
-            "approach_m": answer.summary.approach_m,
-            "p_centre_pa": answer.summary.p_centre_pa,
-            "p_max_pa": answer.summary.p_max_pa,
+            "approach_m": solved.summary.approach_m,
+            "p_centre_pa": solved.summary.p_centre_pa,
+            "p_max_pa": solved.summary.p_max_pa,
             "seconds": { "total": 30.0 / size.powi(3) },
             "peak_memory_mib": 100.0,
         });
         MeshResult {
             size,
             summary: serde_json::from_value(summary).unwrap(),
-            curves: answer.curves,
+            curves: solved.curves,
         }
     };
     let timed = |size: f64| {
@@ -193,75 +193,85 @@ pub enum Twist {
     Unsolved(EdgeModel),
 }
 
-/// The built-in study on made-up solutions; FEM is the quarter-space one, shifted.
+/// The made-up solution of a case by a model.
+fn solve(case: &Case, method: EdgeModel, twist: &Twist) -> Result<Solution> {
+    let mut share = end_share(method);
+    match twist {
+        Twist::Unsolved(m) if *m == method => {
+            let remedy = "nothing helps".to_string();
+            return Err(Error::NotConverged { iterations: 7, residual: 0.1, remedy });
+        }
+        Twist::EndShare(m, factor) if *m == method => share *= factor,
+        _ => {}
+    }
+    let mut solution = solution(case, method, share, 0.0);
+    if *twist == Twist::ShearSign {
+        for s in solution.curves.stress.iter_mut().flat_map(|c| &mut c.stress) {
+            (s.xz, s.yz) = (-s.xz, -s.yz);
+        }
+    }
+    Ok(solution)
+}
+
+/// The made-up FEM curves of a case: those of quarter-space, shifted.
+fn reference(case: &Case, twist: &Twist) -> std::result::Result<Reference, String> {
+    if *twist == Twist::NoReference {
+        return Err("there is no record".to_string());
+    }
+    let method = EdgeModel::QuarterSpace;
+    let mut curves = solution(case, method, end_share(method), SHIFT).curves;
+    for curve in &mut curves.stress {
+        curve.own_error = Some(vec![[0.004; 8]; curve.at.len()]);
+        match twist {
+            Twist::FemCurve { case: name, curve: which, factor }
+                if *name == case.name && curve.name == *which =>
+            {
+                curve.stress.iter_mut().for_each(|s| *s = *s * *factor);
+            }
+            _ => {}
+        }
+    }
+    for line in &mut curves.pressure {
+        line.own_error = Some(vec![0.002; line.at.len()]);
+    }
+    Ok(Reference { curves, provenance: provenance(case) })
+}
+
+/// The made-up origin of the FEM curves.
+fn provenance(case: &Case) -> Provenance {
+    let fem_seconds = 15.0 * case.factors().slenderness / 5.0;
+    let timed = Timed {
+        date: "2026-01-01".to_string(),
+        machine: "a made-up processor".to_string(),
+        command: "edgeline bench --fem live".to_string(),
+        size: 1.4,
+        unknowns: 80_000,
+        seconds: (fem_seconds, 0.3),
+        error: Some(0.004),
+        tolerance: case.accuracy.tolerance,
+        methods: EdgeModel::ALL.map(|m| (m.name().to_string(), (0.01, 0.0004))).into(),
+    };
+    Provenance {
+        date: Some("2026-01-01".to_string()),
+        machine: Some("a made-up processor".to_string()),
+        unknowns: Some(150_000),
+        seconds: Some(4.0 * fem_seconds),
+        timed: Some(timed),
+        ..Default::default()
+    }
+}
+
+/// The built-in study on made-up solutions.
 pub fn run(twist: Twist) -> StudyRun {
     let solver = |cases: &[Case], method: EdgeModel| {
-        cases
-            .iter()
-            .map(|case| {
-                let mut share = end_share(method);
-                match twist {
-                    Twist::Unsolved(m) if m == method => {
-                        return Err(Error::NotConverged {
-                            iterations: 7,
-                            residual: 0.1,
-                            remedy: "nothing helps".to_string(),
-                        });
-                    }
-                    Twist::EndShare(m, factor) if m == method => share *= factor,
-                    _ => {}
-                }
-                let mut answer = solution(case, method, share, 0.0);
-                if twist == Twist::ShearSign {
-                    for s in answer.curves.stress.iter_mut().flat_map(|c| &mut c.stress) {
-                        (s.xz, s.yz) = (-s.xz, -s.yz);
-                    }
-                }
-                Ok(answer)
-            })
-            .collect()
+        cases.iter().map(|case| solve(case, method, &twist)).collect()
     };
-    let reference = |case: &Case| {
-        if twist == Twist::NoReference {
-            return Err("there is no record".to_string());
+    let references = |case: &Case| {
+        let mut all = vec![(Engine::fenicsx(), reference(case, &twist))];
+        if twist == Twist::SecondReference {
+            all.push((second_engine(), reference(case, &twist)));
         }
-        let method = EdgeModel::QuarterSpace;
-        let mut curves = solution(case, method, end_share(method), SHIFT).curves;
-        for curve in &mut curves.stress {
-            curve.own_error = Some(vec![[0.004; 8]; curve.at.len()]);
-            match &twist {
-                Twist::FemCurve { case: name, curve: which, factor }
-                    if *name == case.name && curve.name == *which =>
-                {
-                    curve.stress.iter_mut().for_each(|s| *s = *s * *factor);
-                }
-                _ => {}
-            }
-        }
-        for line in &mut curves.pressure {
-            line.own_error = Some(vec![0.002; line.at.len()]);
-        }
-        let fem_seconds = 15.0 * case.factors().slenderness / 5.0;
-        let timed = Timed {
-            date: "2026-01-01".to_string(),
-            machine: "a made-up processor".to_string(),
-            command: "edgeline bench --fem live".to_string(),
-            size: 1.4,
-            unknowns: 80_000,
-            seconds: (fem_seconds, 0.3),
-            error: Some(0.004),
-            tolerance: case.accuracy.tolerance,
-            methods: EdgeModel::ALL.map(|m| (m.name().to_string(), (0.01, 0.0004))).into(),
-        };
-        let provenance = Provenance {
-            date: Some("2026-01-01".to_string()),
-            machine: Some("a made-up processor".to_string()),
-            unknowns: Some(150_000),
-            seconds: Some(4.0 * fem_seconds),
-            timed: Some(timed),
-            ..Default::default()
-        };
-        Ok(Reference { curves, provenance })
+        all
     };
     run_study(
         &Study::built_in(),
@@ -273,13 +283,7 @@ pub fn run(twist: Twist) -> StudyRun {
                 cold: &|_, _, _| Some(0.02),
             },
             range: Range::default(),
-            references: &|case| {
-                let mut all = vec![(Engine::fenicsx(), reference(case))];
-                if twist == Twist::SecondReference {
-                    all.push((second_engine(), reference(case)));
-                }
-                all
-            },
+            references: &references,
             progress: &|_, _, _| {},
         },
     )

@@ -1,9 +1,9 @@
 //! Repeated timing of the semi-analytical solve.
 //!
-//! A time is only worth something with its conditions: a solve in a process of its own (`cold`,
-//! which builds every table) is kept apart from repeats in one process (`warm`), and one thread
-//! from all of them. The median is stated, with the quartiles as spread: a busy machine makes
-//! single runs slower, never faster, so the mean would be biased.
+//! A time has a meaning only with its conditions. A solve in a separate process (`cold`, which
+//! builds every table) is distinguished from repeats in one process (`warm`), and one thread from
+//! all. The result is the median, with the quartiles as spread: a busy machine makes single runs
+//! slower, never faster, so a mean would be biased.
 
 use super::factorial::median;
 use serde::{Deserialize, Serialize};
@@ -14,13 +14,12 @@ use std::time::Instant;
 pub struct Timing {
     /// Threads that the work could use.
     pub threads: usize,
-    /// Seconds of the work in a process of its own, start-up and files not counted, where that was
-    /// measured.
+    /// Seconds of the work in a separate process without its start and files, where measured.
     pub cold_s: Option<f64>,
     /// Median of the repeats (s).
     pub median_s: f64,
-    /// First and third quartile of the repeats (s); the extremes of fewer than four, which have no
-    /// quartiles to speak of.
+    /// First and third quartile of the repeats (s); the extremes of fewer than four repeats, for
+    /// which quartiles mean little.
     pub quartiles_s: [f64; 2],
     /// Number of repeats.
     pub repeats: usize,
@@ -60,15 +59,15 @@ fn quantile(sorted: &[f64], share: f64) -> f64 {
     sorted[low] + (place - low as f64) * (sorted[high] - sorted[low])
 }
 
-/// Repeats of one measurement stop when they have taken this long together (s): a slow piece of work
-/// needs fewer of them for the same trust, and a study has many to measure.
+/// Repeats of one measurement stop after this time in total (s): slow work needs fewer repeats for
+/// the same accuracy, and a study measures many pieces of work.
 const BUDGET_S: f64 = 0.5;
 
-/// Runs `work` once for nothing, so that tables are there, and then up to `repeats` times, at least
-/// once, on `threads` threads (0: all of the machine).
+/// Runs `work` once without timing, which builds the tables, and then up to `repeats` times, at
+/// least once, on `threads` threads (0: all of the machine).
 ///
 /// # Errors
-/// The first error of `work`: no time counts for an answer that was not computed.
+/// The first error of `work`: failed work has no time.
 pub fn measure<T: Send, E: Send>(
     threads: usize,
     repeats: usize,
@@ -76,10 +75,10 @@ pub fn measure<T: Send, E: Send>(
 ) -> Result<Timing, E> {
     let timed = || {
         let start = Instant::now();
-        work().map(|answer| {
+        work().map(|result| {
             let seconds = start.elapsed().as_secs_f64();
-            // Freeing the answer is not part of computing it.
-            drop(answer);
+            // Freeing the result is not part of computing it.
+            drop(result);
             seconds
         })
     };
@@ -94,7 +93,7 @@ pub fn measure<T: Send, E: Send>(
     };
     match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
         Ok(pool) => pool.install(all),
-        // No threads to be had: the work still runs on this one.
+        // Without new threads the work runs on this one.
         Err(_) => all(),
     }
 }

@@ -61,8 +61,8 @@ impl Figure {
         picture
     }
 
-    /// The names in the legend, what they stand for, and where each entry begins; entries that leave
-    /// no place for another one in `width` are followed by a new row.
+    /// The names in the legend, what they stand for, and where each entry begins; entries that
+    /// leave no place for another one in `width` are followed by a new row.
     fn legend(&self, width: f64) -> Vec<(&str, Sample<'_>, Point)> {
         let series = self.panels.iter().flat_map(|p| &p.series);
         let series = series.map(|s| (s.name.as_str(), Sample::Series(s)));

@@ -1,10 +1,10 @@
-//! What the effects say, and their plots.
+//! The effects in words and plots.
 
 use crate::report::plots;
 use crate::report::study_files::StudyFiles;
 use serde_json::{Value, json};
 
-/// For each method what its effects say in words, and their plots.
+/// The effects of each method in words, and their plots.
 pub(super) fn rows(files: &StudyFiles) -> Vec<Value> {
     let row = |method| {
         let told = files.summary.effects_in_words.iter().filter(|t| t.method == method);

@@ -16,7 +16,8 @@ pub(super) fn tables(files: &StudyFiles) -> Vec<Value> {
     files.summary.methods.iter().copied().map(table).collect()
 }
 
-/// The errors of a model in a case: all responses by their names, and those of the reference itself.
+/// The errors of a model in a case: all responses by their names, and those of the reference
+/// itself.
 fn row(row: &StudyRow) -> Value {
     let errors: Map<String, Value> =
         Response::all().map(|r| (r.name(), json!(row.response(r)))).collect();

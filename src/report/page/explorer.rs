@@ -12,7 +12,7 @@ use crate::study::CONTACT;
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
-/// All that the page's script draws.
+/// The data of the page's script.
 pub(super) fn data(files: &StudyFiles) -> Value {
     let symbols: Map<String, Value> =
         Shown::all().map(|shown| (shown.name().to_string(), json!(shown.symbol()))).collect();

@@ -1,11 +1,11 @@
-//! What the page says about FEM: times beside the models', and versions.
+//! The page's data on FEM: times together with the models', and versions.
 
 use crate::report::study_files::StudyFiles;
 use crate::study::Timed;
 use crate::study::bench::{Against, Speedup};
 use serde_json::{Value, json};
 
-/// FEM and models timed in one run, where the run's FEM curves are from elsewhere.
+/// Recorded times of FEM and models from one run, if the FEM curves of this run are recorded.
 pub(super) fn timed(files: &StudyFiles) -> Option<Value> {
     let mut head: Option<&Timed> = None;
     let mut rows = Vec::new();
@@ -42,7 +42,7 @@ pub(super) fn timed(files: &StudyFiles) -> Option<Value> {
     }))
 }
 
-/// The ratios at equal error of the record, one row a case and one entry a level.
+/// The recorded ratios at equal error: one row for each case, one entry for each level.
 pub(super) fn equal_error(files: &StudyFiles) -> Option<Value> {
     let all = &files.summary.speedups;
     let mut levels: Vec<f64> = all.iter().map(|s| s.level).collect();
@@ -63,7 +63,7 @@ pub(super) fn equal_error(files: &StudyFiles) -> Option<Value> {
     (!rows.is_empty()).then(|| json!({ "levels": levels, "rows": rows }))
 }
 
-/// The versions that FEM ran with, and of which cases.
+/// The versions of the FEM programs, with their cases.
 pub(super) fn versions(files: &StudyFiles) -> Vec<Value> {
     let mut all: Vec<(String, Vec<&str>)> = Vec::new();
     for case in &files.summary.cases {

@@ -15,7 +15,7 @@ const MARKDOWN: &str = include_str!("report.md");
 const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 
-/// What holds for every study, however it comes out.
+/// Limits that hold for every study.
 const CAVEATS: [&str; 5] = [
     "W, S_l and L_r are defined here as W = w / (E* R L1), S_l = L1 / (2 C) and L_r = L1 / L2; the \
      paper names the factors, its formulas and levels are not in the text that we have.",
@@ -31,7 +31,7 @@ const CAVEATS: [&str; 5] = [
 /// The page.
 ///
 /// # Errors
-/// [`Error::File`] when the run's files lack what the page shows.
+/// [`Error::File`] when the run's files lack data of the page.
 pub fn html(files: &StudyFiles) -> Result<String> {
     // "<" inside the data would let a name end the script element.
     let data = explorer::data(files).to_string().replace('<', "\\u003c");
@@ -47,7 +47,7 @@ pub fn markdown(files: &StudyFiles) -> Result<String> {
     render("report.md", MARKDOWN, files, context! {})
 }
 
-/// Fills a template with what both forms of the page show, and with `more`.
+/// Fills a template with the data of both forms of the page, and with `more`.
 fn render(
     name: &str,
     template: &str,
@@ -89,7 +89,7 @@ fn engines(files: &StudyFiles) -> Vec<&str> {
     engines.map(Engine::title).collect()
 }
 
-/// The forms in which templates write numbers.
+/// The formats of numbers in the templates.
 fn add_filters(environment: &mut Environment) {
     let dash = || "–".to_string();
     environment.add_filter("p0", move |v: minijinja::Value| {

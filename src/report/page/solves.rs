@@ -1,4 +1,4 @@
-//! How the models were resolved, and what their solves took.
+//! The details of the solver, and the work of each solve.
 
 use crate::base::number::significant;
 use crate::body::EdgeModel;
@@ -12,8 +12,8 @@ type Named = Vec<(String, String)>;
 /// One row of the details: the case, the model and its numbers.
 type Row<'a> = (&'a str, EdgeModel, Named);
 
-/// The numbers of each solution's details but its work: those that are the same in all, and the
-/// others, one row a case and method.
+/// The details of the solutions without their work: the numbers that all solutions share, and the
+/// others with one row for each case and method.
 pub(super) fn details(files: &StudyFiles) -> Option<Value> {
     let of_case = files.summary.cases.iter().flat_map(|case| {
         case.details().map(|(method, details)| (case.name.as_str(), method, named(details)))
@@ -45,7 +45,7 @@ pub(super) fn details(files: &StudyFiles) -> Option<Value> {
     Some(json!({ "same": same, "names": other, "rows": table }))
 }
 
-/// The numbers of `details` but its work, under their names in the file.
+/// The numbers of `details` without its work, by their names in the file.
 fn named(details: &Details) -> Named {
     let details = Details { work: None, ..details.clone() };
     let mut all = Vec::new();
@@ -70,12 +70,12 @@ fn flatten(prefix: &str, value: &Value, all: &mut Named) {
         }
         Value::String(s) => all.push((prefix.to_string(), s.clone())),
         Value::Bool(b) => all.push((prefix.to_string(), b.to_string())),
-        // Lists have no place in a table's cell; the file has them.
+        // A cell has no room for a list; the file has it.
         Value::Array(_) | Value::Null => {}
     }
 }
 
-/// What a model did on a problem, and the cases that are this problem.
+/// The work of a model on a problem, and the cases of this problem.
 struct Worked<'a> {
     method: EdgeModel,
     lengths: [f64; 2],
@@ -83,8 +83,7 @@ struct Worked<'a> {
     cases: Vec<&'a str>,
 }
 
-/// What the solves did and what they could leave out, by reason; cases that are one problem have one
-/// row.
+/// The evaluations done, and those avoided by reason. Cases of one problem share a row.
 pub(super) fn work(files: &StudyFiles) -> Option<Value> {
     let mut all: Vec<Worked> = Vec::new();
     for case in &files.summary.cases {
@@ -116,7 +115,7 @@ pub(super) fn work(files: &StudyFiles) -> Option<Value> {
     Some(json!({ "reasons": reasons, "rows": rows.collect::<Vec<_>>() }))
 }
 
-/// Evaluations avoided, under the names that they have in the file.
+/// The evaluations avoided, by their names in the file.
 fn by_reason(work: &WorkSummary) -> Map<String, Value> {
     match json!(work.avoided) {
         Value::Object(map) => map,

@@ -1,4 +1,4 @@
-//! What is made of a run's own files: plots, page and Markdown.
+//! Writes plots, page and Markdown of a run.
 
 use super::render::{html, markdown};
 use crate::base::Result;
@@ -7,8 +7,8 @@ use crate::report::plots;
 use crate::report::study_files::StudyFiles;
 use std::path::Path;
 
-/// Writes all files of a run into `folder`: its tables, the plots and the page that are made of them,
-/// and `summary.json`, which says that the run is complete, last.
+/// Writes all files of a run into `folder`: tables, plots and page, and `summary.json` last. Its
+/// presence means that the run is complete.
 ///
 /// # Errors
 /// As [`write()`].
@@ -20,8 +20,8 @@ pub fn write_run(files: &StudyFiles, folder: &Path) -> Result<()> {
 /// Writes `report.html`, `report.md` and `plots/*.svg` into `folder`.
 ///
 /// # Errors
-/// [`crate::base::Error::Io`] when a file cannot be written, [`crate::base::Error::File`] when the run's files lack what the
-/// page shows.
+/// [`crate::base::Error::Io`] when a file cannot be written, [`crate::base::Error::File`] when the
+/// run's files lack data of the page.
 pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
     write_with_plots(folder, made(files)?)
 }
@@ -31,7 +31,7 @@ fn write_with_plots(folder: &Path, contents: Vec<(String, Vec<u8>)>) -> Result<(
     write_set(folder, &contents)
 }
 
-/// What is made of a run's own files, by name: plots, Markdown and the page.
+/// Plots, Markdown and page, by the names of their files.
 fn made(files: &StudyFiles) -> Result<Vec<(String, Vec<u8>)>> {
     let plots = plots::all(files).into_iter();
     let mut made: Vec<(String, Vec<u8>)> =

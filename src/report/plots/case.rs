@@ -75,7 +75,8 @@ impl<'a> CasePlots<'a> {
         points.into_iter().filter(|(_, value)| value.is_finite()).collect()
     }
 
-    /// The own errors (p0) of a reference on a curve, where it states one for each of `points` points.
+    /// The own errors (p0) of a reference on a curve, where it states one for each of `points`
+    /// points.
     fn own_errors(&self, curve: Curve, source: &Source, points: usize) -> Option<Vec<f64>> {
         let (body, curve, quantity) = match curve {
             Curve::Pressure(line) => (CONTACT, line, None),

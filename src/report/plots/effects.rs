@@ -36,8 +36,8 @@ impl<'a> EffectRows<'a> {
     fn half_normal(&self) -> Panel {
         let points: Vec<(f64, f64)> =
             self.rows.iter().map(|r| (r.half_normal_quantile, r.effect.abs())).collect();
-        // Names of those that stand out, and of the largest two in any case: the small ones lie close
-        // together and are noise.
+        // Names of those that stand out, and of the largest two in any case: the small ones lie
+        // close together and are noise.
         let mut largest: Vec<f64> = points.iter().map(|p| p.1).collect();
         largest.sort_by(|a, b| b.total_cmp(a));
         let second = largest.get(1).copied().unwrap_or(0.0);
@@ -85,8 +85,8 @@ fn title(row: &EffectRow) -> String {
     row.term.replace(" x ", " × ")
 }
 
-/// Interaction plots of a response: its mean over the corners at each pair of levels of two factors,
-/// all in the same limits.
+/// Interaction plots of a response: its mean over the corners at each pair of levels of two
+/// factors, all in the same limits.
 fn interactions(files: &StudyFiles, method: EdgeModel, response: Response) -> Vec<Panel> {
     let source = Source::from(method);
     let is_corner = |row: &&StudyRow| row.source == source && row.role == RoleName::Corner;

@@ -1,11 +1,11 @@
 //! Run time against error: the models at several tolerances and FEM on several meshes, timed in one
 //! run on one machine.
 //!
-//! Two references are used, since neither serves for everything. FEM's finest mesh is independent
-//! of the models, but has an error of its own, and differs from them in physics too (bodies of
-//! finite width, no parabola). The quarter-space solution at the tightest tolerance is the limit
-//! that the models' discretisation goes to. What "equal error" means is therefore stated twice: each
-//! side against its own limit, and the models against FEM.
+//! There are two references, because neither suffices alone. FEM's finest mesh is independent of
+//! the models, but it has an error of its own and different physics (bodies of finite width, no
+//! parabola). The quarter-space solution at the tightest tolerance is the limit of the models'
+//! discretisation. Equal error is therefore stated twice: each side against its own limit, and both
+//! against FEM.
 
 mod point;
 mod record;

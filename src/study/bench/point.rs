@@ -1,4 +1,4 @@
-//! One way to solve a case: what it took, and how good it is.
+//! One way to solve a case: its time and its error.
 
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -15,7 +15,7 @@ pub const BEST: EdgeModel = EdgeModel::QuarterSpace;
 /// Curves of both bodies whose worst RMS is [`Deviation::worst_rms`].
 pub const CURVES: [&str; 3] = ["surface-along-y", "surface-along-x", "depth-end"];
 
-/// How far an answer is from a reference (p0), outside the range that is left out.
+/// Deviation of curves from a reference (p0) outside the excluded range.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Deviation {
     /// The largest RMS of any one curve: of the pressure on its two lines, and of each stress on
@@ -51,21 +51,21 @@ impl Deviation {
         })
     }
 
-    /// Of `answer` against `reference`, both of `case`.
+    /// Of the curves of a source from `reference`, both of `case`.
     pub(super) fn between(
         case: &Case,
         reference: &Curves,
-        answer: (&Source, &Curves),
+        curves: (&Source, &Curves),
         range: &Range,
     ) -> Option<Self> {
         let half_length = case.factors().slenderness;
-        // Both sides are sampled at the standard points, so that a comparison has no way to fail.
-        let rows = compare(&case.name, half_length, reference, answer, range).ok()?;
+        // Both sides are sampled at the standard points, so the comparison cannot fail.
+        let rows = compare(&case.name, half_length, reference, curves, range).ok()?;
         Self::of(&rows, range)
     }
 }
 
-/// Where a point's time was taken.
+/// The origin of a point's time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Origin {
@@ -73,16 +73,16 @@ pub enum Origin {
     Model,
     /// FEM, in this run.
     LiveFem,
-    /// FEM, when and where it was recorded.
+    /// FEM, from its record.
     RecordedFem,
 }
 
-/// One way to solve a case: what it took, and how good it is.
+/// One way to solve a case: its time and its error.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct BenchPoint {
     /// The model or FEM.
     pub source: Source,
-    /// Where the time was taken.
+    /// The origin of its time.
     pub origin: Origin,
     /// A model's tolerance (p0); a mesh's relative element size.
     pub setting: f64,
@@ -104,13 +104,13 @@ pub struct BenchPoint {
     /// Against quarter-space at the tightest tolerance; none for that solution itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub to_limit: Option<Deviation>,
-    /// Why there is no answer.
+    /// Why there is no result.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub err: Option<String>,
 }
 
 impl BenchPoint {
-    /// A point that neither was timed nor compared.
+    /// A point without times and errors.
     pub(super) fn new(source: impl Into<Source>, origin: Origin, setting: f64) -> Self {
         Self {
             source: source.into(),
@@ -154,7 +154,7 @@ pub enum Against {
 /// All ways to solve one case.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct CaseBench {
-    /// The case; its tolerance means nothing here.
+    /// The case; its tolerance is not used.
     #[serde(with = "CaseForm")]
     pub case: Case,
     /// The FEM mesh that is the reference, in words.
@@ -163,7 +163,7 @@ pub struct CaseBench {
     pub points: Vec<BenchPoint>,
 }
 
-/// Of pairs of time and error those that no other beats in both, fastest first.
+/// The pairs of time and error that no other pair beats in both, fastest first.
 pub fn front(mut points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
     points.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
     let mut best = f64::INFINITY;

@@ -1,4 +1,4 @@
-//! A run as its file holds it, and the record that is built into the program.
+//! The content of `bench.json`, and the record that is built into the program.
 
 use super::point::{Against, BenchPoint, CaseBench, Origin};
 use super::speedup::{Speedup, speedups};
@@ -12,7 +12,7 @@ use std::path::Path;
 /// The record of a run with live FEM that is built into the program.
 const RECORD: &str = include_str!("../../../results/bench.json");
 
-/// The layout of the record that this version writes and reads.
+/// The layout of the file in this version.
 const SCHEMA: u32 = 1;
 
 /// The machine of a run.
@@ -20,11 +20,11 @@ const SCHEMA: u32 = 1;
 pub struct Machine {
     /// Its processor.
     pub processor: String,
-    /// Threads that it runs.
+    /// Number of its threads.
     pub threads: usize,
 }
 
-/// A run, as `bench.json` holds it.
+/// A run: the content of `bench.json`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Bench {
     /// Layout of the file.
@@ -35,7 +35,7 @@ pub struct Bench {
     pub date: String,
     /// The command.
     pub command: String,
-    /// Where.
+    /// The machine.
     pub machine: Machine,
     /// The range of the errors.
     pub range: Range,
@@ -50,7 +50,7 @@ pub struct Bench {
 }
 
 impl Bench {
-    /// A run with the ratios that its cases allow. `levels` and `limit` as in the fields.
+    /// A run with the ratios of its cases. `levels` and `limit` are as in the fields.
     pub fn new(
         date: String,
         command: String,
@@ -73,10 +73,10 @@ impl Bench {
         }
     }
 
-    /// Parses the text of a `bench.json` that stands at `path`.
+    /// Parses the text of the `bench.json` at `path`.
     ///
     /// # Errors
-    /// [`Error::File`] when it is none, or of another layout.
+    /// [`Error::File`] when it is no such file or has another layout.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         let refuse = |line, message: String| Error::File {
             path: path.to_path_buf(),

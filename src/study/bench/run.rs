@@ -1,5 +1,5 @@
-//! The run: every case on FEM's meshes and by every model at every tolerance, compared with both
-//! references.
+//! The run of a bench: every case on FEM's meshes and by every model at every tolerance, compared
+//! with both references.
 
 use super::point::{BEST, BenchPoint, CaseBench, Deviation, Origin};
 use crate::case::Case;
@@ -21,7 +21,7 @@ pub struct Mesh {
     pub timing: Timing,
 }
 
-/// FEM's part in a case.
+/// The FEM meshes of a case.
 pub struct FemMeshes {
     /// The record of the case, if there is one.
     pub recorded: Option<fem::FemResults>,
@@ -31,7 +31,7 @@ pub struct FemMeshes {
 
 impl FemMeshes {
     /// Runs `case` by each driver `repeats` times in folders below `folder`. A mesh that fails is
-    /// kept with its reason.
+    /// kept with its error.
     pub fn run(
         recorded: Option<fem::FemResults>,
         drivers: &[(f64, Driver)],
@@ -52,7 +52,7 @@ impl FemMeshes {
         Self { recorded, live }
     }
 
-    /// The finest mesh as the reference. Of two that are equally fine the recorded one counts.
+    /// The finest mesh as the reference; of two equally fine meshes the recorded one.
     fn reference(&self) -> Option<FemReference> {
         let recorded = self.recorded.iter().flat_map(|r| &r.meshes).map(|m| ("recorded", m));
         let live = self.live.iter().filter_map(|(_, m)| Some(("live", &m.as_ref().ok()?.result)));
@@ -72,29 +72,30 @@ impl FemMeshes {
 /// FEM's finest mesh as a reference.
 struct FemReference {
     finest: Curves,
-    /// The mesh after it, whose difference is what the finest says of its own error.
+    /// The next mesh; its difference from the finest is the finest mesh's own error.
     next: Option<Curves>,
     size: f64,
     words: String,
 }
 
-/// What a run needs.
+/// The input of a run.
 pub struct BenchSetup<'a> {
     /// The models, timed at least once.
     pub models: Models<'a>,
     /// Tolerances (p0), each once.
     pub tolerances: Vec<f64>,
-    /// FEM's part in a case.
+    /// The FEM meshes of a case.
     pub fem: &'a dyn Fn(&Case) -> FemMeshes,
-    /// Called with the number of steps done and of all steps, and what was just done.
+    /// Called after each step with the number of finished steps, the number of all steps and the
+    /// step's name.
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
 }
 
-/// A point with the curves of its answer.
-type Answered = (BenchPoint, Option<Curves>);
+/// A point with its curves.
+type WithCurves = (BenchPoint, Option<Curves>);
 
-/// Runs every case on FEM's meshes, and then by every model at every tolerance. What fails is kept
-/// with its reason.
+/// Runs every case on FEM's meshes, and then by every model at every tolerance. A failed solve is
+/// kept with its error.
 pub fn run(cases: &[Case], setup: &BenchSetup) -> Vec<CaseBench> {
     let stages = setup.tolerances.len() + 1;
     let fem: Vec<FemMeshes> = cases
@@ -108,7 +109,7 @@ pub fn run(cases: &[Case], setup: &BenchSetup) -> Vec<CaseBench> {
         })
         .collect();
     let references: Vec<_> = fem.iter().map(FemMeshes::reference).collect();
-    let mut points: Vec<Vec<Answered>> = vec![Vec::new(); cases.len()];
+    let mut points: Vec<Vec<WithCurves>> = vec![Vec::new(); cases.len()];
     for (stage, &tolerance) in setup.tolerances.iter().enumerate() {
         let of_stage = models_at(cases, tolerance, &setup.models, &|done, all, what| {
             let whole = 100 * ((stage + 1) * all + done) / all;
@@ -131,14 +132,14 @@ pub fn run(cases: &[Case], setup: &BenchSetup) -> Vec<CaseBench> {
         .collect()
 }
 
-/// The points of all models at one tolerance, one list a case; `step` is told of every step done and
-/// of all.
+/// The points of all models at one tolerance, one list for each case. `step` is called with the
+/// number of finished steps, the number of all steps and the step's name.
 fn models_at(
     cases: &[Case],
     tolerance: f64,
     models: &Models,
     step: &(dyn Fn(usize, usize, &str) + Sync),
-) -> Vec<Vec<Answered>> {
+) -> Vec<Vec<WithCurves>> {
     let cases: Vec<Case> = cases.iter().map(|c| c.clone().with_tolerance(tolerance)).collect();
     let jobs = Jobs::new(&cases, models);
     let done = AtomicUsize::new(0);
@@ -149,7 +150,7 @@ fn models_at(
             Ok(solution) => (Some(solution.curves), None),
             Err(e) => (None, Some(e.to_string())),
         };
-        // No time counts for an answer that was not computed.
+        // A failed solve has no time.
         let timing = |i: usize| curves.as_ref().and(attempt.timing.get(i)).copied();
         let point = BenchPoint {
             timing: timing(0),
@@ -163,7 +164,7 @@ fn models_at(
 }
 
 /// The points of FEM, live meshes first.
-fn fem_points(meshes: &FemMeshes) -> Vec<Answered> {
+fn fem_points(meshes: &FemMeshes) -> Vec<WithCurves> {
     let point = |origin, setting| BenchPoint::new(Engine::fenicsx(), origin, setting);
     let live = meshes.live.iter().map(|(size, mesh)| match mesh {
         Ok(mesh) => (
@@ -194,7 +195,7 @@ fn fem_points(meshes: &FemMeshes) -> Vec<Answered> {
 /// Compares the points of a case with both references.
 fn assess(
     case: &Case,
-    points: Vec<Answered>,
+    points: Vec<WithCurves>,
     reference: Option<FemReference>,
     limit: f64,
     range: &Range,
@@ -202,7 +203,7 @@ fn assess(
     let is_limit = |p: &BenchPoint| p.source == BEST.into() && p.setting == limit;
     let limit = points.iter().find(|(p, _)| is_limit(p)).and_then(|(_, s)| s.clone());
     let fem = Engine::fenicsx().into();
-    // The finest mesh against itself would be exact.
+    // Against itself the finest mesh would have no error.
     let own = reference
         .as_ref()
         .and_then(|r| Deviation::between(case, &r.finest, (&fem, r.next.as_ref()?), range));

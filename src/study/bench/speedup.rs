@@ -1,17 +1,17 @@
-//! FEM's time over a model's, at an error that both stay within.
+//! FEM's time over a model's, at an error that neither exceeds.
 
 use super::point::{Against, BEST, BenchPoint, CaseBench, Origin};
 use crate::study::timing::Ratio;
 use serde::{Deserialize, Serialize};
 
-/// FEM against [`BEST`] at an error that both stay within, timed in one run.
+/// FEM against [`BEST`] at an error that neither exceeds, timed in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Speedup {
     /// The case.
     pub case: String,
-    /// The error that both stay within (p0).
+    /// The error that neither exceeds (p0).
     pub level: f64,
-    /// What the model's error is taken against; FEM's is always that to its own finest mesh.
+    /// The reference of the model's error; FEM's error is always against its finest mesh.
     pub against: Against,
     /// Relative element size of the fastest mesh within the level.
     pub size: f64,
@@ -31,7 +31,7 @@ pub struct Speedup {
     pub ratio: Ratio,
 }
 
-/// FEM against [`BEST`] at each level, where both were timed in this run and stay within it.
+/// FEM against [`BEST`] at each level that both reach with a time of this run.
 pub fn speedups(cases: &[CaseBench], levels: &[f64]) -> Vec<Speedup> {
     let mut all = Vec::new();
     for case in cases {

@@ -6,7 +6,7 @@ use crate::study::synthetic;
 use crate::study::timing::Timing;
 use std::path::Path;
 
-/// Two cases of the built-in study that differ only in load, on made-up answers.
+/// Two cases of the built-in study that differ only in load, with made-up solutions.
 fn cases() -> Vec<Case> {
     let study = Study::built_in();
     let names = ["w1e-4_sl5_lr1", "w1e-3_sl5_lr1"];
@@ -37,7 +37,7 @@ fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> 
 }
 
 #[test]
-fn errors_are_those_of_the_made_up_answers() {
+fn errors_are_those_of_the_made_up_solutions() {
     for case in bench() {
         assert_eq!(case.fem_reference.as_deref(), Some("recorded, size 1"));
         // Two models at three tolerances, two recorded meshes and a live one.
