@@ -76,7 +76,7 @@ pub enum Error {
     /// Cells that do not cover the contact.
     #[error(
         "the contact reaches the edge of the cells at x = {half_width:.4} C, with {pressure:.1e} p0 there; \
-         take a wider region of cells"
+         give a larger [cells] half_width_m, or none"
     )]
     Uncovered {
         /// Half-width of the region (C).

@@ -2,7 +2,7 @@
 //! checks and tables of parameters use this list.
 
 use super::draft::{Draft, Form};
-use super::model::Factors;
+use super::model::{Cells, Factors};
 use crate::base::{Error, Result};
 
 /// Whether a file must contain a number.
@@ -164,7 +164,7 @@ const WITH_FACTORS: Presence = Presence::With(Form::Factors);
 
 /// All numbers of a case, in the order of its file. The keys of a table stand side by side.
 #[rustfmt::skip]
-pub static KEYS: [Key; 12] = [
+pub static KEYS: [Key; 13] = [
     key!("roller.radius_m", "radius_m", "the roller's radius in metres", LENGTHS, "10e-3", ALWAYS,
         case.roller.radius_m),
     key!("roller.length_m", "roller_length_m", "the roller's length in metres", LENGTHS, "10e-3",
@@ -191,4 +191,7 @@ pub static KEYS: [Key; 12] = [
         case.load.force_n),
     key!("accuracy.tolerance", "tolerance", "the tolerance, a fraction of p0,", (1e-5, 1e-1), "1e-3",
         OPTIONAL, case.accuracy.tolerance),
+    key!("cells.half_width_m", "cells_half_width_m", "the half-width of the cells in metres", LENGTHS,
+        "1e-3", OPTIONAL, |draft| draft.case.cells.map(|cells| cells.half_width_m),
+        |draft, half_width_m| draft.case.cells = Some(Cells { half_width_m })),
 ];

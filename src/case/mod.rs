@@ -23,7 +23,7 @@ mod tests;
 pub use builtin::{BUILTIN_CASES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
-pub use model::{Accuracy, Block, Case, Factors, Load, Roller};
+pub use model::{Accuracy, Block, Case, Cells, Factors, Load, Roller};
 #[cfg(feature = "cli")]
 pub use {
     study_file::{DEFAULT_STUDY, Study},

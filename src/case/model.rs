@@ -48,6 +48,13 @@ impl Default for Accuracy {
     }
 }
 
+/// The cells of the engine on cells; no part of the problem.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Cells {
+    /// Half-width of their region across the contact (m).
+    pub half_width_m: f64,
+}
+
 /// A contact problem in SI units. [`Case::check`] tells whether it is legal. A case that was read
 /// from a file is legal.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -62,6 +69,9 @@ pub struct Case {
     pub load: Load,
     /// The accuracy.
     pub accuracy: Accuracy,
+    /// The cells, where the case says anything of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cells: Option<Cells>,
 }
 
 /// The three factors of the study.
@@ -111,6 +121,7 @@ impl Case {
             block: Block { length_m: f64::NAN, material: block },
             load: Load { force_n: f64::NAN },
             accuracy: Accuracy::default(),
+            cells: None,
         };
         case.set_factors(factors);
         case
@@ -156,12 +167,10 @@ impl Case {
         alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
     }
 
-    /// The case file without the name and the accuracy.
+    /// The case file but for the name and for how the case is to be solved.
     fn problem(&self) -> Table {
         let mut table = Table::try_from(self).expect(PLAIN);
-        for other in ["name", "accuracy"] {
-            table.remove(other).expect("every case has them");
-        }
+        table.retain(|key, _| !["name", "accuracy", "cells"].contains(&key));
         table
     }
 

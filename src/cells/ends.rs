@@ -7,14 +7,17 @@
 //!
 //! p_nodes = 2 b W^-1 E^T p_cells (least squares),    u_cells = E R p_nodes,
 //!
-//! which is symmetric as R W^-1 is. Across the contact R is a convolution with r(x) = (1/pi^2) int_0^inf R(k) cos(k x) dk,
+//! which is symmetric as R W^-1 is. R fades within a few 1/k of the ends, so few shapes along the line make up all of it: the
+//! eigenvectors of the sum of W^1/2 R W^-1/2 squared over the wavenumbers. Across the contact R is a convolution with r(x) = (1/pi^2) int_0^inf R(k) cos(k x) dk,
 //! taken at the cells' distances: it fades too slowly for a sum over the grid's own wavenumbers.
 
 use super::grid::Grid;
 use super::influence::EvenTransform;
 use crate::base::{Panels, Parity, Wavenumbers};
-use crate::body::{Body, End, Resolution, Shape};
-use nalgebra::DMatrix;
+use crate::body::{Body, End, Layer, Resolution, Shape};
+use crate::contact;
+use crate::stress::{Field, Load};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
@@ -35,60 +38,160 @@ const MIRRORED: End = End { image_weight: Some(1.0), freed: false, gamma: None }
 /// End faces free of traction.
 const FREED: End = End { image_weight: Some(1.0), freed: true, gamma: None };
 
-/// R(k) of all bodies together at some wavenumbers, on the nodes of panels along half of the contact.
-#[derive(Debug, Clone)]
-pub(super) struct FreeEnds {
-    axis: Panels,
-    wavenumbers: Wavenumbers,
-    /// (R - [`uniform`]) W^-1 at the coarse wavenumbers.
-    matrices: Vec<DMatrix<f64>>,
-    bodies: Vec<FreeBody>,
+/// Accuracy (p0) of the nodes that carry the free ends: the finest, as contacts of all lengths are few to set up.
+const TOLERANCE: f64 = 1e-4;
+
+/// Shapes along the line that displace less than this part of the largest one are left out.
+const NEGLIGIBLE: f64 = 1e-6;
+
+/// A body with free ends at the coarse wavenumbers.
+#[derive(Debug)]
+struct Freed {
+    body: Body,
+    layers: Vec<Layer>,
+    /// Share of the compliance of all bodies like this one.
+    share: f64,
 }
 
-/// What long waves of uniform pressure displace in bodies that end, 2 pi / (k H) between any two places of the contact, faded beyond
-/// 1/H: it grows too fast towards k = 0 to be interpolated.
-fn uniform(bodies: &[FreeBody], k: f64) -> f64 {
-    bodies.iter().map(|body| body.share * 2.0 * PI / (k * body.half) * (-k * body.half).exp()).sum()
+/// R(k) of all bodies together at some wavenumbers, on the nodes of panels along half of the contact.
+#[derive(Debug)]
+pub struct FreeEnds {
+    axis: Panels,
+    wavenumbers: Wavenumbers,
+    /// Bodies of one length and one Poisson's ratio are one.
+    bodies: Vec<Freed>,
+    /// B, a column for each of the few shapes along the line that R consists of.
+    basis: DMatrix<f64>,
+    /// r at the coarse wavenumbers, with (R - [`FreeEnds::uniform`]) W^-1 = B r B^T.
+    matrices: Vec<DMatrix<f64>>,
 }
 
 impl FreeEnds {
-    /// For a contact of half-length `half_length` whose fields are wanted up to the distance `width` apart.
-    pub(super) fn new(half_length: f64, width: f64, bodies: &[FreeBody], tolerance: f64) -> Self {
-        let resolution = Resolution::for_tolerance(tolerance);
+    /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free ends.
+    pub fn new(half_length: f64, bodies: &[FreeBody]) -> Self {
+        let resolution = Resolution::for_tolerance(TOLERANCE);
         let axis = resolution.contact_axis(half_length);
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
-        let wavenumbers = resolution.wavenumbers(longest).resolving(width);
-        let pairs: Vec<_> = bodies
-            .iter()
-            .map(|body| {
-                let shape = Shape { contact: half_length, half: body.half, nu: body.nu };
-                (
-                    body.share,
-                    [FREED, MIRRORED].map(|end| Body::new(shape, end, Parity::Even, &resolution)),
-                )
-            })
-            .collect();
-        let remainder = |&k: &f64| {
-            let mut sum = DMatrix::zeros(axis.len(), axis.len());
-            for (share, [freed, mirrored]) in &pairs {
-                sum += (freed.layer(k).compliance - mirrored.layer(k).compliance) * *share;
+        let wavenumbers = resolution.wavenumbers(longest);
+        let mut distinct: Vec<FreeBody> = Vec::new();
+        for body in bodies {
+            match distinct.iter_mut().find(|b| b.half == body.half && b.nu == body.nu) {
+                Some(like) => like.share += body.share,
+                None => distinct.push(*body),
             }
-            for (mut column, weight) in sum.column_iter_mut().zip(axis.weights()) {
-                column /= *weight;
-            }
-            // Symmetric but for the error of the nodes.
-            ((&sum + sum.transpose()) * 0.5).add_scalar(-uniform(bodies, k))
+        }
+        let at_all = |body: &Body| -> Vec<Layer> {
+            wavenumbers.coarse().nodes().par_iter().map(|k| body.layer(*k)).collect()
         };
-        let matrices = wavenumbers.coarse().nodes().par_iter().map(remainder).collect();
-        Self { axis, wavenumbers, matrices, bodies: bodies.to_vec() }
+        let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
+        let pairs = distinct.iter().map(|&FreeBody { half, nu, share }| {
+            let shape = Shape { contact: half_length, half, nu };
+            let [body, mirrored] =
+                [FREED, MIRRORED].map(|end| Body::new(shape, end, Parity::Even, &resolution));
+            let (layers, others) = (at_all(&body), at_all(&mirrored));
+            for (sum, (freed, mirrored)) in sums.iter_mut().zip(layers.iter().zip(others)) {
+                *sum += (&freed.compliance - mirrored.compliance) * share;
+            }
+            Freed { body, layers, share }
+        });
+        let bodies = pairs.collect();
+        let basis = DMatrix::zeros(0, 0);
+        let mut ends = Self { bodies, axis, wavenumbers, basis, matrices: Vec::new() };
+        let roots =
+            DVector::from_iterator(ends.axis.len(), ends.axis.weights().iter().map(|w| w.sqrt()));
+        let nodes = ends.wavenumbers.coarse().nodes().iter();
+        let all: Vec<_> = nodes.zip(sums).map(|(k, sum)| ends.remainder(*k, sum, &roots)).collect();
+        let shapes = shapes(&all, ends.wavenumbers.coarse().weights());
+        ends.matrices = all.par_iter().map(|matrix| shapes.tr_mul(&(matrix * &shapes))).collect();
+        ends.basis = scaled(shapes, &roots, |value, root| value / root);
+        ends
+    }
+
+    /// W^1/2 (R - [`FreeEnds::uniform`]) W^-1/2 of the compliance `r` at `k`, with the square `roots` of the weights.
+    fn remainder(&self, k: f64, r: DMatrix<f64>, roots: &DVector<f64>) -> DMatrix<f64> {
+        let columns = scaled(r.transpose(), roots, |value, root| value / root);
+        let sum = scaled(columns.transpose(), roots, |value, root| value * root);
+        let uniform = roots * roots.transpose() * self.uniform(k);
+        // Symmetric but for the error of the nodes.
+        (&sum + sum.transpose()) * 0.5 - uniform
+    }
+
+    /// Memory of the correction on `grid` (bytes).
+    pub(super) fn bytes(&self, grid: &Grid) -> f64 {
+        8.0 * grid.nx as f64 * (self.matrices.len() + self.basis.ncols().pow(2)) as f64
+    }
+
+    /// What long waves of uniform pressure displace in bodies that end, 2 pi / (k H) between any two places of the contact, faded beyond
+    /// 1/H: it grows too fast towards k = 0 to be interpolated.
+    fn uniform(&self, k: f64) -> f64 {
+        let of = |freed: &Freed| {
+            let half = freed.body.half;
+            freed.share * 2.0 * PI / (k * half) * (-k * half).exp()
+        };
+        self.bodies.iter().map(of).sum()
+    }
+
+    /// The wavenumbers for fields over the cells of `grid`, which are padded to twice their extent.
+    fn resolving(&self, grid: &Grid) -> Wavenumbers {
+        self.wavenumbers.resolving(4.0 * grid.half_width)
+    }
+
+    /// Axis along half of the contact.
+    pub fn axis(&self) -> &Panels {
+        &self.axis
+    }
+
+    /// Wavenumbers across the contact.
+    pub fn wavenumbers(&self) -> &Wavenumbers {
+        &self.wavenumbers
+    }
+
+    /// Whether all bodies are alike.
+    pub fn shared(&self) -> bool {
+        self.bodies.len() == 1
+    }
+
+    /// The stresses in the body of half-length `half` (C) and Poisson's ratio `nu`, one of those given, under `pressure` with its
+    /// [`Load::moments`] over [`FreeEnds::wavenumbers`]; contributions below `tolerance` (p0) are neglected.
+    pub fn field<'a>(
+        &'a self,
+        (half, nu): (f64, f64),
+        pressure: &'a dyn Load,
+        moments: &DMatrix<f64>,
+        tolerance: f64,
+    ) -> Field<'a> {
+        let own = |freed: &&Freed| freed.body.half == half && freed.body.nu == nu;
+        let freed = self.bodies.iter().find(own).expect("one of the bodies");
+        let (body, numbers) = (&freed.body, &self.wavenumbers);
+        Field::new(body, numbers, &freed.layers, pressure, moments, None, tolerance)
+    }
+
+    /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on
+    /// `grid` has it; see [`contact::reference`].
+    pub(super) fn reference(&self, pressure: &dyn Load, grid: &Grid, depth: f64) -> f64 {
+        let wavenumbers = self.resolving(grid);
+        let compliance = |(matrix, k): (&DMatrix<f64>, &f64)| {
+            let remainder = &self.basis * matrix * self.basis.transpose();
+            let mut whole = remainder.add_scalar(self.uniform(*k));
+            for (mut column, weight) in whole.column_iter_mut().zip(self.axis.weights()) {
+                column *= *weight;
+            }
+            whole
+        };
+        let all = self.matrices.iter().zip(self.wavenumbers.coarse().nodes());
+        let matrices: Vec<DMatrix<f64>> = all.map(compliance).collect();
+        let compliance = contact::Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
+        let transform = |k: f64| pressure.transforms(&[k]).column(0).into_owned();
+        contact::reference(&compliance, transform, depth)
     }
 
     /// On the quarter of the cells of `grid`, for cosine transforms of length `mx` across the contact.
     pub(super) fn on_cells(&self, grid: &Grid, mx: usize) -> EndCorrection {
         let (a, b) = grid.half_sides();
-        let nodes = self.axis.len();
+        let rank = self.basis.ncols();
+        let wavenumbers = self.resolving(grid);
         // Of each coarse wavenumber, and each of the cells' own, the share in the latter's matrix.
-        let fine = self.wavenumbers.fine();
+        let fine = wavenumbers.fine();
         let mut shares = vec![vec![0.0; mx + 1]; self.matrices.len()];
         let mut uniform_shares = vec![0.0; mx + 1];
         let mut transform = EvenTransform::new(mx);
@@ -101,57 +204,98 @@ impl FreeEnds {
                 .map(|d| (k * 2.0 * a * d as f64).cos() * weight * width / (PI * PI))
                 .collect();
             transform.apply(&mut wave);
-            add(uniform(&self.bodies, *k), &wave, &mut uniform_shares);
-            let (first, interpolation) = self.wavenumbers.interpolation(i);
+            add(self.uniform(*k), &wave, &mut uniform_shares);
+            let (first, interpolation) = wavenumbers.interpolation(i);
             for (share, into) in interpolation.iter().zip(&mut shares[first..]) {
                 add(*share, &wave, into);
             }
         }
         // The transform back across the contact is mx times the sequence.
         let scale = 2.0 * b / mx as f64;
-        let mut matrices = vec![0.0; mx * nodes * nodes];
-        matrices.par_chunks_mut(nodes * nodes).enumerate().for_each(|(k, into)| {
-            into.fill(scale * uniform_shares[k]);
+        let mut matrices = vec![0.0; mx * rank * rank];
+        matrices.par_chunks_mut(rank * rank).enumerate().for_each(|(k, into)| {
             for (share, matrix) in shares.iter().zip(&self.matrices) {
                 let share = scale * share[k];
                 into.iter_mut().zip(matrix.as_slice()).for_each(|(sum, m)| *sum += share * m);
             }
         });
-        EndCorrection { means: means(&self.axis, grid), nodes, matrices }
+        let of_cell = |means: &Vec<(usize, f64)>| -> Vec<f64> {
+            let shape =
+                |i: usize| means.iter().map(|(node, mean)| mean * self.basis[(*node, i)]).sum();
+            (0..rank).map(shape).collect()
+        };
+        EndCorrection {
+            shapes: means(&self.axis, grid).iter().flat_map(of_cell).collect(),
+            rank,
+            matrices,
+            uniform: uniform_shares.iter().map(|share| scale * share).collect(),
+        }
     }
+}
+
+/// The eigenvectors that all of the symmetric `matrices` consist of, those of the sum of their squares.
+fn shapes(matrices: &[DMatrix<f64>], weights: &[f64]) -> DMatrix<f64> {
+    let n = matrices[0].nrows();
+    let squares = matrices.iter().zip(weights).map(|(matrix, weight)| matrix * matrix * *weight);
+    let sum = squares.fold(DMatrix::zeros(n, n), |sum, square| sum + square);
+    let eigen = sum.symmetric_eigen();
+    let most = eigen.eigenvalues.max();
+    let wanted = |i: &usize| eigen.eigenvalues[*i] > NEGLIGIBLE * NEGLIGIBLE * most;
+    let columns: Vec<_> = (0..n).filter(wanted).map(|i| eigen.eigenvectors.column(i)).collect();
+    DMatrix::from_columns(&columns)
+}
+
+/// The rows of `matrix` combined with the numbers of `scales` by `with`.
+fn scaled(
+    mut matrix: DMatrix<f64>,
+    scales: &DVector<f64>,
+    with: fn(f64, f64) -> f64,
+) -> DMatrix<f64> {
+    for mut column in matrix.column_iter_mut() {
+        column
+            .iter_mut()
+            .zip(scales.iter())
+            .for_each(|(value, scale)| *value = with(*value, *scale));
+    }
+    matrix
 }
 
 /// [`FreeEnds`] on the cells of a quarter, in the wavenumbers of their transform.
 #[derive(Debug, Clone)]
 pub(super) struct EndCorrection {
-    /// E: for each cell along the line its nodes and their weights.
-    means: Vec<Vec<(usize, f64)>>,
-    nodes: usize,
-    /// For each wavenumber 2 b R W^-1.
+    /// E B: for each cell along the line the mean of each shape.
+    shapes: Vec<f64>,
+    rank: usize,
+    /// For each wavenumber 2 b r.
     matrices: Vec<f64>,
+    /// For each wavenumber 2 b times [`FreeEnds::uniform`].
+    uniform: Vec<f64>,
 }
 
 impl EndCorrection {
     /// Adds the displacement that the pressures `p(j)` of wavenumber `k` cause to `out`.
     pub(super) fn add(&self, k: usize, p: impl Fn(usize) -> f64, out: &mut [f64]) {
-        let nodes = self.nodes;
-        let (mut loads, mut moved) = (vec![0.0; nodes], vec![0.0; nodes]);
-        for (j, means) in self.means.iter().enumerate() {
+        let rank = self.rank;
+        let (mut loads, mut moved) = (vec![0.0; rank], vec![0.0; rank]);
+        let mut total = 0.0;
+        for (j, shapes) in self.shapes.chunks_exact(rank).enumerate() {
             let p = p(j);
-            means.iter().for_each(|(node, mean)| loads[*node] += mean * p);
+            total += p;
+            loads.iter_mut().zip(shapes).for_each(|(load, shape)| *load += shape * p);
         }
-        let matrix = &self.matrices[k * nodes * nodes..][..nodes * nodes];
-        for (column, load) in matrix.chunks_exact(nodes).zip(&loads) {
+        let matrix = &self.matrices[k * rank * rank..][..rank * rank];
+        for (column, load) in matrix.chunks_exact(rank).zip(&loads) {
             moved.iter_mut().zip(column).for_each(|(sum, m)| *sum += m * load);
         }
-        for (out, means) in out.iter_mut().zip(&self.means) {
-            *out += means.iter().map(|(node, mean)| mean * moved[*node]).sum::<f64>();
+        let uniform = self.uniform[k] * total;
+        for (out, shapes) in out.iter_mut().zip(self.shapes.chunks_exact(rank)) {
+            *out += uniform + shapes.iter().zip(&moved).map(|(shape, m)| shape * m).sum::<f64>();
         }
     }
 }
 
 /// The means of the polynomials of `axis` over the cells on its half of the line.
-fn means(axis: &Panels, grid: &Grid) -> Vec<Vec<(usize, f64)>> {
+pub(super) fn means(axis: &Panels, grid: &Grid) -> Vec<Vec<(usize, f64)>> {
     let length = 2.0 * grid.half_sides().1;
     let order = axis.order();
     let of_cell = |j: usize| {

@@ -1,18 +1,42 @@
 //! Stresses under cells, by Love's sums.
 
-use super::problem::CellPressure;
+use super::grid::Grid;
+use super::pressure::CellPressure;
 use crate::base::StressTensor;
 use crate::body::transition;
-use crate::kernels::love;
+use crate::kernels::corners::{CornerRow, CornerSums};
+use std::sync::Arc;
+
+/// Corners further from another than this part of the body's length are not the same.
+const SAME: f64 = 1e-12;
 
 /// The stress field of one body under the pressures of cells.
 #[derive(Debug, Clone)]
 pub struct CellField {
-    /// Pressed cells: x, y of the centre and the pressure.
-    pressed: Vec<[f64; 3]>,
-    half_sides: (f64, f64),
+    /// Corners of the pressed cells and of their images, in rows of one y.
+    rows: Vec<Row>,
+    /// A length of the size of a cell.
+    unit: f64,
     end: FieldEnd,
     nu: f64,
+    /// Whether the pressure is even in y.
+    even: bool,
+}
+
+/// Corners of cells that have one y.
+#[derive(Debug, Clone)]
+struct Row {
+    y: f64,
+    /// 1, and -1 for images: a second difference changes its sign in a mirror.
+    sign: f64,
+    corners: Arc<RowCorners>,
+}
+
+#[derive(Debug)]
+struct RowCorners {
+    all: CornerRow,
+    /// Those at x > 0, if the others are their mirror images with the opposite weight: all that counts in the plane x = 0.
+    half: Option<CornerRow>,
 }
 
 /// What the end faces of a body do to its stresses.
@@ -30,10 +54,29 @@ impl CellField {
     /// The field of a body with Poisson's ratio `nu`.
     pub fn new(solution: &CellPressure, end: FieldEnd, nu: f64) -> Self {
         let grid = &solution.grid;
-        let cell = |(i, p): (usize, &f64)| [grid.x(i % grid.nx), grid.y(i / grid.nx), *p];
-        let all = solution.pressure.iter().enumerate();
-        let pressed = all.filter(|(_, p)| **p > 0.0).map(cell).collect();
-        Self { pressed, half_sides: grid.half_sides(), end, nu }
+        let (a, b) = grid.half_sides();
+        let FieldEnd { half, mirrored, .. } = end;
+        let mut rows = Vec::new();
+        for j in 0..=grid.ny {
+            let y = 2.0 * b * j as f64 - grid.half_length;
+            let Some(corners) = corners(solution, j) else { continue };
+            let corners = Arc::new(corners);
+            let own = Row { y, sign: 1.0, corners };
+            // On an end face a corner and its image cancel.
+            let on_face = |face: f64| (face - y).abs() <= SAME * half;
+            if !mirrored {
+                rows.push(own);
+                continue;
+            }
+            if !on_face(half) && !on_face(-half) {
+                rows.push(own.clone());
+            }
+            let faces = [half, -half].into_iter().filter(|face| !on_face(*face));
+            rows.extend(faces.map(|face| Row { y: 2.0 * face - y, sign: -1.0, ..own.clone() }));
+        }
+        let pressures = solution.pressure.chunks_exact(grid.nx);
+        let even = pressures.clone().eq(pressures.rev());
+        Self { rows, unit: (a * b).sqrt(), end, nu, even }
     }
 
     /// The stress (p0) at (`x`, `y`, `z`), z >= 0 into the body. On the surface it is finite everywhere, and
@@ -43,39 +86,68 @@ impl CellField {
     /// of the face next to the point, the share [`transition`] is taken off, for both faces.
     pub fn at(&self, x: f64, y: f64, z: f64) -> StressTensor {
         let mut stress = self.mirrored(x, y, z);
-        if let Some(gamma) = self.end.gamma {
-            for face in [self.end.half, -self.end.half] {
-                let share = transition((face - y).abs(), z, gamma);
-                if share > 0.0 {
-                    stress.yy -= share * self.mirrored(x, face, z).yy;
-                }
+        let Some(gamma) = self.end.gamma else { return stress };
+        let half = self.end.half;
+        let shares = [half, -half].map(|face| transition((face - y).abs(), z, gamma));
+        let mut take = |share: f64, face: f64| {
+            if share > 0.0 {
+                stress.yy -= share * self.mirrored(x, face, z).yy;
             }
+        };
+        if self.even {
+            take(shares[0] + shares[1], half);
+        } else {
+            take(shares[0], half);
+            take(shares[1], -half);
         }
         stress
     }
 
     /// Love's sum over the cells and their images.
     fn mirrored(&self, x: f64, y: f64, z: f64) -> StressTensor {
-        let (a, b) = self.half_sides;
-        let faces = if self.end.mirrored { 2.0 * self.end.half } else { f64::INFINITY };
-        let mut sum = StressTensor::default();
-        for &[from_x, from_y, p] in &self.pressed {
-            let one = |from_y: f64| love::stress(x - from_x, y - from_y, z, a, b, self.nu);
-            let mut unit = one(from_y);
-            if self.end.mirrored {
-                unit += one(faces - from_y);
-                unit += one(-faces - from_y);
+        let mut sums = CornerSums::default();
+        let central = x == 0.0 && self.rows.iter().all(|row| row.corners.half.is_some());
+        for row in &self.rows {
+            let apart = y - row.y;
+            let apart = if apart.abs() <= SAME * self.end.half { 0.0 } else { apart };
+            let at = [x, apart, z];
+            match &row.corners.half {
+                Some(half) if central => sums.add(half, 2.0 * row.sign, at, self.unit),
+                _ => sums.add(&row.corners.all, row.sign, at, self.unit),
             }
-            sum += unit * p;
         }
-        sum
+        let stress = sums.stress(self.nu);
+        if central { StressTensor { xy: 0.0, xz: 0.0, ..stress } } else { stress }
     }
+}
+
+/// The corners at the edge below the cells of row `j`, weighted with the second differences of the pressures; none if all are zero.
+fn corners(solution: &CellPressure, j: usize) -> Option<RowCorners> {
+    let Grid { nx, ny, half_width, .. } = solution.grid;
+    let p = |i: Option<usize>, j: Option<usize>| match (i, j) {
+        (Some(i), Some(j)) if i < nx && j < ny => solution.pressure[j * nx + i],
+        _ => 0.0,
+    };
+    let step = |i: Option<usize>| p(i, Some(j)) - p(i, j.checked_sub(1));
+    let corner = |i: usize| {
+        let x = half_width * (2.0 * i as f64 - nx as f64) / nx as f64;
+        (x, step(Some(i)) - step(i.checked_sub(1)))
+    };
+    let all: Vec<(f64, f64)> = (0..=nx).map(corner).collect();
+    let odd = all.iter().zip(all.iter().rev()).all(|(own, other)| own.1 == -other.1);
+    let mut pressed = all;
+    pressed.retain(|(_, weight)| *weight != 0.0);
+    let right = || pressed.iter().copied().filter(|(x, _)| *x > 0.0).collect::<Vec<_>>();
+    (!pressed.is_empty()).then(|| RowCorners {
+        all: CornerRow::new(&pressed),
+        half: odd.then(|| CornerRow::new(&right())),
+    })
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::grid::Grid;
     use super::*;
+    use crate::kernels::love;
 
     /// Unequal pressures on some cells.
     fn solution() -> CellPressure {
@@ -88,22 +160,59 @@ mod tests {
         CellField::new(&solution(), FieldEnd { half: 4.0, mirrored, gamma }, 0.3)
     }
 
-    #[test]
-    fn sums_are_those_of_every_cell_and_image() {
-        let solution = solution();
+    /// Love's rectangles, one by one.
+    fn direct(solution: &CellPressure, faces: &[f64], [x, y, z]: [f64; 3]) -> StressTensor {
         let (a, b) = solution.grid.half_sides();
-        let (x, y, z) = (0.31, 3.4, 0.57);
-        let mut want = StressTensor::default();
+        let mut sum = StressTensor::default();
         for (i, p) in solution.pressure.iter().enumerate() {
             let (from_x, from_y) = (solution.grid.x(i % 6), solution.grid.y(i / 6));
-            for from_y in [from_y, 8.0 - from_y, -8.0 - from_y] {
-                want += love::stress(x - from_x, y - from_y, z, a, b, 0.3) * *p;
+            let images = faces.iter().map(|face| 2.0 * face - from_y);
+            for from_y in std::iter::once(from_y).chain(images) {
+                sum += love::stress(x - from_x, y - from_y, z, a, b, 0.3) * *p;
             }
         }
-        let got = field(true, None).at(x, y, z);
-        for (got, want) in got.components().iter().zip(want.components()) {
-            assert!((got - want).abs() < 1e-12, "{got} {want}");
+        sum
+    }
+
+    #[test]
+    fn sums_over_corners_are_those_of_every_cell_and_image() {
+        let skew = solution();
+        let mut even = solution();
+        let p =
+            |i: usize, j: usize| (1.0 + (i.min(5 - i) + 3 * j.min(7 - j)) as f64).sin().max(0.0);
+        even.pressure = (0..48).map(|cell| p(cell % 6, cell / 6)).collect();
+        for solution in [&skew, &even] {
+            // Flush ends, a longer body, no images.
+            for (half, faces) in [(4.0, &[4.0, -4.0][..]), (5.3, &[5.3, -5.3]), (4.0, &[])] {
+                let end = FieldEnd { half, mirrored: !faces.is_empty(), gamma: None };
+                let field = CellField::new(solution, end, 0.3);
+                for at in [
+                    [0.31, 3.4, 0.57],
+                    [0.0, 1.0, 0.2],
+                    [0.4, -2.0, 0.0],
+                    [0.0, 4.0, 0.01],
+                    [9.0, 0.3, 40.0],
+                ] {
+                    let (got, want) = (field.at(at[0], at[1], at[2]), direct(solution, faces, at));
+                    for (got, want) in got.components().iter().zip(want.components()) {
+                        assert!((got - want).abs() < 1e-13, "{half} {at:?}: {got} {want}");
+                    }
+                }
+            }
         }
+    }
+
+    #[test]
+    fn both_faces_correct_an_even_field_alike() {
+        let mut even = solution();
+        even.pressure =
+            (0..48).map(|cell| ((cell / 6).min(7 - cell / 6) + cell % 6) as f64).collect();
+        let end = FieldEnd { half: 4.0, mirrored: true, gamma: Some(2.03) };
+        let both = CellField::new(&even, end, 0.3);
+        let each = CellField { even: false, ..both.clone() };
+        assert!(both.even && !field(true, None).even);
+        let [both, each] = [both, each].map(|field| field.at(0.2, 3.1, 0.4));
+        assert!((both.yy - each.yy).abs() < 1e-13);
     }
 
     #[test]

@@ -15,19 +15,27 @@
 //! - Transforms carry no scale forwards; the spectra of the kernels hold the scale of both ways.
 //!   Sequences are padded with zeros to at least twice the grid, so that nothing wraps around.
 
+mod columns;
 mod convolution;
 mod cosine;
+mod depth;
 mod ends;
 mod field;
 mod grid;
+mod heights;
+mod heights_file;
 mod influence;
 mod linear;
+mod pressure;
 mod problem;
 mod solver;
 mod whole;
 
-pub use ends::FreeBody;
+pub use columns::Columns;
+pub use ends::{FreeBody, FreeEnds};
 pub use field::{CellField, FieldEnd};
 pub use grid::Grid;
+pub use heights::{Detrend, Heights, RoughGap};
 pub use influence::Images;
-pub use problem::{CellPressure, CellProblem};
+pub use pressure::CellPressure;
+pub use problem::CellProblem;

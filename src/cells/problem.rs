@@ -1,17 +1,21 @@
 //! A contact on a grid of cells, from the gap to the pressures.
 
+use super::columns::Columns;
 use super::convolution::EvenConvolution;
 use super::cosine::good_length;
-use super::ends::{FreeBody, FreeEnds};
+use super::depth;
+use super::ends::FreeEnds;
 use super::grid::Grid;
 use super::influence::{Images, Table};
 use super::linear::Linear;
+use super::pressure::CellPressure;
 use super::solver::{Complementarity, State};
 use super::whole::WholeConvolution;
 use crate::base::{Error, Result};
 use crate::contact::Gap;
 use crate::host::check_memory;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// Cells in a direction below which no coarser grid gives a start.
 const COARSEST: usize = 48;
@@ -22,42 +26,24 @@ const START: f64 = 1e-3;
 /// Relative difference of gaps that counts as none.
 const SAME: f64 = 1e-12;
 
-/// Accuracy (p0) of the nodes that carry the free ends: the finest, as contacts of all lengths are few to set up.
-const ENDS_TOLERANCE: f64 = 1e-4;
-
 /// Bytes for each padded cell: spectra, transforms and the vectors of the iteration.
 const BYTES: f64 = 60.0;
 
 /// A contact of two bodies on cells.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct CellProblem {
     /// The cells.
     pub grid: Grid,
     /// The images of every cell, for each body that has some.
     pub images: Vec<Images>,
-    /// The bodies whose ends are free of traction: what this adds to images of full weight. Symmetric contacts only.
-    pub free: Vec<FreeBody>,
+    /// What ends that are free of traction add to images of full weight. Symmetric contacts only.
+    pub free: Option<Arc<FreeEnds>>,
     /// Load (C^2 p0); (pi / 2) times the length of the contact for the Hertz pressure p0.
     pub load: f64,
     /// Relative residual of the iteration.
     pub tolerance: f64,
     /// Most applications of the compliance on the finest grid.
     pub most_iterations: usize,
-}
-
-/// The pressures of a [`CellProblem`].
-#[derive(Debug, Clone, PartialEq)]
-pub struct CellPressure {
-    /// The cells.
-    pub grid: Grid,
-    /// Pressure of each cell (p0), x fastest.
-    pub pressure: Vec<f64>,
-    /// Approach of far points (C^2 / (2 R)).
-    pub approach: f64,
-    /// Applications of the compliance on the finest grid.
-    pub iterations: usize,
-    /// Relative residual.
-    pub residual: f64,
 }
 
 /// Whether a field is even in x and y, so that a quarter of it tells all.
@@ -72,6 +58,8 @@ struct Level<'a> {
     gap: &'a dyn Gap,
     symmetry: Symmetry,
     ends: Option<&'a FreeEnds>,
+    /// Told of every step: applications of the compliance so far, and the residual.
+    progress: &'a dyn Fn(usize, f64),
 }
 
 impl CellProblem {
@@ -81,17 +69,29 @@ impl CellProblem {
     /// [`Error::Uncovered`] where the contact reaches the edge of the cells in x, [`Error::NotConverged`],
     /// and [`Error::Memory`] before anything large is allocated.
     pub fn solve(&self, gap: &dyn Gap) -> Result<CellPressure> {
+        self.solve_telling(gap, &|_, _| {})
+    }
+
+    /// [`CellProblem::solve`] that tells `progress` of every step on any of its grids: how often the compliance was applied there, and the
+    /// relative residual.
+    ///
+    /// # Errors
+    /// As [`CellProblem::solve`].
+    pub fn solve_telling(
+        &self,
+        gap: &dyn Gap,
+        progress: &dyn Fn(usize, f64),
+    ) -> Result<CellPressure> {
         let grid = &self.grid;
-        let padded = 4.0 * grid.len() as f64;
-        let remedy = "ask for fewer cells";
+        let ends = self.free.as_ref().map_or(0.0, |ends| ends.bytes(grid));
         check_memory(
             &format!("a contact on {} x {} cells", grid.nx, grid.ny),
-            BYTES * padded,
-            remedy,
+            BYTES * 4.0 * grid.len() as f64 + ends,
+            "ask for fewer cells",
         )?;
         let gaps = grid.sample(|x, y| gap.at(x, y));
         let symmetry = symmetry(grid, &gaps);
-        if symmetry == Symmetry::None && !self.free.is_empty() {
+        if symmetry == Symmetry::None && self.free.is_some() {
             return Err(Error::Value {
                 key: "method".into(),
                 value: "quarter-space".into(),
@@ -99,10 +99,7 @@ impl CellProblem {
                 remedy: "take even numbers of cells, or another method".into(),
             });
         }
-        let ends = (!self.free.is_empty()).then(|| {
-            FreeEnds::new(grid.half_length, 4.0 * grid.half_width, &self.free, ENDS_TOLERANCE)
-        });
-        let level = Level { gap, symmetry, ends: ends.as_ref() };
+        let level = Level { gap, symmetry, ends: self.free.as_deref(), progress };
         let state = self.solve_level(&level, gaps, *grid, self.tolerance)?;
         let State { pressure, approach, residual, iterations } = state;
         if residual.is_nan() || residual > self.tolerance {
@@ -153,7 +150,19 @@ impl CellProblem {
             gap: &fold(&grid, symmetry, gaps),
             total: share * self.load / (4.0 * a * b),
         };
-        Ok(problem.solve(fold(&grid, symmetry, start), tolerance, self.most_iterations))
+        let start = fold(&grid, symmetry, start);
+        Ok(problem.solve(start, tolerance, self.most_iterations, level.progress))
+    }
+
+    /// Mean displacement along the line (C^2 / (2 R)) that `solution` and its images cause at `depth` (C): the approach
+    /// less this is that of points at the depth.
+    pub fn mean_displacement(&self, solution: &CellPressure, depth: f64) -> f64 {
+        let both = |i: &Images| [(2.0 * i.half, i.weight), (-2.0 * i.half, i.weight)];
+        let shifts: Vec<(f64, f64)> = self.images.iter().flat_map(both).collect();
+        let ends = self.free.as_ref().map_or(0.0, |free| {
+            free.reference(&Columns::new(solution, free.axis()), &self.grid, depth)
+        });
+        depth::mean(solution, &shifts, depth) + ends
     }
 
     /// Eq. 2 for an even pressure.
@@ -277,7 +286,7 @@ mod tests {
     fn problem(nx: usize, ny: usize, images: Vec<Images>) -> CellProblem {
         let grid = Grid::new(nx, ny, 1.6, 3.0).unwrap();
         let load = 0.5 * PI * 2.0 * grid.half_length;
-        CellProblem { grid, images, free: Vec::new(), load, tolerance: 1e-12, most_iterations: 500 }
+        CellProblem { grid, images, free: None, load, tolerance: 1e-12, most_iterations: 500 }
     }
 
     /// One body that ends with the contact, one that goes on for a while, by Guilbault's psi.
@@ -380,7 +389,7 @@ mod tests {
         assert_eq!(symmetry(&problem.grid, &gaps(&Straight)), Symmetry::Quarter);
         assert_eq!(symmetry(&problem.grid, &gaps(&Skew)), Symmetry::None);
         let [quarter, whole] = [Symmetry::Quarter, Symmetry::None].map(|symmetry| {
-            let level = Level { gap: &Straight, symmetry, ends: None };
+            let level = Level { gap: &Straight, symmetry, ends: None, progress: &|_, _| {} };
             let all = gaps(&Straight);
             let state = problem.solve_level(&level, all, problem.grid, 1e-12).unwrap();
             unfold(&problem.grid, symmetry, state.pressure)

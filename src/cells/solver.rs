@@ -33,14 +33,20 @@ const SETTLED: f64 = 0.1;
 
 impl Complementarity<'_> {
     /// Solves from the pressure `start` >= 0, not zero everywhere, to the residual `tolerance`; gives up, with what it has, after
-    /// `most` applications of the displacement.
+    /// `most` applications of the displacement. Tells `progress` of their number and of the residual.
     ///
     /// On the set of cells in contact the pressure solves linear equations with one constraint, its sum, whose
     /// multiplier is D: conjugate gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual
     /// on the set has fallen, cells that pull leave the set and cells that penetrate enter it. The
     /// pressures are set to the prescribed load, and the displacement is taken anew, whenever cells were cut off, not
     /// carried along with what the step does: that is what the published iteration leaves inexact.
-    pub(super) fn solve(&mut self, start: Vec<f64>, tolerance: f64, most: usize) -> State {
+    pub(super) fn solve(
+        &mut self,
+        start: Vec<f64>,
+        tolerance: f64,
+        most: usize,
+        progress: &dyn Fn(usize, f64),
+    ) -> State {
         let n = self.gap.len();
         let mut pressure = start;
         self.rescale(&mut pressure);
@@ -54,6 +60,7 @@ impl Complementarity<'_> {
             let (descent, approach) = self.descent(&set, &u);
             let residual = Residual::new(&set.contact, &u, self.gap, approach);
             let (on_set, relative) = (residual.on_set.sqrt(), residual.relative());
+            progress(iterations, relative);
             let pulled = pressure.iter().any(|p| *p < 0.0);
             if (relative <= tolerance && !pulled) || iterations >= most {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));

@@ -19,19 +19,31 @@ pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
     EdgeModel::ALL.into_iter().filter(wanted).collect()
 }
 
+/// Legal range of the residual of an iteration: smaller ones are lost in rounding.
+const RESIDUALS: (f64, f64) = (1e-12, 1e-2);
+
 /// The tolerance if it is within its legal range.
 ///
 /// # Errors
 /// [`Error::Value`] that names `--tolerance`.
 pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
-    let (low, high) = Key::find("accuracy.tolerance").expect("a key of the list").range;
+    let range = Key::find("accuracy.tolerance").expect("a key of the list").range;
+    checked(tolerance, range, "a fraction of p0", "1e-3")
+}
+
+/// The relative residual if it is within its legal range.
+pub(super) fn checked_residual(residual: f64) -> Result<f64> {
+    checked(residual, RESIDUALS, "a relative residual on cells", "1e-8")
+}
+
+fn checked(tolerance: f64, (low, high): (f64, f64), what: &str, usual: &str) -> Result<f64> {
     if (low..=high).contains(&tolerance) {
         return Ok(tolerance);
     }
     Err(Error::Value {
         key: "--tolerance".into(),
         value: tolerance.to_string(),
-        reason: format!("it is a fraction of p0 between {low:e} and {high:e}"),
-        remedy: "give for example 1e-3".into(),
+        reason: format!("it is {what} between {low:e} and {high:e}"),
+        remedy: format!("give for example {usual}"),
     })
 }

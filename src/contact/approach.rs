@@ -1,7 +1,6 @@
 //! The approach of the bodies, relative to points at a depth.
 
 use super::operator::{Compliance, plane};
-use super::solution::ContactSolution;
 use crate::base::Panels;
 use nalgebra::{DVector, Matrix3, Vector3};
 use std::f64::consts::PI;
@@ -10,14 +9,18 @@ use std::f64::consts::PI;
 /// of the surface.
 const LONG: f64 = 0.6;
 
-/// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`: with
-/// the kernel e^(-k depth) the logarithmic growth of the displacement with the extent of the bodies
+/// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`, from the
+/// `transform` of its pressure at the nodes for any wavenumber: with the kernel e^(-k depth) the logarithmic growth of the displacement with the extent of the bodies
 /// cancels in the difference from the approach.
 ///
 /// The error of the contact's few nodes for displacements like 1/k and ln k cancels too: below a
 /// wavenumber the sum over the same nodes is taken, less the integral of the part that decays with
 /// depth.
-pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64) -> f64 {
+pub fn reference(
+    compliance: &Compliance,
+    transform: impl Fn(f64) -> DVector<f64>,
+    depth: f64,
+) -> f64 {
     let wavenumbers = compliance.wavenumbers;
     let fine = wavenumbers.fine();
     let numbers = fine.nodes();
@@ -30,7 +33,7 @@ pub fn reference(compliance: &Compliance, solution: &ContactSolution, depth: f64
         .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
         .collect();
     let mean_at = |(i, &k): (usize, &f64)| -> f64 {
-        let transform = solution.transform(k);
+        let transform = transform(k);
         let (first, shares) = wavenumbers.interpolation(i);
         let rests = shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
         plane(k) * transform.mean() + rests.sum::<f64>()

@@ -27,7 +27,7 @@ pub struct ContactSolution {
 
 impl ContactSolution {
     /// Fourier transform int p cos(k x) dx of the pressure at every node.
-    pub(super) fn transform(&self, k: f64) -> DVector<f64> {
+    pub fn transform(&self, k: f64) -> DVector<f64> {
         let mut modes = Vec::new();
         DVector::from_fn(self.half_widths.len(), |j, _| {
             let coefficients = &self.coefficients[j];

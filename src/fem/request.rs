@@ -2,14 +2,14 @@
 //! `fem/edgeline_fem/request.py` reads.
 
 use super::result::{wanted_curves, wanted_lines};
-use crate::case::{Accuracy, Block, Case, Load, Roller};
+use crate::case::{Accuracy, Block, Case, Cells, Load, Roller};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
-/// The form of a case in requests and records. It leaves out the accuracy, which is the models'
-/// own.
+/// The form of a case in requests and records. It leaves out the accuracy and the cells, which are
+/// the models' own.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Case")]
 pub(super) struct Problem {
@@ -20,6 +20,8 @@ pub(super) struct Problem {
     load: Load,
     #[serde(skip)]
     accuracy: Accuracy,
+    #[serde(skip)]
+    cells: Option<Cells>,
 }
 
 /// A request to the finite-element program.

@@ -4,6 +4,7 @@ pub mod bessel;
 mod bessel_j;
 pub mod bessel_table;
 pub mod boussinesq;
+pub mod corners;
 pub mod deflection;
 pub mod hertz;
 pub mod line_load;

@@ -4,7 +4,7 @@
 //! is the first mode alone. Every integral of these modes that the contact needs has a closed form.
 
 use super::bessel_table::tabulated_j_odd;
-use std::f64::consts::{LN_2, PI};
+use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 /// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the modes `coefficients` on
 /// |x| <= `half_width`; yy is nu (xx + zz).
@@ -52,6 +52,22 @@ pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3]
         (0.0, 0.0)
     };
     [fi + hr, fi - hr, -hi]
+}
+
+/// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the unit pressure on |x'| <= `half_width` (Johnson 1985, Eqs.
+/// 2.30); the mean of both sides where the pressure jumps on the surface.
+pub fn uniform(half_width: f64, x: f64, z: f64) -> [f64; 3] {
+    // Of the pressure on x' <= x - u, per 1 / pi, with the angle theta from the surface.
+    let beyond = |u: f64| {
+        if u == 0.0 && z == 0.0 {
+            return [-FRAC_PI_2, -FRAC_PI_2, 0.0];
+        }
+        let (angle, square) = (z.atan2(u), u * u + z * z);
+        let sine = u * z / square;
+        [-angle - sine, -angle + sine, -z * z / square]
+    };
+    let [right, left] = [beyond(x - half_width), beyond(x + half_width)];
+    std::array::from_fn(|i| (right[i] - left[i]) / PI)
 }
 
 /// Pressure of the modes at `x`.

@@ -1,6 +1,7 @@
 //! The files that the program writes.
 
 pub mod bench;
+pub mod cells;
 pub mod columns;
 pub mod draw;
 pub mod effects_text;

@@ -6,15 +6,19 @@ use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
 use crate::host::{Lock, write_set};
 use crate::solve::{Options, Solution};
+use serde::Serialize;
 use std::path::Path;
 
-/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as
-/// CSV, and `summary.json` last, so that its presence means that all are there.
+/// Most cells that are written as text: more of them have a file of their own, see [`super::cells`].
+const MOST_CELLS: usize = 100_000;
+
+/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV but for
+/// pressures on very many cells, and `summary.json` last, so that its presence means that all are there.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
-pub fn write(
-    solution: &Solution,
+pub fn write<D: Serialize>(
+    solution: &Solution<D>,
     options: &Options,
     more: Vec<(String, Vec<u8>)>,
     folder: &Path,
@@ -22,6 +26,9 @@ pub fn write(
     let mut files = more;
     let mut put = |name: String, text: String| files.push((name, text.into_bytes()));
     for table in tables(solution, options) {
+        if table.name == "pressure" && solution.cells.len() > MOST_CELLS {
+            continue;
+        }
         put(format!("{}.csv", table.name), table.to_csv());
     }
     put("summary.json".into(), pretty(&solution.summary));
@@ -38,7 +45,7 @@ pub fn write_locked(solution: &Solution, options: &Options, folder: &Path) -> Re
 }
 
 /// All tables of `solution`: `pressure`, `curves` and, if `options` asked for points, `points`.
-pub fn tables(solution: &Solution, options: &Options) -> Vec<Columns> {
+pub fn tables<D>(solution: &Solution<D>, options: &Options) -> Vec<Columns> {
     let mut tables = vec![pressure(solution), curves(solution)];
     if !options.points.is_empty() {
         tables.push(points(solution, options));
@@ -47,7 +54,7 @@ pub fn tables(solution: &Solution, options: &Options) -> Vec<Columns> {
 }
 
 /// The contact pressure, one row a cell.
-fn pressure(solution: &Solution) -> Columns {
+fn pressure<D>(solution: &Solution<D>) -> Columns {
     let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
     let rows = solution.cells.iter().map(|cell| {
         let [x_m, y_m, dx_m, dy_m] = [cell.x, cell.y, cell.dx, cell.dy].map(|v| v * c_m);
@@ -58,7 +65,7 @@ fn pressure(solution: &Solution) -> Columns {
 }
 
 /// The standard curves, one row a point.
-fn curves(solution: &Solution) -> Columns {
+fn curves<D>(solution: &Solution<D>) -> Columns {
     let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
     let (mut bodies, mut names, mut rows) = (Vec::new(), Vec::new(), Vec::new());
     for curve in &solution.curves.stress {
@@ -75,7 +82,7 @@ fn curves(solution: &Solution) -> Columns {
 }
 
 /// The requested points, in their order.
-fn points(solution: &Solution, options: &Options) -> Columns {
+fn points<D>(solution: &Solution<D>, options: &Options) -> Columns {
     let bodies = options.points.iter().map(|point| point.body.name().to_string()).collect();
     let rows = options.points.iter().zip(&solution.points);
     let rows = rows.map(|(p, stress)| with_stress(p.at_m, *stress * solution.curves.hertz.p0_pa));

@@ -1,6 +1,5 @@
 //! Stresses at many points: those on one line along an axis share much of their computation.
 
-use super::scene::SolvedScene;
 use crate::stress::{BodyKind, CurveSpec, Field, RoundStress, Work};
 use rayon::prelude::*;
 
@@ -43,17 +42,19 @@ pub(super) struct Stresses {
     pub work: Work,
 }
 
-/// Stresses of `solved` on `curves` and at single `points` (C).
-pub(super) fn stresses(
-    solved: &SolvedScene,
+/// Stresses on `curves` and at single `points` (C) from the `field` of each body; bodies that share
+/// their fields are `shared`.
+pub(super) fn stresses<'a>(
+    shared: bool,
+    field: impl Fn(BodyKind) -> Field<'a>,
     curves: &[CurveSpec],
     points: &[(BodyKind, [f64; 3])],
 ) -> Stresses {
-    let lines = lines(solved, curves, points);
+    let lines = lines(shared, curves, points);
     let fields: Vec<_> = BodyKind::ALL
         .into_iter()
         .filter(|&k| lines.iter().any(|l| l.body == k))
-        .map(|k| (k, solved.field(k)))
+        .map(|k| (k, field(k)))
         .collect();
     let values: Vec<Vec<RoundStress>> = lines
         .par_iter()
@@ -79,11 +80,11 @@ pub(super) fn stresses(
 }
 
 /// The points of `curves` and the single ones, line by line.
-fn lines(solved: &SolvedScene, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) -> Vec<Line> {
+fn lines(shared: bool, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
     let mut add = |kind: BodyKind, along: Along, at: [f64; 3], slot: Slot| {
         // Bodies that share one computation have equal results.
-        let body = if solved.bodies_shared() { BodyKind::Block } else { kind };
+        let body = if shared { BodyKind::Block } else { kind };
         let index = lines.iter().position(|l| l.body == body && l.along == along);
         let index = index.unwrap_or_else(|| {
             lines.push(Line { body, along, points: Vec::new() });

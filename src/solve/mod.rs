@@ -1,6 +1,7 @@
 //! From a case and an edge model to a solved case, its solution, and the main results of many
 //! cases.
 
+mod cell_case;
 mod cells;
 pub mod edge;
 mod extent;
@@ -17,6 +18,7 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
+pub use cell_case::{CellDetails, CellOptions, CellSolution, solve_on_cells};
 pub use cells::PressureCell;
 pub use extent::{Extent, Outside};
 pub use grid::MOST_GRID_POINTS;

@@ -2,8 +2,11 @@
 
 use super::scene::{Scene, SceneBody};
 use crate::base::BodyKind;
-use crate::cells::{CellField, CellPressure, CellProblem, FieldEnd, FreeBody, Grid, Images};
+use crate::cells::{
+    CellField, CellPressure, CellProblem, FieldEnd, FreeBody, FreeEnds, Grid, Images,
+};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Most applications of the compliance.
 const MOST_ITERATIONS: usize = 1000;
@@ -19,6 +22,7 @@ impl Scene {
             free.extend(end.freed.then_some(FreeBody { half, nu, share }));
         }
         let load = FRAC_PI_2 * 2.0 * self.half_length;
+        let free = (!free.is_empty()).then(|| Arc::new(FreeEnds::new(self.half_length, &free)));
         CellProblem { grid, images, free, load, tolerance, most_iterations: MOST_ITERATIONS }
     }
 

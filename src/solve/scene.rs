@@ -1,10 +1,11 @@
 //! A contact in units of C and p0: a case without its scales.
 
+use super::lines;
 use crate::base::{Error, Material, Panels, Parity, PerBody, Result, Wavenumbers};
 use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
 use crate::case::{Accuracy, Block, Case, Load, Roller};
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Straight};
-use crate::stress::{BodyKind, Field, Pressure};
+use crate::stress::{BodyKind, CurveSpec, Field, Load as _, Pressure};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::f64::consts::PI;
@@ -53,7 +54,8 @@ impl Scene {
     /// The scene of a case.
     pub fn new(case: &Case, model: EdgeModel, psi: Option<f64>) -> Self {
         // Each field of a case is in the scene, in the scales or in neither.
-        let Case { name: _, roller, block, load, accuracy: Accuracy { tolerance } } = case;
+        let Case { name: _, roller, block, load, accuracy: Accuracy { tolerance }, cells: _ } =
+            case;
         let Roller { radius_m: _, length_m: roller_length_m, material: roller_material } = *roller;
         let Block { length_m: block_length_m, material: block_material } = *block;
         let Load { force_n: _ } = load;
@@ -261,6 +263,15 @@ impl SolvedScene {
         self.field_with(kind, self.body(kind).0.end.gamma, self.scene.tolerance)
     }
 
+    /// Stresses on `curves` and at single `points` (C).
+    pub(super) fn stresses(
+        &self,
+        curves: &[CurveSpec],
+        points: &[(BodyKind, [f64; 3])],
+    ) -> lines::Stresses {
+        lines::stresses(self.bodies_shared(), |kind| self.field(kind), curves, points)
+    }
+
     /// [`SolvedScene::field`] with a transition factor other than the edge model's, and with
     /// contributions below `tolerance` (p0) neglected.
     pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
@@ -284,7 +295,8 @@ impl SolvedScene {
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
     pub fn approach(&self, depth: f64) -> f64 {
-        self.contact.approach - contact::reference(&self.compliance(), &self.contact, depth)
+        self.contact.approach
+            - contact::reference(&self.compliance(), |k| self.contact.transform(k), depth)
     }
 }
 

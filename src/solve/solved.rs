@@ -30,17 +30,25 @@ pub struct SolvedCase {
     scene: Arc<SolvedScene>,
 }
 
-/// The solution of a case by one method.
+/// The solution of a case by one method; `D` is what its engine says besides.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Solution {
+pub struct Solution<D = Details> {
     /// The results in numbers, in SI units.
-    pub summary: Summary,
+    pub summary: Summary<D>,
     /// The contact pressure on the two standard lines, and stresses on the curves of the options.
     pub curves: Curves,
     /// The contact pressure in cells.
     pub cells: Vec<PressureCell>,
     /// Stresses at the extra points (p0), in their order.
     pub points: Vec<StressTensor>,
+}
+
+impl<D> Solution<D> {
+    /// The same with other details.
+    pub fn map_details<E>(self, of: impl FnOnce(D) -> E) -> Solution<E> {
+        let Self { summary, curves, cells, points } = self;
+        Solution { summary: summary.map_details(of), curves, cells, points }
+    }
 }
 
 /// The stresses of the curves and points of [`Options`] before the roller's round shape is added.
@@ -104,7 +112,7 @@ impl SolvedCase {
             })?;
         }
         let places: Vec<_> = points.iter().map(|at| (body, *at)).collect();
-        let found = lines::stresses(&self.scene, &[], &places).points;
+        let found = self.scene.stresses(&[], &places).points;
         Ok(found.iter().map(|s| self.shaped(body, s)).collect())
     }
 
@@ -134,16 +142,10 @@ impl SolvedCase {
     pub(super) fn stresses(&self) -> SharedStresses {
         let start = Instant::now();
         let (scene, options) = (&self.scene.scene, &self.options);
-        let mut specs = Vec::new();
-        for (kind, body) in BodyKind::ALL.into_iter().zip(scene.bodies.iter()) {
-            if options.bodies.contains(&kind) {
-                let all = standard_curves(kind, scene.half_length, body.half).into_iter();
-                specs.extend(all.filter(|c| options.curves.iter().any(|n| n == c.name)));
-            }
-        }
+        let specs = wanted_curves(scene, options);
         let points: Vec<_> =
             options.points.iter().map(|p| (p.body, p.at_m.map(|v| v / self.hertz.c_m))).collect();
-        let found = lines::stresses(&self.scene, &specs, &points);
+        let found = self.scene.stresses(&specs, &points);
         SharedStresses { specs, found, seconds: start.elapsed().as_secs_f64() }
     }
 
@@ -257,8 +259,16 @@ impl SolvedCase {
     }
 }
 
+/// The standard curves that `options` ask for.
+pub(super) fn wanted_curves(scene: &Scene, options: &Options) -> Vec<CurveSpec> {
+    let bodies = BodyKind::ALL.into_iter().zip(scene.bodies.iter());
+    let wanted = bodies.filter(|(kind, _)| options.bodies.contains(kind));
+    let all = wanted.flat_map(|(kind, body)| standard_curves(kind, scene.half_length, body.half));
+    all.filter(|c| options.curves.iter().any(|n| n == c.name)).collect()
+}
+
 /// The most stressed point of the curves, apart from the surroundings of the roller's edge.
-fn most_stressed(curves: &[StressCurve], half_length: f64) -> Option<Critical> {
+pub(super) fn most_stressed(curves: &[StressCurve], half_length: f64) -> Option<Critical> {
     let points = curves.iter().flat_map(|c| c.at.iter().zip(&c.stress).map(|p| (c.body, p)));
     let away = points.filter(|(_, (at, _))| away_from_edge(**at, half_length, EDGE));
     let values =

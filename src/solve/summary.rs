@@ -7,9 +7,9 @@ use crate::body::{EdgeModel, Resolution};
 use crate::stress::{BodyKind, Critical, Work};
 use serde::{Deserialize, Serialize};
 
-/// The summary of a solution.
+/// The summary of a solution; `D` is what its engine says besides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Summary {
+pub struct Summary<D = Details> {
     /// The case's name.
     pub case: String,
     /// The edge model.
@@ -37,7 +37,29 @@ pub struct Summary {
     /// The most stressed place of the curves, more than 0.1 C from the roller's edge.
     pub critical: Option<CriticalSummary>,
     /// The resolution and the work.
-    pub details: Details,
+    pub details: D,
+}
+
+impl<D> Summary<D> {
+    /// The same with other details.
+    pub fn map_details<E>(self, of: impl FnOnce(D) -> E) -> Summary<E> {
+        Summary {
+            case: self.case,
+            method: self.method,
+            hertz: self.hertz,
+            load_n: self.load_n,
+            approach_m: self.approach_m,
+            p_centre_pa: self.p_centre_pa,
+            p_max_pa: self.p_max_pa,
+            p_max_at_m: self.p_max_at_m,
+            converged: self.converged,
+            iterations: self.iterations,
+            load_error_rel: self.load_error_rel,
+            seconds: self.seconds,
+            critical: self.critical,
+            details: of(self.details),
+        }
+    }
 }
 
 /// The most stressed place in SI units.

@@ -7,13 +7,12 @@
 //! remainder decays with k, so the steep edge of the pressure across the contact needs no
 //! additional wavenumbers.
 
-use super::pressure::Pressure;
+use super::load::Load;
 use super::round::RoundStress;
 use super::waves::{Influence, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::{Body, Layer, transition};
 use crate::kernels::line_load::WaveStress;
-use crate::kernels::strip;
 use crate::kernels::wave::WAVES;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -88,7 +87,7 @@ const STEP: f64 = 1e-4;
 #[derive(Debug)]
 pub struct Field<'a> {
     body: &'a Body,
-    pressure: &'a Pressure,
+    pressure: &'a dyn Load,
     wavenumbers: &'a Wavenumbers,
     layers: &'a [Layer],
     /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
@@ -121,13 +120,13 @@ const FADED: usize = 8;
 
 impl<'a> Field<'a> {
     /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure` with its
-    /// [`Pressure::moments`]. Wavenumbers that change no stress by more than about a tenth of
+    /// [`Load::moments`]. Wavenumbers that change no stress by more than about a tenth of
     /// `tolerance` (p0) are neglected.
     pub fn new(
         body: &'a Body,
         wavenumbers: &'a Wavenumbers,
         layers: &'a [Layer],
-        pressure: &'a Pressure,
+        pressure: &'a dyn Load,
         moments: &DMatrix<f64>,
         gamma: Option<f64>,
         tolerance: f64,
@@ -348,9 +347,8 @@ impl<'a> Field<'a> {
     /// The stress of the endless contact with the local pressure plus `remainder`.
     fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
-        for (j, weight) in self.pressure.neighbours(y.abs()).into_iter().flatten() {
-            let (a, c) = self.pressure.at_node(j);
-            let [xx, zz, xz] = strip::stress(a, c, x, z).map(|s| weight * s);
+        for (j, weight) in self.pressure.neighbours(y.abs()) {
+            let [xx, zz, xz] = self.pressure.endless(j, x, z).map(|s| weight * s);
             s.xx += xx;
             s.zz += zz;
             s.xz += xz;
@@ -463,7 +461,7 @@ impl<'a> Target<'a> {
             surface: Influence::of_surface(body, waves, y, z),
             faces,
             correction,
-            local: field.pressure.neighbours(y).into_iter().flatten().collect(),
+            local: field.pressure.neighbours(y),
             plate,
             stresses: BlockStress::default(),
             work: Work::default(),

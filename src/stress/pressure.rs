@@ -1,6 +1,7 @@
 //! The contact pressure as a function of position.
 
-use crate::base::{Panels, Wavenumbers};
+use super::load::Load;
+use crate::base::Panels;
 use crate::kernels::strip;
 use nalgebra::DMatrix;
 
@@ -33,7 +34,10 @@ impl Pressure {
 
     /// Half-width and modes at `y`; none outside the contact.
     pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
-        let neighbours = self.neighbours(y.abs())?;
+        let neighbours = self.neighbours(y.abs());
+        if neighbours.is_empty() {
+            return None;
+        }
         let mut coefficients = vec![0.0; self.coefficients[0].len()];
         let mut half_width = 0.0;
         for (j, w) in neighbours {
@@ -49,9 +53,18 @@ impl Pressure {
     pub fn at(&self, x: f64, y: f64) -> f64 {
         self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
     }
+}
 
-    /// Fourier transforms over x: a column for each of the wavenumbers `k`, over the nodes.
-    pub(super) fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
+impl Load for Pressure {
+    fn axis(&self) -> &Panels {
+        self.axis()
+    }
+
+    fn at(&self, x: f64, y: f64) -> f64 {
+        self.at(x, y)
+    }
+
+    fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
         let mut modes = vec![0.0; self.coefficients[0].len()];
         DMatrix::from_fn(self.axis.len(), k.len(), |j, i| {
             strip::transforms(self.half_widths[j], k[i], &mut modes);
@@ -59,18 +72,7 @@ impl Pressure {
         })
     }
 
-    /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for
-    /// each of the coarse ones, over the nodes.
-    pub fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {
-        let n = self.axis.len();
-        let transforms = self.transforms(wavenumbers.fine().nodes());
-        let moments = wavenumbers.moments(transforms.as_slice(), n);
-        DMatrix::from_row_slice(wavenumbers.coarse().len(), n, &moments)
-    }
-
-    /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
-    pub(super) fn neighbours(&self, y: f64) -> Option<impl Iterator<Item = (usize, f64)>> {
-        let inside = y <= self.axis.end() * (1.0 + 1e-12);
-        inside.then(|| self.axis.interpolation(y))
+    fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
+        strip::stress(self.half_widths[j], &self.coefficients[j], x, z)
     }
 }

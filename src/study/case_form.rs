@@ -2,7 +2,7 @@
 //! There a body's material is a table of its own; in case files and records it is not.
 
 use crate::base::Material;
-use crate::case::{Accuracy, Block, Case, Load, Roller};
+use crate::case::{Accuracy, Block, Case, Cells, Load, Roller};
 use serde::{Deserialize, Serialize};
 
 /// A case in `bench.json`.
@@ -18,6 +18,8 @@ pub(super) struct CaseForm {
     load: Load,
     #[serde(flatten)]
     accuracy: Accuracy,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    cells: Option<Cells>,
 }
 
 /// A roller, with its material as a table.

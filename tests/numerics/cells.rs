@@ -3,10 +3,12 @@
 
 use crate::common::{near, scene, small, table};
 use edgeline::body::EdgeModel;
-use edgeline::cells::{CellPressure, Grid};
-use edgeline::contact::Straight;
-use edgeline::solve::{Scene, SolvedScene};
-use edgeline::stress::BodyKind;
+use edgeline::case::builtin_case;
+use edgeline::cells::{CellPressure, CellProblem, Grid, Heights, RoughGap};
+use edgeline::contact::{Gap, Straight};
+use edgeline::solve::{CellOptions, Options, Scene, SolvedScene, solve, solve_on_cells};
+use edgeline::stress::{BodyKind, away_from_edge};
+use std::f64::consts::PI;
 
 const HALF_LENGTH: f64 = 5.0;
 
@@ -106,4 +108,137 @@ fn stresses_are_the_line_engines_for_the_published_models() {
     }
     let free = scene(HALF_LENGTH, 1.0, 0.3, EdgeModel::QuarterSpace);
     assert!(free.cell_field(BodyKind::Block, &on_cells(&free, 32, 40, 1e-6)).is_none());
+}
+
+#[test]
+fn stresses_under_free_ends_are_the_line_engines() {
+    let options = Options::new(EdgeModel::QuarterSpace);
+    for name in ["flush-short", "half-short"] {
+        let case = builtin_case(name).unwrap().unwrap();
+        let line = solve(&case, &options).unwrap();
+        let cells = CellOptions { counts: Some([256, 400]), ..CellOptions::default() };
+        let cells = solve_on_cells(&case, &options, &cells, &|_, _| {}).unwrap().solution;
+        let half_length = case.factors().slenderness;
+        for (got, want) in cells.curves.stress.iter().zip(&line.curves.stress) {
+            assert_eq!((got.body, &got.name), (want.body, &want.name));
+            let pairs = got.at.iter().zip(got.stress.iter().zip(&want.stress));
+            let off: Vec<f64> = pairs
+                .filter(|(at, _)| away_from_edge(**at, half_length, 0.15))
+                .map(|(_, (got, want))| crate::common::apart(got, want).powi(2))
+                .collect();
+            let rms = (off.iter().sum::<f64>() / off.len() as f64).sqrt();
+            small(&format!("{name}, {} of the {}", got.name, got.body.name()), rms, 0.006);
+        }
+        // Most of it is the line engine's own, at a tolerance of 1e-3.
+        near(name, cells.summary.approach_m / line.summary.approach_m, 1.0, 5e-3);
+    }
+}
+
+/// Half-side of a rough patch, beside which the gap is wide (C).
+const PATCH: f64 = 0.95;
+
+/// The gap of a plane and a rough patch on cells.
+struct Patch {
+    cells: usize,
+    gaps: Vec<f64>,
+}
+
+impl Patch {
+    /// Random waves of a self-affine surface, four to sixteen on a side: a Hurst exponent of 0.8, and a root mean square
+    /// slope of one (2 R / C).
+    fn new(cells: usize) -> Self {
+        let mut state = 12345u64;
+        let mut random = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64
+        };
+        let mut waves = Vec::new();
+        for (i, j) in (-16i32..=16).flat_map(|i| (0..=16).map(move |j| (i, j))) {
+            let (qx, qy) = (PI * f64::from(i), PI * f64::from(j));
+            let q = qx.hypot(qy);
+            if (4.0 * PI..16.0 * PI).contains(&q) && (j > 0 || i > 0) {
+                waves.push((qx, qy, 2.0 * PI * random(), q.powf(-1.8)));
+            }
+        }
+        let slope: f64 = waves.iter().map(|(qx, qy, _, h)| 0.5 * h * h * (qx * qx + qy * qy)).sum();
+        let place = |i: usize| (2 * i + 1) as f64 / cells as f64 - 1.0;
+        let mut gaps = vec![0.0; cells * cells];
+        for (qx, qy, phase, h) in waves {
+            let across: Vec<_> = (0..cells).map(|i| (qx * place(i) + phase).sin_cos()).collect();
+            for (j, row) in gaps.chunks_exact_mut(cells).enumerate() {
+                let (sin, cos) = (qy * place(j)).sin_cos();
+                for (gap, (s, c)) in row.iter_mut().zip(&across) {
+                    *gap += h / slope.sqrt() * (c * cos - s * sin);
+                }
+            }
+        }
+        Self { cells, gaps }
+    }
+}
+
+impl Gap for Patch {
+    fn at(&self, x: f64, y: f64) -> f64 {
+        if x.abs() > PATCH || y.abs() > PATCH {
+            return 100.0;
+        }
+        let index = |v: f64| (0.5 * (v + 1.0) * self.cells as f64) as usize;
+        self.gaps[index(y) * self.cells + index(x)]
+    }
+}
+
+/// At small loads A = kappa F / (E* h'), with kappa about 2: sqrt(8 / pi) by Persson's theory, sqrt(2 pi) by that of Bush, Gibson
+/// and Thomas (1975, Wear 35, 87), between them in calculations (Hyun, Pei, Molinari, Robbins 2004, Phys. Rev. E 70, 026117).
+/// Cells make the area larger by a part of their size along its boundary, which is taken off (Yastrebov, Anciaux, Molinari
+/// 2017, Tribology International 114, 161).
+#[test]
+fn the_contact_area_of_a_self_affine_surface_grows_with_the_load() {
+    let patch = Patch::new(256);
+    let grid = Grid::new(256, 256, 1.0, 1.0).unwrap();
+    let kappas: Vec<f64> = [0.01, 0.02, 0.04]
+        .iter()
+        .map(|mean| {
+            let load = mean * (2.0 * PATCH).powi(2);
+            let (images, free, most_iterations) = (Vec::new(), None, 1000);
+            let problem =
+                CellProblem { grid, images, free, load, tolerance: 1e-5, most_iterations };
+            let found = problem.solve(&patch).unwrap();
+            let pressed = |i: usize, j: usize| found.pressure[j * 256 + i] > 0.0;
+            let pairs = (0..256).flat_map(|i| (1..256).map(move |j| (i, j)));
+            let steps = pairs.map(|(i, j)| {
+                let (own, before) =
+                    ([pressed(j, i), pressed(i, j)], [pressed(j - 1, i), pressed(i, j - 1)]);
+                (0..2).filter(|axis| own[*axis] != before[*axis]).count()
+            });
+            let boundary = 2.0 / 256.0 * steps.sum::<usize>() as f64;
+            let excess = (PI - 1.0 + 2f64.ln()) / 24.0 * boundary * 2.0 / 256.0;
+            // In units of C^2 / (2 R), C and p0 the contact modulus is one.
+            (found.contact_area() - excess) / load
+        })
+        .collect();
+    let (persson, bush) = ((8.0 / PI).sqrt(), (2.0 * PI).sqrt());
+    assert!(kappas.iter().all(|kappa| (persson..bush).contains(kappa)), "{kappas:?}");
+    small("area against load, change of its slope", 1.0 - kappas[2] / kappas[0], 0.15);
+}
+
+#[test]
+fn a_surface_of_vanishing_height_is_the_smooth_contact() {
+    let scene = scene(HALF_LENGTH, 1.0, 0.3, EdgeModel::Guilbault);
+    let grid = Grid::new(64, 96, 1.5, HALF_LENGTH).unwrap();
+    let problem = scene.on_cells(grid, 1e-10);
+    let smooth = problem.solve(&Straight).unwrap();
+    let (c_m, unit_m) = (1e-3, 1e-6);
+    let rough = |height_m: f64| {
+        let wave = |k: usize| {
+            height_m * ((k / 200) as f64 * 0.7).sin() * ((k % 200) as f64 * 0.4 + 1.0).cos()
+        };
+        let values = (0..80 * 200).map(wave).collect();
+        let heights = Heights::new([80, 200], [0.04 * c_m, 0.055 * c_m], values).unwrap();
+        let gap = RoughGap::new(&Straight, &heights, &grid, c_m, unit_m).unwrap();
+        let found = problem.solve(&gap).unwrap();
+        let off = found.pressure.iter().zip(&smooth.pressure).map(|(a, b)| (a - b).abs());
+        off.fold(0.0, f64::max)
+    };
+    let [high, low] = [1e-8, 1e-10].map(rough);
+    assert!(high > 1e-3, "{high}");
+    small("pressure", low / high, 0.03);
 }

@@ -6,7 +6,7 @@ use edgeline::base::{Material, Panels, Parity, StressTensor};
 use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
-use edgeline::stress::{BodyKind, Field, Pressure};
+use edgeline::stress::{BodyKind, Field, Load, Pressure};
 use proptest::prelude::RngCore;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::f64::consts::PI;

@@ -185,3 +185,42 @@ fn json_is_the_only_thing_on_standard_output() {
     let curves = rows(&folder.path().join("out/curves.csv"));
     assert!(curves.iter().all(|row| row["body"] == "block"));
 }
+
+#[test]
+fn solve_on_cells_writes_arrays_beside_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let solve = |engine: &[&str], out: &str| -> Value {
+        let mut arguments = vec!["solve", "flush-short", "--method", "guilbault", "--json"];
+        arguments.extend(["--curve", "depth-0.9", "--out", out]);
+        arguments.extend(engine);
+        let output = edgeline(folder.path(), &arguments).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+        serde_json::from_slice(&output.stdout).unwrap()
+    };
+    let cells = solve(&["--engine", "cells", "--cells", "64,100"], "cells");
+    assert_eq!(cells["details"]["tolerance"], 1e-8);
+    let line = solve(&[], "line");
+    let names = ["axes.json", "curves.csv", "pressure.csv", "pressure.npy", "summary.json"];
+    let written = files(&folder.path().join("cells"));
+    assert!(names.iter().all(|name| written.contains(&name.to_string())), "{written:?}");
+    let bytes = std::fs::metadata(folder.path().join("cells/pressure.npy")).unwrap().len();
+    assert_eq!(bytes, 128 + 8 * 6400);
+    assert_eq!(rows(&folder.path().join("cells/pressure.csv")).len(), 6400);
+    for (key, tolerance) in [("p_centre_pa", 2e-3), ("approach_m", 2e-3), ("load_n", 1e-12)] {
+        let [got, want] = [&cells, &line].map(|summary| summary[key].as_f64().unwrap());
+        assert!((got / want - 1.0).abs() < tolerance, "{key}: {got} {want}");
+    }
+    assert!(cells["load_error_rel"].as_f64().unwrap() < 1e-12);
+    for (arguments, wanted) in [
+        (&["--cells", "64,64"][..], "--engine cells"),
+        (&["--engine", "cells", "--cells", "64"], "64,128"),
+        (&["--engine", "cells", "--cells", "512,8"], "as long as wide"),
+        (&["--engine", "cells", "--field"], "--field"),
+        (&["--engine", "cells", "--tolerance", "1e-20"], "1e-12"),
+    ] {
+        let mut all = vec!["solve", "flush-short", "--method", "mirror", "--out", "no"];
+        all.extend(arguments);
+        let said = refused(folder.path(), &all);
+        assert!(said.contains(wanted), "{said}");
+    }
+}

@@ -1,0 +1,99 @@
+//! The pressure of cells as a stress field takes it: a profile across the contact at each node along it.
+
+use super::ends::means;
+use super::pressure::CellPressure;
+use crate::base::Panels;
+use crate::kernels::strip;
+use crate::stress::Load;
+use nalgebra::DMatrix;
+
+/// The pressure of cells, even in x and y, at the nodes of an axis along the contact: uniform across each cell, and along the line the
+/// polynomials next to it by least squares.
+#[derive(Debug)]
+pub struct Columns<'a> {
+    axis: &'a Panels,
+    /// Outer edges x > 0 of the cells across.
+    edges: Vec<f64>,
+    /// The pressure as a sum of uniform ones up to each edge: a row for each node.
+    steps: DMatrix<f64>,
+}
+
+impl<'a> Columns<'a> {
+    /// The pressures of `cells`, even in x and y and in number, at the nodes of `axis`, which ends where they do.
+    pub fn new(cells: &CellPressure, axis: &'a Panels) -> Self {
+        let grid = &cells.grid;
+        let (a, b) = grid.half_sides();
+        let (nx, ny) = (grid.nx / 2, grid.ny / 2);
+        let mut steps = DMatrix::zeros(axis.len(), nx);
+        for (j, means) in means(axis, grid).iter().enumerate() {
+            let row = &cells.pressure[(ny + j) * grid.nx + nx..][..nx];
+            for &(node, mean) in means {
+                let share = 2.0 * b * mean / axis.weights()[node];
+                for (i, p) in row.iter().enumerate() {
+                    steps[(node, i)] += share * (p - row.get(i + 1).unwrap_or(&0.0));
+                }
+            }
+        }
+        let edges = (1..=nx).map(|i| 2.0 * a * i as f64).collect();
+        Self { axis, edges, steps }
+    }
+}
+
+impl Load for Columns<'_> {
+    fn axis(&self) -> &Panels {
+        self.axis
+    }
+
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let i = self.edges.partition_point(|edge| *edge <= x.abs());
+        let own = |(j, share): (usize, f64)| share * self.steps.row(j).iter().skip(i).sum::<f64>();
+        self.neighbours(y.abs()).into_iter().map(own).sum()
+    }
+
+    fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
+        let (edges, steps) = (&self.edges, &self.steps);
+        steps * DMatrix::from_fn(edges.len(), k.len(), |i, j| 2.0 * (k[j] * edges[i]).sin() / k[j])
+    }
+
+    fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (edge, step) in self.edges.iter().zip(self.steps.row(j).iter()) {
+            let own = strip::uniform(*edge, x, z);
+            sum.iter_mut().zip(own).for_each(|(sum, s)| *sum += step * s);
+        }
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::grid::Grid;
+    use super::*;
+
+    #[test]
+    fn columns_carry_the_cells_pressures() {
+        // The same all along: 1 and 0.25 on the two inner cells of a half.
+        let grid = Grid::new(6, 8, 1.5, 4.0).unwrap();
+        let across = [0.0, 0.25, 1.0, 1.0, 0.25, 0.0];
+        let pressure = across.repeat(grid.ny);
+        let cells = CellPressure { grid, pressure, approach: 0.0, iterations: 0, residual: 0.0 };
+        let axis = Panels::new(vec![0.0, 2.3, 3.5, 4.0], 4);
+        let columns = Columns::new(&cells, &axis);
+        let k = 1.3f64;
+        let want = 2.0 * (0.75 * (0.5 * k).sin() + 0.25 * (1.0 * k).sin()) / k;
+        for got in columns.transforms(&[k]).iter() {
+            assert!((got - want).abs() < 1e-13, "{got} {want}");
+        }
+        for j in [0, 5, 11] {
+            let inside = columns.endless(j, 0.7, 0.0);
+            assert!(
+                inside
+                    .iter()
+                    .zip([-0.25, -0.25, 0.0])
+                    .all(|(got, want)| (got - want).abs() < 1e-13)
+            );
+        }
+        assert!((columns.at(-0.7, -3.9) - 0.25).abs() < 1e-13);
+        assert_eq!([columns.at(0.0, 4.1), columns.at(1.2, 0.0)], [0.0; 2]);
+    }
+}
