@@ -43,10 +43,15 @@ pub(super) struct Arguments {
     #[arg(long, value_delimiter = ',', value_parser = edge_model())]
     methods: Vec<EdgeModel>,
     /// Tolerances of the models as fractions of p0; the tightest gives the limit of each model
-    #[arg(long, value_delimiter = ',', value_name = "T,T", default_values_t = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4])]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "T,T",
+        default_value = "1e-1,3e-2,1e-2,5e-3,1e-3,1e-4"
+    )]
     tolerances: Vec<f64>,
     /// Errors (fractions of p0) at which the times of FEM and quarter-space are compared
-    #[arg(long, value_delimiter = ',', value_name = "E,E", default_values_t = [0.02, 0.01, 0.005], value_parser = level)]
+    #[arg(long, value_delimiter = ',', value_name = "E,E", default_value = "0.02,0.01,0.005", value_parser = level)]
     levels: Vec<f64>,
     /// Repetitions of each timing of a model
     #[arg(long, default_value_t = 9, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
@@ -58,7 +63,13 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
     /// Relative element sizes of the meshes with --fem live
-    #[arg(long, value_delimiter = ',', value_name = "S,S", default_values_t = [2.0, 1.4], allow_negative_numbers = true)]
+    #[arg(
+        long,
+        value_delimiter = ',',
+        value_name = "S,S",
+        default_value = "2,1.4",
+        allow_negative_numbers = true
+    )]
     sizes: Vec<f64>,
     /// Runs of each mesh with --fem live
     #[arg(long, value_name = "N", default_value_t = 2)]

@@ -145,7 +145,7 @@ fn text(findings: &Findings) -> String {
             }
             None => "does not import dolfinx".to_string(),
         };
-        let mark = if fem.interpreter.as_ref() == Some(path) { " <- taken" } else { "" };
+        let mark = if fem.interpreter.as_ref() == Some(path) { " <- used" } else { "" };
         lines.push(format!("interpreter {path} ({source}): {imports}{mark}"));
     }
     lines.push(format!("mpirun: {}", or(&fem.mpirun, "not found (needed for --ranks only)")));

@@ -49,7 +49,7 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with = "points")]
     field: bool,
     /// Numbers of points of a quarter of a body: across, along and into it
-    #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_values_t = field::DEFAULT_COUNTS, value_parser = count, requires = "field")]
+    #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_value = "33,49,41", value_parser = count, requires = "field")]
     field_points: Vec<usize>,
     /// Only this body's curves; both by default
     #[arg(long, value_parser = body())]
@@ -232,7 +232,7 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
             p0 * 1e-6
         ),
         format!(
-            "  pressure {:.4} p0 at the centre, {:.4} p0 at most, at x = {:.3} C, y = {:.3} C",
+            "  pressure {:.4} p0 at the centre; largest mean of a cell {:.4} p0 at x = {:.3} C, y = {:.3} C",
             found.p_centre_pa / p0,
             found.p_max_pa / p0,
             found.p_max_at_m[0] / hertz.c_m,

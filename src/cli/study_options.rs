@@ -41,7 +41,7 @@ pub(super) struct StudyOptions {
     #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
     exclude: f64,
     /// The same for pressure: one or more distances, separated by commas; summaries use the first
-    #[arg(long, value_name = "C,C", default_values_t = [0.1, 0.2], value_delimiter = ',', value_parser = distance)]
+    #[arg(long, value_name = "C,C", default_value = "0.1,0.2", value_delimiter = ',', value_parser = distance)]
     exclude_pressure: Vec<f64>,
     /// Finite-element runs of each case with --fem live; the median time is reported
     #[arg(long, value_name = "N", default_value_t = 2)]

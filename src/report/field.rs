@@ -11,9 +11,6 @@ use crate::solve::SolvedCase;
 use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edge};
 use rayon::prelude::*;
 
-/// Number of grid points of a quarter of a body across, along and into it.
-pub const DEFAULT_COUNTS: [usize; 3] = [33, 49, 41];
-
 /// Extent of the field from the middle of the contact in x, beyond the roller's end in y, and into
 /// the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
