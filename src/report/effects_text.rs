@@ -42,9 +42,7 @@ pub fn not_analysed(reason: &NotAnalysed) -> String {
         NotAnalysed::NoDesign => "Effects: the study is no two-level design (no factor has two \
                                   levels, or one has more)."
             .to_string(),
-        NotAnalysed::NothingCompared => {
-            "Effects: no corner or not every one could be compared.".to_string()
-        }
+        NotAnalysed::NothingCompared => "Effects: not all corners could be compared.".to_string(),
         NotAnalysed::Response(response, methods) => {
             let methods: Vec<&str> = methods.iter().copied().map(EdgeModel::name).collect();
             format!(

@@ -1,6 +1,6 @@
 "use strict";
-// The explorer: curves of one case, drawn as SVG from the numbers embedded in the page. No library:
-// what it needs of one (points, dashes, a band, a cursor, zoom) is less than loading it would take.
+// The explorer: curves of one case, drawn as SVG from the numbers embedded in the page. It needs only
+// points, dashes, a band, a cursor and zoom, so it uses no library.
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
   const byId = (id) => document.getElementById(id);
