@@ -112,8 +112,13 @@ impl FreeEnds {
         let columns = scaled(r.transpose(), roots, |value, root| value / root);
         let sum = scaled(columns.transpose(), roots, |value, root| value * root);
         let uniform = roots * roots.transpose() * self.uniform(k);
-        // Symmetric but for the error of the nodes.
-        (&sum + sum.transpose()) * 0.5 - uniform
+        // R is symmetric, but the strips in the place of far images carry the mean of a pressure: right
+        // at the place that moves, not at the one that is pressed. The symmetric part therefore gets
+        // the displacement by a uniform pressure.
+        let symmetric = (&sum + sum.transpose()) * 0.5;
+        let missing = (&sum - &symmetric) * roots / roots.norm_squared();
+        let both = &missing * roots.transpose() + roots * missing.transpose();
+        symmetric + both - uniform
     }
 
     /// Memory of the correction on `grid` (bytes).
