@@ -5,20 +5,20 @@ use super::fem_options::{FemOptions, FemSource};
 use super::output::{Exit, print, say};
 use super::progress::{progress_bar, show};
 use super::provenance::{command_line, now, processor};
+use super::published;
 use super::records::Records;
-use super::values::{checked_tolerance, chosen_models, edge_model};
+use super::values::{checked_tolerance, chosen_models, source};
 use crate::base::number::{duration, rounded};
 use crate::base::{Error, Result};
-use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::fem::Driver;
 use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
 use crate::solve::{Options, solve_group};
-use crate::study::Models;
 use crate::study::bench::{
     self, Against, BEST, Bench, BenchSetup, CaseBench, FemMeshes, Machine, Origin, Speedup,
 };
+use crate::study::{Models, Source};
 use clap::{Args, ValueHint};
 use std::path::{Path, PathBuf};
 
@@ -40,8 +40,8 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     /// Models to run, separated by commas; all by default
-    #[arg(long, value_delimiter = ',', value_parser = edge_model())]
-    methods: Vec<EdgeModel>,
+    #[arg(long, value_delimiter = ',', value_parser = source())]
+    methods: Vec<Source>,
     /// Tolerances of the models as fractions of p0; the tightest gives the limit of each model
     #[arg(
         long,
@@ -186,6 +186,7 @@ fn measure(
 ) -> Vec<CaseBench> {
     let bar = progress_bar();
     let cold = ColdRuns::new(&arguments.out);
+    let on_cells = |case: &Case, counts| published::solve(case, counts, None);
     let benches = bench::run(
         cases,
         &BenchSetup {
@@ -194,6 +195,7 @@ fn measure(
                 repeats: usize::from(arguments.repeats),
                 solver: &|cases, method| solve_group(cases, &Options::new(method)),
                 cold: &|case, method, threads| cold.seconds(case, method, threads),
+                published: published::is_chosen(&arguments.methods).then_some(&on_cells),
             },
             tolerances: tolerances.to_vec(),
             fem: &|case| {
@@ -249,6 +251,18 @@ fn text(bench: &Bench, out: &Path) -> String {
             lines.extend(at_level(&here, level, whose, bench.cases.len()));
         }
     }
+    let slowest_first = |a: &&Speedup, b: &&Speedup| a.ratio.value.total_cmp(&b.ratio.value);
+    lines.extend(bench.published.iter().min_by(slowest_first).map(|s| {
+        format!(
+            "at the error that it reaches, {:.3} p0 and more, the published method on cells is at least {} +- {} times \
+             faster than FEM, in {} of {} cases",
+            bench.published.iter().map(|s| s.model_error).fold(f64::INFINITY, f64::min),
+            rounded(s.ratio.value),
+            rounded(s.ratio.plus_minus),
+            bench.published.len(),
+            bench.cases.len()
+        )
+    }));
     if lines.is_empty() {
         lines.push(
             "no ratio: FEM did not run here, or no answer of it is good enough (--fem live, --sizes, \

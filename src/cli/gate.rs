@@ -55,7 +55,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
     let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
-    let run = arguments.study.run(&study, if timed { 5 } else { 0 })?;
+    let run = arguments.study.run(&study, if timed { 5 } else { 0 }, false)?;
 
     if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {
         return accept(path, &accepted, &Baseline::of(&run), arguments.json);

@@ -11,6 +11,7 @@ pub mod points;
 mod program;
 mod progress;
 mod provenance;
+mod published;
 mod records;
 mod report;
 mod solve;

@@ -23,8 +23,8 @@ use std::time::Instant;
 /// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
 /// errors.csv (one row per case, model, curve and quantity), effects.csv, summary.json,
 /// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
-/// curves it takes half a minute, nearly all of it for timing (a few seconds with --repeats 0);
-/// with --fem live it takes minutes per case.
+/// curves it takes about a minute, nearly all of it for timing and for the published method on cells
+/// (half as long with --repeats 0); with --fem live it takes minutes per case.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -43,12 +43,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let study = arguments.study.find_study()?;
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
-    let run = arguments.study.run(&study, arguments.repeats)?;
+    let run = arguments.study.run(&study, arguments.repeats, true)?;
     if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.result.is_err()) {
         return Err(first_failure(&run));
     }
     let outcomes = gates(&arguments.study, &run)?;
-    let speedups = speedups(&arguments.study, &study)?;
+    let [speedups, published] = speedups(&arguments.study, &study)?;
     let files = StudyFiles::of(
         &run,
         &Context {
@@ -62,6 +62,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             seconds: began.elapsed().as_secs_f64(),
             gates: &outcomes,
             speedups: &speedups,
+            published_speedups: &published,
         },
     );
     page::write_run(&files, out)?;
@@ -85,14 +86,17 @@ fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome
     Ok(gate::evaluate(run, &Gates { drift, ..gates }, Some(&Baseline::built_in()?)))
 }
 
-/// Ratio of the FEM time to the model's time, if a record has both from one run.
-fn speedups(options: &StudyOptions, study: &Study) -> Result<Vec<Speedup>> {
+/// Ratios of the FEM time to the model's time and to the published method's, if a record has them from one run.
+fn speedups(options: &StudyOptions, study: &Study) -> Result<[Vec<Speedup>; 2]> {
     match options.fem {
         FemSource::Recorded => {
             let times = Bench::recorded()?;
-            Ok(study.cases().flat_map(|case| times.speedups_of(case)).collect())
+            let all = |of: &[Speedup]| {
+                study.cases().flat_map(|case| times.speedups_of(case, of)).collect::<Vec<_>>()
+            };
+            Ok([all(&times.speedups), all(&times.published)])
         }
-        FemSource::Live => Ok(Vec::new()),
+        FemSource::Live => Ok(Default::default()),
     }
 }
 

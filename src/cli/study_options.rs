@@ -4,17 +4,17 @@ use super::cold::ColdRuns;
 use super::fem_options::{FemOptions, FemSource, Size};
 use super::output::say;
 use super::progress::{progress_bar, show};
+use super::published;
 use super::records::Records;
-use super::values::{chosen_models, edge_model};
+use super::values::{chosen_models, source};
 use crate::base::Result;
-use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
 use crate::study::bench::Bench;
 use crate::study::live::Live;
 use crate::study::{
-    Engine, Models, Range, Reference, StudyRun, StudySetup, reference, run as run_study,
+    Engine, Models, Range, Reference, Source, StudyRun, StudySetup, reference, run as run_study,
 };
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -29,8 +29,8 @@ pub(super) struct StudyOptions {
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     pub(super) out: PathBuf,
     /// Models to run, separated by commas; all by default
-    #[arg(long, value_delimiter = ',', value_parser = edge_model())]
-    methods: Vec<EdgeModel>,
+    #[arg(long, value_delimiter = ',', value_parser = source())]
+    methods: Vec<Source>,
     /// Source of the finite-element curves
     #[arg(long, value_enum, default_value = "recorded")]
     pub(super) fem: FemSource,
@@ -70,7 +70,9 @@ impl StudyOptions {
     }
 
     /// Runs `study` with live FEM in folders below the one for the results.
-    pub(super) fn run(&self, study: &Study, repeats: usize) -> Result<StudyRun> {
+    ///
+    /// `with_cells` tells whether the published method on cells may take part.
+    pub(super) fn run(&self, study: &Study, repeats: usize, with_cells: bool) -> Result<StudyRun> {
         let methods = chosen_models(&self.methods);
         let (cases, models) = (study.cases().count(), methods.len());
         check_memory(
@@ -80,6 +82,8 @@ impl StudyOptions {
         )?;
         let references = self.references()?;
         let cold = ColdRuns::new(&self.out);
+        let with_cells = with_cells && published::is_chosen(&self.methods);
+        let on_cells = |case: &Case, counts| published::solve(case, counts, self.psi);
         let bar = progress_bar();
         let run = run_study(
             study,
@@ -91,6 +95,7 @@ impl StudyOptions {
                         solve_group(cases, &Options { psi: self.psi, ..Options::new(method) })
                     },
                     cold: &|case, method, threads| cold.seconds(case, method, threads),
+                    published: with_cells.then_some(&on_cells),
                 },
                 range: self.range(),
                 references: &|case| {
@@ -106,7 +111,7 @@ impl StudyOptions {
         for case in &run.cases {
             for m in &case.methods {
                 if let Err(message) = &m.result {
-                    say(&format!("warning: {} by {}: {message}", case.case.name, m.method));
+                    say(&format!("warning: {} by {}: {message}", case.case.name, m.source));
                 }
             }
         }

@@ -3,6 +3,7 @@
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Key;
+use crate::study::{Engine, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 /// Parses the name of an edge model.
@@ -13,9 +14,19 @@ pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
     })
 }
 
+/// Parses the name of an edge model or of the published method on cells.
+pub(super) fn source() -> impl TypedValueParser<Value = Source> {
+    let names = EdgeModel::ALL.map(EdgeModel::name).into_iter().chain([Engine::PUBLISHED]);
+    PossibleValuesParser::new(names).map(|name| {
+        let named = |model: &EdgeModel| model.name() == name;
+        let model = EdgeModel::ALL.into_iter().find(named).map(Source::from);
+        model.unwrap_or_else(|| Engine::published().into())
+    })
+}
+
 /// The chosen models, simplest first; all of them if none is chosen.
-pub(super) fn chosen_models(named: &[EdgeModel]) -> Vec<EdgeModel> {
-    let wanted = |m: &EdgeModel| named.is_empty() || named.contains(m);
+pub(super) fn chosen_models(named: &[Source]) -> Vec<EdgeModel> {
+    let wanted = |m: &EdgeModel| named.is_empty() || named.contains(&Source::from(*m));
     EdgeModel::ALL.into_iter().filter(wanted).collect()
 }
 

@@ -80,7 +80,7 @@ struct ParetoRow {
     case: String,
     source: Source,
     origin: Origin,
-    /// A model's tolerance or a mesh's relative element size.
+    /// A model's tolerance, a mesh's relative element size or the number of cells across.
     setting: f64,
     unknowns: Option<u64>,
     err: Option<String>,
@@ -233,7 +233,7 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
     let curves = sources.iter().map(|&(source, origin)| {
         let own = look(source);
         let (name, look) = match origin {
-            Origin::Model => (source.name(), own),
+            Origin::Model | Origin::Cells => (source.name(), own),
             Origin::LiveFem => ("FEM, this run", own),
             Origin::RecordedFem => ("FEM, recorded on its own machine", recorded),
         };

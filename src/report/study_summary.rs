@@ -49,6 +49,12 @@ pub struct StudySummary {
     pub contact_problems_solved: usize,
     /// The worst numbers of each model.
     pub method_summary: Vec<MethodSummary>,
+    /// The published method on cells, where it was compared.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub published: Option<PublishedSummary>,
+    /// Its ratios to FEM on record, at the error that it reaches.
+    #[serde(default)]
+    pub published_speedups: Vec<Speedup>,
     /// The largest own error of FEM.
     pub fem_error: FemError,
     /// Whether there are gates and all hold.
@@ -107,6 +113,23 @@ pub struct MethodSummary {
     pub gates: usize,
     /// Number of these that hold.
     pub gates_passed: usize,
+}
+
+/// Errors of the published method on cells over the cases compared (p0), and its time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct PublishedSummary {
+    /// Number of cases compared.
+    pub cases: usize,
+    /// [`Response::PRESSURE_RMS`].
+    pub pressure_rms: Span,
+    /// [`Response::PRESSURE_MAX`].
+    pub pressure_max: Span,
+    /// [`Response::STRESS_RMS`].
+    pub stress_rms: Span,
+    /// [`Response::STRESS_MAX`].
+    pub stress_max: Span,
+    /// Seconds on one thread of the slowest case.
+    pub seconds: Option<f64>,
 }
 
 /// A lowest and a highest value.

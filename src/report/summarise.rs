@@ -2,8 +2,8 @@
 
 use super::effects_text;
 use super::study_summary::{
-    CaseMethod, CaseReference, CaseSummary, FemError, FemOrigin, MethodSummary, Program, RoleName,
-    Span, StudySummary,
+    CaseMethod, CaseReference, CaseSummary, FemError, FemOrigin, MethodSummary, Program,
+    PublishedSummary, RoleName, Span, StudySummary,
 };
 use super::verdict;
 use crate::body::EdgeModel;
@@ -11,7 +11,7 @@ use crate::study::bench::{Machine, Speedup};
 use crate::study::effects::{Effects, NotAnalysed};
 use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
-use crate::study::{CaseRun, MethodRun, ReferenceRun, StudyRun};
+use crate::study::{CaseRun, Engine, MethodDetails, MethodRun, ReferenceRun, Source, StudyRun};
 
 /// The facts about a run beside its numbers.
 pub struct Context<'a> {
@@ -29,6 +29,8 @@ pub struct Context<'a> {
     pub gates: &'a [GateOutcome],
     /// Recorded ratios at equal error; empty if FEM runs live.
     pub speedups: &'a [Speedup],
+    /// The same of the published method at the error that it reaches.
+    pub published_speedups: &'a [Speedup],
 }
 
 /// The summary of a run.
@@ -53,6 +55,8 @@ pub fn study_summary(
         range: run.range.clone(),
         factors: run.factors.clone(),
         contact_problems_solved: run.solves,
+        published: published(run),
+        published_speedups: context.published_speedups.to_vec(),
         method_summary: run.methods.iter().map(|m| worst(run, *m, context.gates)).collect(),
         fem_error: fem_error(run),
         gates_hold: !context.gates.is_empty() && context.gates.iter().all(|g| g.passed),
@@ -70,14 +74,17 @@ pub fn study_summary(
 fn case_summary(run: &CaseRun) -> CaseSummary {
     let (case, factors) = (&run.case, run.case.factors());
     let method = |m: &MethodRun| {
+        let Source::Model(method) = m.source else { return None };
         let part = match &m.result {
-            Ok(result) => CaseMethod::Solved {
-                timing: m.timing.clone(),
-                details: Box::new(result.solution.summary.details.clone()),
+            Ok(result) => match &result.solution.summary.details {
+                MethodDetails::Line(details) => {
+                    CaseMethod::Solved { timing: m.timing.clone(), details: details.clone() }
+                }
+                MethodDetails::Cells(_) => return None,
             },
             Err(err) => CaseMethod::Failed { err: err.clone() },
         };
-        (m.method, part)
+        Some((method, part))
     };
     CaseSummary {
         name: case.name.clone(),
@@ -100,7 +107,7 @@ fn case_summary(run: &CaseRun) -> CaseSummary {
             .skip(1)
             .map(|r| (r.engine.clone(), case_reference(r)))
             .collect(),
-        methods: run.methods.iter().map(method).collect(),
+        methods: run.methods.iter().filter_map(method).collect(),
     }
 }
 
@@ -123,7 +130,7 @@ fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
         }
         for m in &c.methods {
             if let Err(message) = &m.result {
-                all.push(format!("{} by {} failed: {message}", c.case.name, m.method));
+                all.push(format!("{} by {} failed: {message}", c.case.name, m.source));
             }
         }
     }
@@ -141,11 +148,32 @@ fn fem_error(run: &StudyRun) -> FemError {
     }
 }
 
+/// The errors of the published method over all cases, if it was compared in any.
+fn published(run: &StudyRun) -> Option<PublishedSummary> {
+    let own = Source::from(Engine::published());
+    let runs = || run.cases.iter().flat_map(|c| c.methods.iter().map(move |m| (c, m)));
+    let runs = || runs().filter(|(_, m)| m.source == own);
+    let values = |response: Response| runs().filter_map(move |(c, m)| response.value(c, m));
+    let span = |response: Response| {
+        let all = values(response).map(|v| Span { low: v, high: v });
+        all.reduce(|a, b| Span { low: a.low.min(b.low), high: a.high.max(b.high) })
+    };
+    let seconds = runs().filter_map(|(_, m)| Some(m.timing.first()?.median_s));
+    Some(PublishedSummary {
+        cases: values(Response::STRESS_RMS).count(),
+        pressure_rms: span(Response::PRESSURE_RMS)?,
+        pressure_max: span(Response::PRESSURE_MAX)?,
+        stress_rms: span(Response::STRESS_RMS)?,
+        stress_max: span(Response::STRESS_MAX)?,
+        seconds: seconds.reduce(f64::max),
+    })
+}
+
 /// The worst numbers of one model over all cases.
 fn worst(run: &StudyRun, method: EdgeModel, gates: &[GateOutcome]) -> MethodSummary {
     let runs = || {
         run.cases.iter().flat_map(move |c| {
-            c.methods.iter().filter(move |m| m.method == method).map(move |m| (c, m))
+            c.methods.iter().filter(move |m| m.source == method.into()).map(move |m| (c, m))
         })
     };
     let values = |response: Response| runs().filter_map(move |(c, m)| response.value(c, m));

@@ -76,7 +76,7 @@ impl StudyRow {
 }
 
 fn method_row(case: &CaseRun, m: &MethodRun, range: &Range) -> StudyRow {
-    let row = StudyRow::without_result(case, m.method.into(), range);
+    let row = StudyRow::without_result(case, m.source.clone(), range);
     let result = match &m.result {
         Ok(result) => result,
         Err(message) => return StudyRow { err: Some(message.clone()), ..row },
@@ -140,7 +140,7 @@ fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, Source, &Curves)> 
     run.cases.iter().flat_map(|case| {
         let methods = case.methods.iter().filter_map(move |m| {
             let result = m.result.as_ref().ok()?;
-            Some((case, m.method.into(), &result.solution.curves))
+            Some((case, m.source.clone(), &result.solution.curves))
         });
         let references = case.references.iter().filter_map(move |r| {
             let reference = r.result.as_ref().ok()?;

@@ -25,6 +25,7 @@ fn files(twist: Twist) -> StudyFiles {
         seconds: 1.5,
         gates: &outcomes,
         speedups: &[],
+        published_speedups: &[],
     };
     StudyFiles::of(&run, &context)
 }

@@ -60,7 +60,7 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
 fn effects_of(run: &StudyRun, method: EdgeModel, response: Response) -> Option<Effects> {
     let (mut corners, mut centre) = (Vec::new(), None);
     for case in &run.cases {
-        let Some(m) = case.methods.iter().find(|m| m.method == method) else { continue };
+        let Some(m) = case.methods.iter().find(|m| m.source == method.into()) else { continue };
         match (&case.role, response.value(case, m)) {
             (Role::Corner(levels), Some(v)) => corners.push((levels.clone(), v)),
             (Role::Centre, v) => centre = v,

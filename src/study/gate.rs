@@ -6,6 +6,7 @@
 
 use super::response::Response;
 use super::run::{Role, StudyRun};
+use super::source::Source;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use serde::{Deserialize, Serialize};
@@ -245,12 +246,12 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
     let mut all = Vec::new();
     for case in &run.cases {
         for m in &case.methods {
-            let Ok(result) = &m.result else { continue };
+            let (Source::Model(method), Ok(result)) = (&m.source, &m.result) else { continue };
             for row in &result.errors {
                 for (measure, value) in [("max", row.max), ("rms", row.rms), ("l1", row.l1)] {
                     all.push(Number {
                         case: case.case.name.clone(),
-                        method: m.method,
+                        method: *method,
                         body: row.body.clone(),
                         curve: row.curve.clone(),
                         quantity: row.quantity.clone(),
@@ -263,7 +264,7 @@ pub fn numbers(run: &StudyRun) -> Vec<Number> {
             let mut whole = |quantity: &str, value: Option<f64>| {
                 all.extend(value.map(|value| Number {
                     case: case.case.name.clone(),
-                    method: m.method,
+                    method: *method,
                     body: String::new(),
                     curve: String::new(),
                     quantity: quantity.to_string(),
@@ -440,7 +441,7 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
     let failed = |method: EdgeModel| -> Vec<String> {
         run.cases
             .iter()
-            .filter(|c| c.methods.iter().any(|m| m.method == method && m.result.is_err()))
+            .filter(|c| c.methods.iter().any(|m| m.source == method.into() && m.result.is_err()))
             .map(|c| c.case.name.clone())
             .collect()
     };

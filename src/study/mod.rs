@@ -13,6 +13,7 @@ pub mod gate;
 mod groups;
 pub mod live;
 mod models;
+mod published;
 pub mod reference;
 pub mod response;
 mod run;
@@ -23,9 +24,10 @@ pub mod timing;
 pub use case_form::{BlockForm, RollerForm};
 pub use errors::{CONTACT, ErrorRow, Range};
 pub use models::{Cold, Models, Solver};
+pub use published::{GRIDS, Published};
 pub use run::{
-    CaseRun, Factor, FactorName, FoundReference, MethodResult, MethodRun, Provenance, Reference,
-    ReferenceRun, Role, StudyRun, StudySetup, Timed, run,
+    CaseRun, Factor, FactorName, FoundReference, MethodDetails, MethodResult, MethodRun,
+    Provenance, Reference, ReferenceRun, Role, StudyRun, StudySetup, Timed, run,
 };
 pub use source::{Engine, Source};
 

@@ -1,6 +1,7 @@
 //! Solves and times cases by models. Cases of one problem are solved together.
 
 use super::groups::groups;
+use super::published::Published;
 use super::timing::{self, Timing};
 use crate::base::Result;
 use crate::body::EdgeModel;
@@ -25,6 +26,8 @@ pub struct Models<'a> {
     pub solver: &'a Solver<'a>,
     /// Measures the time of a solve in a separate process.
     pub cold: &'a Cold<'a>,
+    /// The published method on cells, if it is to be run.
+    pub published: Option<&'a Published<'a>>,
 }
 
 /// The attempt of one model to solve one case.

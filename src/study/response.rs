@@ -142,7 +142,7 @@ pub fn speedup(case: &CaseRun, method: &MethodRun) -> Option<Ratio> {
         return Some(Ratio::new((fem.seconds?, spread), method.timing.first()?.with_spread()));
     }
     let timed = fem.timed.as_ref()?;
-    Some(Ratio::new(timed.seconds, *timed.methods.get(method.method.name())?))
+    Some(Ratio::new(timed.seconds, *timed.methods.get(method.source.name())?))
 }
 
 #[cfg(test)]

@@ -2,12 +2,13 @@
 
 use super::errors::{ErrorRow, ErrorSummary, Range, compare, critical_point, summarise};
 use super::models::{Attempt, Jobs, Models};
-use super::source::Engine;
+use super::published::PublishedAttempt;
+use super::source::{Engine, Source};
 use super::timing::Timing;
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
-use crate::solve::Solution;
+use crate::solve::{CellDetails, Details, Solution};
 use crate::stress::{Critical, Curves};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -84,11 +85,21 @@ pub enum Role {
     Extra,
 }
 
+/// The details of a solution by the engine of its method.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum MethodDetails {
+    /// A model on the line.
+    Line(Box<Details>),
+    /// The published method on cells.
+    Cells(Box<CellDetails>),
+}
+
 /// The result of one method for one case.
 #[derive(Debug, Clone)]
 pub struct MethodResult {
     /// The solution.
-    pub solution: Solution,
+    pub solution: Solution<MethodDetails>,
     /// The most stressed point outside the excluded range.
     pub critical: Option<Critical>,
     /// Errors against the case's first reference; empty without one.
@@ -100,8 +111,8 @@ pub struct MethodResult {
 /// One method on one case.
 #[derive(Debug, Clone)]
 pub struct MethodRun {
-    /// The method.
-    pub method: EdgeModel,
+    /// The method: a model, or the published method on cells.
+    pub source: Source,
     /// Its result, or the error in words.
     pub result: std::result::Result<MethodResult, String>,
     /// Repeated timing on one thread and on all; empty without timing.
@@ -128,7 +139,7 @@ pub struct CaseRun {
     pub role: Role,
     /// The references. Errors are taken against the first.
     pub references: Vec<ReferenceRun>,
-    /// The methods, in the order of the study.
+    /// The models in the order of the study, then the published method.
     pub methods: Vec<MethodRun>,
 }
 
@@ -197,7 +208,7 @@ pub struct StudyRun {
     pub study: String,
     /// The factors with two levels; empty when a factor has more than two.
     pub factors: Vec<Factor>,
-    /// The methods.
+    /// The models.
     pub methods: Vec<EdgeModel>,
     /// The range of the errors.
     pub range: Range,
@@ -260,7 +271,8 @@ pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
     let cases: Vec<Case> = study.cases().cloned().collect();
     let factors = design(study);
     let jobs = Jobs::new(&cases, &setup.models);
-    let steps = cases.len() + jobs.steps();
+    let published = setup.models.published;
+    let steps = cases.len() + jobs.steps() + published.map_or(0, |_| cases.len());
     let done = AtomicUsize::new(0);
     let step = |what: &str| {
         let n = done.fetch_add(1, Ordering::Relaxed) + 1;
@@ -278,13 +290,26 @@ pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
     let runs =
         cases.iter().zip(references).zip(jobs.run(&step)).map(|((case, references), attempts)| {
             let reference = references.first().and_then(|r| r.result.as_ref().ok());
-            let method = |attempt| method_run(case, reference, attempt, &setup.range);
-            CaseRun {
-                case: case.clone(),
-                role: role(case, study, &factors),
-                methods: attempts.into_iter().map(method).collect(),
-                references,
-            }
+            let compared = |source: Source, solution, timing| {
+                method_run(case, reference, (source, solution, timing), &setup.range)
+            };
+            let model = |Attempt { method, solution, timing }| {
+                let line = |details| MethodDetails::Line(Box::new(details));
+                compared(method.into(), solution.map(|s: Solution| s.map_details(line)), timing)
+            };
+            let on_cells = |solve| {
+                let timed = setup.models.repeats > 0;
+                let PublishedAttempt { solution, timing } =
+                    PublishedAttempt::new(solve, timed, case, None);
+                let source = Engine::published();
+                step(&format!("{}, {}", source.title(), case.name));
+                let cells = |details| MethodDetails::Cells(Box::new(details));
+                let solution = solution.map(|s| s.map_details(cells));
+                compared(source.into(), solution, timing.into_iter().collect())
+            };
+            let models = attempts.into_iter().map(model);
+            let methods = models.chain(published.map(on_cells)).collect();
+            CaseRun { case: case.clone(), role: role(case, study, &factors), methods, references }
         });
     StudyRun {
         study: study.name.clone(),
@@ -308,13 +333,12 @@ fn reference_run(case: &Case, (engine, result): FoundReference, range: &Range) -
 fn method_run(
     case: &Case,
     reference: Option<&Reference>,
-    attempt: Attempt,
+    (source, solution, timing): (Source, Result<Solution<MethodDetails>>, Vec<Timing>),
     range: &Range,
 ) -> MethodRun {
-    let Attempt { method, solution, timing } = attempt;
     let half_length = case.factors().slenderness;
-    let compared = |solution: Solution| {
-        let own = (&method.into(), &solution.curves);
+    let compared = |solution: Solution<MethodDetails>| {
+        let own = (&source, &solution.curves);
         let errors = match reference {
             Some(r) => compare(&case.name, half_length, &r.curves, own, range)?,
             None => Vec::new(),
@@ -327,5 +351,5 @@ fn method_run(
         })
     };
     let result: Result<MethodResult> = solution.and_then(compared);
-    MethodRun { method, result: result.map_err(|e| e.to_string()), timing }
+    MethodRun { result: result.map_err(|e| e.to_string()), source, timing }
 }

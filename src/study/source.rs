@@ -10,11 +10,11 @@ use std::fmt;
 pub enum Source {
     /// A semi-analytical model.
     Model(EdgeModel),
-    /// A reference.
+    /// A reference, or the published method on cells.
     Engine(Engine),
 }
 
-/// A finite-element code or another origin of reference curves, by its name in files.
+/// A finite-element code or another origin of curves beside the models, by its name in files.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Engine(String);
@@ -25,6 +25,14 @@ impl Engine {
         Self("fem".to_string())
     }
 
+    /// The name in files of the published method on uniform cells.
+    pub const PUBLISHED: &'static str = "guilbault-cells";
+
+    /// The published method on uniform cells.
+    pub fn published() -> Self {
+        Self(Self::PUBLISHED.to_string())
+    }
+
     /// The name in files.
     pub fn name(&self) -> &str {
         &self.0
@@ -32,7 +40,11 @@ impl Engine {
 
     /// The name for readers.
     pub fn title(&self) -> &str {
-        if *self == Self::fenicsx() { "FEM" } else { &self.0 }
+        match self {
+            _ if *self == Self::fenicsx() => "FEM",
+            _ if *self == Self::published() => "guilbault, cells",
+            _ => &self.0,
+        }
     }
 }
 
@@ -49,7 +61,7 @@ impl Source {
     pub fn engine(&self) -> Option<&Engine> {
         match self {
             Source::Model(_) => None,
-            Source::Engine(engine) => Some(engine),
+            Source::Engine(engine) => (*engine != Engine::published()).then_some(engine),
         }
     }
 

@@ -4,7 +4,7 @@ use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Study};
 use crate::fem::{self, MeshResult};
-use crate::solve::{Details, PressureCell, Seconds, Solution, Summary};
+use crate::solve::{CellDetails, Details, PressureCell, Seconds, Solution, Summary};
 use crate::stress::{BodyKind, Curves, PressureLine, StressCurve, curves};
 use crate::study::bench::{FemMeshes, Mesh};
 use crate::study::run::{Provenance, Reference, StudyRun, StudySetup, Timed, run as run_study};
@@ -122,6 +122,27 @@ fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> 
 /// Solutions that are off by their tolerance.
 pub fn solve_to_tolerance(cases: &[Case], method: EdgeModel) -> Vec<Result<Solution>> {
     cases.iter().map(|c| Ok(solution(c, method, end_share(method), c.accuracy.tolerance))).collect()
+}
+
+/// What made-up cells are off by (p0), beside the model's own error.
+pub fn cells_shift(across: usize) -> f64 {
+    1.0 / across as f64
+}
+
+/// Solutions of the published method that are off by [`cells_shift`].
+pub fn solve_on_cells(case: &Case, counts: Option<[usize; 2]>) -> Result<Solution<CellDetails>> {
+    let cells = counts.unwrap_or([64, 128]);
+    let method = EdgeModel::Guilbault;
+    let found = solution(case, method, end_share(method), cells_shift(cells[0]));
+    Ok(found.map_details(|details| CellDetails {
+        engine: "cells".to_string(),
+        cells,
+        half_width_m: 1.25 * case.hertz().c_m,
+        tolerance: 1e-8,
+        residual: 1e-9,
+        approach_reference_m: details.approach_reference_m,
+        roller_diametral_tension_pa: details.roller_diametral_tension_pa,
+    }))
 }
 
 /// What a made-up mesh is off by (p0): its size squared.
@@ -281,6 +302,7 @@ pub fn run(twist: Twist) -> StudyRun {
                 repeats: 3,
                 solver: &solver,
                 cold: &|_, _, _| Some(0.02),
+                published: None,
             },
             range: Range::default(),
             references: &references,

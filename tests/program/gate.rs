@@ -27,7 +27,13 @@ fn run_with(solver: &Solver) -> StudyRun {
     run(
         &study,
         &StudySetup {
-            models: Models { methods: METHODS.to_vec(), repeats: 0, solver, cold: &|_, _, _| None },
+            models: Models {
+                methods: METHODS.to_vec(),
+                repeats: 0,
+                solver,
+                cold: &|_, _, _| None,
+                published: None,
+            },
             range: Range::default(),
             references: &|case| vec![(Engine::fenicsx(), recorded(case))],
             progress: &|_, _, _| {},

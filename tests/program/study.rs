@@ -37,7 +37,7 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
     assert_eq!(summary["contact_problems_solved"], 16);
 
     let study_rows = rows(&out.join("study.csv"));
-    assert_eq!(study_rows.len(), 4 * 5);
+    assert_eq!(study_rows.len(), 4 * 6);
     assert!(study_rows.iter().all(|r| r["err"].is_empty()));
     for name in ["curves.csv", "pressure.csv", "fem_error.csv", "errors.csv", "effects.csv"] {
         assert!(rows(&out.join(name)).len() > 20, "{name}");
@@ -56,13 +56,13 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
         for column in ["pressure_rms", "stress_rms", "von_mises_rms"] {
             let best = of("quarter-space", case, column);
             assert!(best < 0.02, "{case} {column} {best}");
-            for other in ["half-space", "mirror", "guilbault"] {
+            for other in ["half-space", "mirror", "guilbault", "guilbault-cells"] {
                 assert!(of(other, case, column) > best, "{other} {case} {column}");
             }
         }
     }
 
-    // Forty cells of the error tables are also in study.csv.
+    // A hundred cells of the error tables are also in study.csv.
     let markdown = text(&out.join("report.md"));
     let (mut compared, mut method) = (0, "");
     let columns = ["pressure_rms", "pressure_max", "stress_rms", "stress_max", "von_mises_rms"];
@@ -82,7 +82,14 @@ fn a_study_leaves_what_it_says_and_every_number_can_be_traced() {
             compared += 1;
         }
     }
-    assert_eq!(compared, 4 * 4 * 5);
+    assert_eq!(compared, 4 * 5 * 5);
+    // The published method on cells has the errors of its model.
+    for case in &cases {
+        let [line, cells] =
+            ["guilbault", "guilbault-cells"].map(|source| of(source, case, "stress_rms"));
+        assert!((cells / line - 1.0).abs() < 0.1, "{case}: {cells} {line}");
+    }
+    assert_eq!(summary["published"]["cases"], 4);
     // The page has the same numbers.
     let page = text(&out.join("report.html"));
     for case in &cases {

@@ -2,18 +2,19 @@
 
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::StudyRow;
-use crate::study::Source;
 use crate::study::response::Response;
+use crate::study::{Engine, Source};
 use serde_json::{Map, Value, json};
 
 /// For each method a table of its errors, one row a case.
 pub(super) fn tables(files: &StudyFiles) -> Vec<Value> {
-    let table = |method| {
-        let source = Source::from(method);
+    let table = |source: Source| {
         let own = files.study.iter().filter(|row| row.source == source);
-        json!({ "method": method, "rows": own.map(row).collect::<Vec<_>>() })
+        json!({ "method": source.name(), "rows": own.map(row).collect::<Vec<_>>() })
     };
-    files.summary.methods.iter().copied().map(table).collect()
+    let models = files.summary.methods.iter().copied().map(Source::from);
+    let published = files.summary.published.iter().map(|_| Engine::published().into());
+    models.chain(published).map(table).collect()
 }
 
 /// The errors of a model in a case: all responses by their names, and those of the reference

@@ -17,4 +17,4 @@ mod tests;
 pub use point::{Against, BEST, BenchPoint, CURVES, CaseBench, Deviation, Origin, front};
 pub use record::{Bench, Machine};
 pub use run::{BenchSetup, FemMeshes, Mesh, run};
-pub use speedup::{Speedup, speedups};
+pub use speedup::{Speedup, published_speedups, speedups};

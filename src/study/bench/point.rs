@@ -71,6 +71,8 @@ impl Deviation {
 pub enum Origin {
     /// A model, in this run.
     Model,
+    /// The published method on cells, in this run.
+    Cells,
     /// FEM, in this run.
     LiveFem,
     /// FEM, from its record.
@@ -84,7 +86,7 @@ pub struct BenchPoint {
     pub source: Source,
     /// The origin of its time.
     pub origin: Origin,
-    /// A model's tolerance (p0); a mesh's relative element size.
+    /// A model's tolerance (p0); a mesh's relative element size; cells across.
     pub setting: f64,
     /// Unknowns of both bodies (FEM).
     #[serde(skip_serializing_if = "Option::is_none")]

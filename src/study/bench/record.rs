@@ -1,7 +1,7 @@
 //! The content of `bench.json`, and the record that is built into the program.
 
 use super::point::{Against, BenchPoint, CaseBench, Origin};
-use super::speedup::{Speedup, speedups};
+use super::speedup::{Speedup, published_speedups, speedups};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::study::errors::Range;
@@ -47,6 +47,9 @@ pub struct Bench {
     pub cases: Vec<CaseBench>,
     /// The ratios.
     pub speedups: Vec<Speedup>,
+    /// Those of the published method on cells, at the error that it reaches in each case.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub published: Vec<Speedup>,
 }
 
 impl Bench {
@@ -67,6 +70,7 @@ impl Bench {
             machine,
             range: Range::default(),
             speedups: speedups(&cases, &levels),
+            published: published_speedups(&cases),
             levels,
             limit,
             cases,
@@ -101,11 +105,11 @@ impl Bench {
         Self::parse(RECORD, Path::new("results/bench.json"))
     }
 
-    /// The ratios of `case`, under its own name.
-    pub fn speedups_of(&self, case: &Case) -> Vec<Speedup> {
+    /// The ratios among `all` of the run's that are those of `case`, under its own name.
+    pub fn speedups_of(&self, case: &Case, all: &[Speedup]) -> Vec<Speedup> {
         let found = self.cases.iter().find(|c| c.case.is_same_problem(case));
         let named = |s: &&Speedup| found.is_some_and(|c| c.case.name == s.case);
-        let own = self.speedups.iter().filter(named);
+        let own = all.iter().filter(named);
         own.map(|s| Speedup { case: case.name.clone(), ..s.clone() }).collect()
     }
 

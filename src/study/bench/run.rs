@@ -8,6 +8,7 @@ use crate::stress::Curves;
 use crate::study::errors::Range;
 use crate::study::live::repeated;
 use crate::study::models::{Attempt, Jobs, Models};
+use crate::study::published::{GRIDS, PublishedAttempt};
 use crate::study::source::Engine;
 use crate::study::timing::Timing;
 use std::path::Path;
@@ -119,6 +120,9 @@ pub fn run(cases: &[Case], setup: &BenchSetup) -> Vec<CaseBench> {
             all.extend(more);
         }
     }
+    for (case, points) in cases.iter().zip(&mut points) {
+        points.extend(published_points(case, &setup.models));
+    }
     let limit = setup.tolerances.iter().copied().fold(f64::INFINITY, f64::min);
     cases
         .iter()
@@ -161,6 +165,22 @@ fn models_at(
         (point, curves)
     };
     attempts.into_iter().map(|all| all.into_iter().map(of_model).collect()).collect()
+}
+
+/// The points of the published method, coarsest grid first.
+fn published_points(case: &Case, models: &Models) -> Vec<WithCurves> {
+    let on_grid = |solve| {
+        move |grid: [usize; 2]| {
+            let attempt = PublishedAttempt::new(solve, models.repeats > 0, case, Some(grid));
+            let point = BenchPoint {
+                timing: attempt.timing,
+                err: attempt.solution.as_ref().err().map(|e| e.to_string()),
+                ..BenchPoint::new(Engine::published(), Origin::Cells, grid[0] as f64)
+            };
+            (point, attempt.solution.ok().map(|solution| solution.curves))
+        }
+    };
+    models.published.map_or_else(Vec::new, |solve| GRIDS.map(on_grid(solve)).into())
 }
 
 /// The points of FEM, live meshes first.

@@ -4,6 +4,9 @@ use super::point::{Against, BEST, BenchPoint, CaseBench, Origin};
 use crate::study::timing::Ratio;
 use serde::{Deserialize, Serialize};
 
+/// Grids whose error is within this factor of the least reach it.
+const REACHED: f64 = 1.05;
+
 /// FEM against [`BEST`] at an error that neither exceeds, timed in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Speedup {
@@ -21,7 +24,7 @@ pub struct Speedup {
     pub fem_error: f64,
     /// Median seconds and spread.
     pub fem_seconds: (f64, f64),
-    /// The fastest tolerance within the level.
+    /// The fastest tolerance within the level; of the published method the cells across.
     pub tolerance: f64,
     /// The model's error there (p0).
     pub model_error: f64,
@@ -44,15 +47,36 @@ pub fn speedups(cases: &[CaseBench], levels: &[f64]) -> Vec<Speedup> {
     all
 }
 
+/// FEM against the published method on cells at the error that it reaches in each case, timed in one
+/// run.
+pub fn published_speedups(cases: &[CaseBench]) -> Vec<Speedup> {
+    let of_case = |case: &CaseBench| {
+        let own = case.points.iter().filter(|p| p.origin == Origin::Cells);
+        let least = own.filter_map(|p| p.error(Against::Fem)).reduce(f64::min)?;
+        fem_over(case, REACHED * least, Against::Fem, &|p| p.origin == Origin::Cells)
+    };
+    cases.iter().filter_map(of_case).collect()
+}
+
 fn speedup(case: &CaseBench, level: f64, against: Against) -> Option<Speedup> {
+    let best = |p: &BenchPoint| p.origin == Origin::Model && p.source == BEST.into();
+    fem_over(case, level, against, &best)
+}
+
+/// FEM against the `chosen` points at a level of error.
+fn fem_over(
+    case: &CaseBench,
+    level: f64,
+    against: Against,
+    chosen: &dyn Fn(&BenchPoint) -> bool,
+) -> Option<Speedup> {
     let fastest = |chosen: &dyn Fn(&BenchPoint) -> bool, against: Against| {
         let within = |p: &&BenchPoint| chosen(p) && p.error(against).is_some_and(|e| e <= level);
         let timed = case.points.iter().filter(within).filter_map(|p| Some((p, p.timing?)));
         timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
     };
     let (fem, fem_time) = fastest(&|p| p.origin == Origin::LiveFem, Against::Fem)?;
-    let best = |p: &BenchPoint| p.origin == Origin::Model && p.source == BEST.into();
-    let (model, model_time) = fastest(&best, against)?;
+    let (model, model_time) = fastest(chosen, against)?;
     Some(Speedup {
         case: case.case.name.clone(),
         level,

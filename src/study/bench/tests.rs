@@ -22,6 +22,7 @@ fn bench() -> Vec<CaseBench> {
                 repeats: 2,
                 solver: &synthetic::solve_to_tolerance,
                 cold: &|_, _, threads| Some(threads as f64),
+                published: Some(&synthetic::solve_on_cells),
             },
             tolerances: vec![1e-2, 1e-3, 1e-4],
             fem: &|case| synthetic::fem_meshes(case, &[2.0, 1.0], &[1.4]),
@@ -40,8 +41,14 @@ fn find<'a>(case: &'a CaseBench, source: &str, origin: Origin, setting: f64) -> 
 fn errors_are_those_of_the_made_up_solutions() {
     for case in bench() {
         assert_eq!(case.fem_reference.as_deref(), Some("recorded, size 1"));
-        // Two models at three tolerances, two recorded meshes and a live one.
-        assert_eq!(case.points.len(), 6 + 3);
+        // Two models at three tolerances, five grids, two recorded meshes and a live one.
+        assert_eq!(case.points.len(), 6 + 5 + 3);
+        let [coarse, fine] =
+            [64.0, 512.0].map(|n| find(&case, "guilbault-cells", Origin::Cells, n));
+        let off = synthetic::cells_shift(64) - synthetic::mesh_shift(1.0);
+        assert!((coarse.to_fem.unwrap().pressure_max - off).abs() > 1e-3, "the ends differ too");
+        assert_ne!(fine.error(Against::Fem), coarse.error(Against::Fem));
+        assert!(fine.timing.is_some() && fine.all_threads.is_none());
         // Off by its tolerance in every normal stress, and so is the limit.
         let loose = find(&case, "quarter-space", Origin::Model, 1e-2);
         let to_limit = loose.to_limit.unwrap();
@@ -91,6 +98,25 @@ fn only_times_of_this_run_are_divided_and_only_within_the_level() {
     // Without a live mesh there is no ratio, however good the record is.
     cases.iter_mut().for_each(|c| c.points.retain(|p| p.origin != Origin::LiveFem));
     assert!(speedups(&cases, &[1.0]).is_empty());
+}
+
+#[test]
+fn the_published_method_is_compared_at_the_error_that_it_reaches() {
+    let mut cases = bench();
+    for point in cases.iter_mut().flat_map(|c| &mut c.points).filter(|p| p.origin == Origin::Cells)
+    {
+        point.timing = Some(Timing::new(1, &[point.setting / 100.0]));
+    }
+    let all = published_speedups(&cases);
+    assert_eq!(all.len(), 2);
+    for (s, case) in all.iter().zip(&cases) {
+        let own = case.points.iter().filter(|p| p.origin == Origin::Cells);
+        let least = own.filter_map(|p| p.error(Against::Fem)).fold(f64::INFINITY, f64::min);
+        assert!(s.model_error <= 1.05 * least && s.fem_error <= 1.05 * least);
+        assert_eq!((s.size, s.model_seconds.0), (1.4, s.tolerance / 100.0));
+    }
+    cases.iter_mut().for_each(|c| c.points.retain(|p| p.origin != Origin::LiveFem));
+    assert!(published_speedups(&cases).is_empty());
 }
 
 #[test]
