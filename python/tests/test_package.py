@@ -70,7 +70,11 @@ def test_types_are_strict() -> None:
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@pytest.mark.parametrize("example", sorted((PYTHON / "examples").glob("*.py")), ids=lambda p: p.stem)
+# That of the cluster has a test of its own.
+EXAMPLES = sorted(p for p in (PYTHON / "examples").glob("*.py") if p.stem != "cluster")
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_examples_run(example: Path, tmp_path: Path) -> None:
     done = subprocess.run(
         [sys.executable, example], cwd=tmp_path, capture_output=True, text=True, check=False

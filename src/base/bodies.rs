@@ -5,6 +5,7 @@ use std::ops::{Index, IndexMut};
 
 /// One of the two bodies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum BodyKind {
     /// The rectangular block.

@@ -4,6 +4,7 @@ use std::f64::consts::PI;
 /// Scales of the Hertz line contact, which make a case dimensionless (Johnson, Contact Mechanics,
 /// 1985, Eqs. 4.43 to 4.45).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct HertzScales {
     /// Contact modulus E* (Pa).
     pub e_star_pa: f64,

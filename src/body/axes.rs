@@ -26,6 +26,7 @@ const FACE_TAIL: f64 = 8.0;
 /// [`Resolution::for_tolerance`] chooses it; [`Resolution::refined`] halves every panel and doubles
 /// every extent, to show convergence.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Resolution {
     /// Gauss nodes per panel along y and along the end faces' depth.
     pub order: usize,

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// How a free end face is modelled.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "kebab-case")]
 pub enum EdgeModel {
     /// No correction: both bodies are half-spaces.

@@ -10,6 +10,8 @@ mod keys;
 mod levels;
 mod model;
 #[cfg(feature = "cli")]
+mod schema;
+#[cfg(feature = "cli")]
 mod study_file;
 #[cfg(feature = "cli")]
 mod sweep;
@@ -26,6 +28,7 @@ pub use keys::{KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Load, Roller};
 #[cfg(feature = "cli")]
 pub use {
+    schema::case_schema,
     study_file::{DEFAULT_STUDY, Study},
     sweep::Sweep,
 };

@@ -3,6 +3,7 @@
 mod bench;
 mod cold;
 mod doctor;
+mod extras;
 mod fem;
 mod fem_options;
 mod gate;

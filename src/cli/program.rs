@@ -1,8 +1,8 @@
 //! The program: its subcommands and exit codes.
 
 use super::output::{Exit, say};
-use super::{bench, doctor, fem, gate, report, solve, study, sweep};
-use clap::{Parser, Subcommand};
+use super::{bench, doctor, extras, fem, gate, report, solve, study, sweep};
+use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -30,6 +30,7 @@ enum Command {
     Bench(bench::Arguments),
     Report(report::Arguments),
     Doctor(doctor::Arguments),
+    Extras(extras::Arguments),
 }
 
 /// Runs the program with `arguments`, the program's name first, and returns its exit code.
@@ -51,6 +52,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Bench(arguments) => bench::run(arguments),
         Command::Report(arguments) => report::run(arguments),
         Command::Doctor(arguments) => doctor::run(arguments),
+        Command::Extras(arguments) => extras::run(arguments, Arguments::command()),
     };
     match outcome {
         Ok(Exit::Done) => ExitCode::SUCCESS,

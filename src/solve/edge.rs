@@ -20,6 +20,7 @@ const POINTS: usize = 25;
 /// The pressure p(x = 0) near the contact's end, s the distance from it in units of C; pressures in
 /// units of p0.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(tag = "kind", rename_all = "kebab-case")]
 pub enum EdgeStrength {
     /// p = `factor` s^-`exponent`: it grows without bound.

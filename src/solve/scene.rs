@@ -132,6 +132,7 @@ fn rounded(v: f64) -> f64 {
 
 /// Run time of each stage (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Seconds {
     /// Axes and compliance.
     pub setup: f64,

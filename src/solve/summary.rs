@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// The summary of a solution; `D` is what its engine says besides.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Summary<D = Details> {
     /// The case's name.
     pub case: String,
@@ -64,6 +65,7 @@ impl<D> Summary<D> {
 
 /// The most stressed place in SI units.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CriticalSummary {
     /// The body.
     pub body: BodyKind,
@@ -77,6 +79,7 @@ pub struct CriticalSummary {
 
 /// The measure of the largest stress.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Measure {
     /// Von Mises equivalent stress.
@@ -97,6 +100,7 @@ impl CriticalSummary {
 
 /// The resolution of a scene and further numbers of its solution.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Details {
     /// Requested accuracy (p0).
     pub tolerance: f64,
@@ -125,6 +129,7 @@ pub struct Details {
 
 /// Evaluations done and avoided.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct WorkSummary {
     /// Evaluations in the sums of the stresses.
     pub done: u64,
@@ -134,6 +139,7 @@ pub struct WorkSummary {
 
 /// Evaluations avoided, by reason; the names are those in the file and in the report.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Avoided {
     /// Sources beyond the reach of a wave.
     #[serde(rename = "sources beyond a wave's reach")]
