@@ -32,7 +32,8 @@ def solve(
     `method` says how the free ends of the bodies are modelled: `"half-space"`,
     `"mirror"`, `"guilbault"` or `"quarter-space"`, the one to use.
     `tolerance` is the requested accuracy as a fraction of p0, in place of the
-    case's own. `engine` is that of `edgeline solve --engine`; None is its default.
+    case's own. `engine` is that of `edgeline solve --engine`: `"line"`, the
+    default, or `"cells"`, of which `tolerance` is the relative residual.
 
     Takes some 10 ms at a tolerance of 1e-2 and 100 ms at 1e-3. The interpreter's
     lock is released. A solve has all processors; beside another one, of another

@@ -4,22 +4,32 @@ use crate::case::Case;
 use crate::errors::raised;
 use crate::tables::table;
 use crate::work::work;
-use edgeline::base::{BodyKind, Error, Result};
-use edgeline::cli::values::checked_tolerance;
+use edgeline::base::{BodyKind, Error, HertzScales, Result, StressTensor};
+use edgeline::cli::values::{checked_residual, checked_tolerance};
+use edgeline::report::cells::contents;
+use edgeline::report::columns::Columns;
 use edgeline::report::solution::{tables, write_locked};
-use edgeline::solve::{Options, SolvedCase};
+use edgeline::solve::{
+    CellOptions, CellSolution, Options, Point, SolvedCase, solve_on_cells, stress_on_cells,
+};
 use edgeline::stress::Grid;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray4, PyArrayMethods, PyReadonlyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// A case's solution by one method.
 #[pyclass(frozen, module = "edgeline._native")]
 pub struct Solution {
+    case: edgeline::case::Case,
     options: Options,
-    solved: SolvedCase,
-    found: edgeline::solve::Solution,
+    solved: Solved,
+}
+
+/// What the engine found.
+enum Solved {
+    Line(Box<(SolvedCase, edgeline::solve::Solution)>),
+    Cells(Box<CellSolution>),
 }
 
 /// Solves a case.
@@ -42,21 +52,92 @@ impl Solution {
         tolerance: Option<f64>,
         engine: Option<&str>,
     ) -> Result<Self> {
-        if let Some(tolerance) = tolerance {
-            case.accuracy.tolerance = checked_tolerance(tolerance)?;
-        }
-        if let Some(other) = engine.filter(|engine| *engine != "line") {
-            return Err(Error::Value {
-                key: "engine".into(),
-                value: format!("{other:?}"),
-                reason: "there is no engine of this name".into(),
-                remedy: "give line".into(),
-            });
-        }
         let options = Options::new(method.parse()?);
-        let solved = SolvedCase::new(&case, &options)?;
-        let found = solved.solution();
-        Ok(Self { options, solved, found })
+        let solved = match engine.unwrap_or("line") {
+            "line" => {
+                if let Some(tolerance) = tolerance {
+                    case.accuracy.tolerance = checked_tolerance(tolerance)?;
+                }
+                let solved = SolvedCase::new(&case, &options)?;
+                let found = solved.solution();
+                Solved::Line(Box::new((solved, found)))
+            }
+            "cells" => {
+                let mut cells = CellOptions::default();
+                if let Some(residual) = tolerance {
+                    cells.tolerance = checked_residual(residual)?;
+                }
+                let quiet = |_: usize, _: f64| {};
+                Solved::Cells(Box::new(solve_on_cells(&case, &options, &cells, &quiet)?))
+            }
+            other => {
+                return Err(Error::Value {
+                    key: "engine".into(),
+                    value: format!("{other:?}"),
+                    reason: "there is no engine of this name".into(),
+                    remedy: "give line or cells".into(),
+                });
+            }
+        };
+        Ok(Self { case, options, solved })
+    }
+
+    fn tables(&self) -> Vec<Columns> {
+        match &self.solved {
+            Solved::Line(line) => tables(&line.1, &self.options),
+            Solved::Cells(cells) => tables(&cells.solution, &self.options),
+        }
+    }
+
+    fn write(&self, folder: &Path) -> Result<()> {
+        match &self.solved {
+            Solved::Line(line) => write_locked(&line.1, &self.options, Vec::new(), folder),
+            Solved::Cells(cells) => {
+                let more = contents(&cells.pressure, &cells.solution.summary.hertz);
+                write_locked(&cells.solution, &self.options, more, folder)
+            }
+        }
+    }
+
+    /// The pressure (p0) at x, y (C).
+    fn at(&self, x: f64, y: f64) -> f64 {
+        match &self.solved {
+            Solved::Line(line) => line.0.pressure(x, y),
+            Solved::Cells(cells) => cells.pressure.at(x, y),
+        }
+    }
+
+    /// Stresses (p0) at places (m).
+    fn stresses(&self, body: BodyKind, places: Vec<[f64; 3]>) -> Result<Vec<StressTensor>> {
+        match &self.solved {
+            Solved::Line(line) => {
+                let c_m = line.0.hertz().c_m;
+                let at: Vec<_> = places.iter().map(|at_m| at_m.map(|v| v / c_m)).collect();
+                line.0.stress(body, &at)
+            }
+            Solved::Cells(cells) => {
+                let points = places.into_iter().map(|at_m| Point { body, at_m }).collect();
+                let options = Options { points, bodies: Vec::new(), ..self.options.clone() };
+                stress_on_cells(&self.case, &options, &cells.pressure)
+            }
+        }
+    }
+
+    /// Stresses (Pa) on a grid (m), component by component.
+    fn on_grid(&self, body: BodyKind, grid: Grid) -> Result<Vec<f64>> {
+        let HertzScales { c_m, p0_pa, .. } = self.case.hertz();
+        if let Solved::Line(line) = &self.solved {
+            let scaled = |axis: Vec<f64>| axis.into_iter().map(|v| v / c_m).collect();
+            let grid = Grid { x: scaled(grid.x), y: scaled(grid.y), z: scaled(grid.z) };
+            let found = line.0.on_grid(body, &grid)?;
+            return Ok(found.values().iter().map(|v| v * p0_pa).collect());
+        }
+        let Grid { x, y, z } = &grid;
+        let line = |z: f64, y: f64| x.iter().map(move |x| [*x, y, z]);
+        let plane = |z: f64| y.iter().flat_map(move |y| line(z, *y));
+        let found = self.stresses(body, z.iter().flat_map(|z| plane(*z)).collect())?;
+        let component = |i: usize| found.iter().map(move |s| s.components()[i] * p0_pa);
+        Ok((0..6).flat_map(component).collect())
     }
 }
 
@@ -75,13 +156,18 @@ fn body(name: &str) -> Result<BodyKind> {
 impl Solution {
     /// The summary as JSON.
     fn summary(&self) -> String {
-        serde_json::to_string(&self.found.summary).expect("a summary is plain data")
+        match &self.solved {
+            Solved::Line(line) => serde_json::to_string(&line.1.summary),
+            Solved::Cells(cells) => serde_json::to_string(&cells.solution.summary),
+        }
+        .expect("a summary is plain data")
     }
 
     /// All tables by their names.
-    fn tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+    #[pyo3(name = "tables")]
+    fn all_tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        for columns in work(py, || tables(&self.found, &self.options))? {
+        for columns in work(py, || self.tables())? {
             all.set_item(columns.name, table(py, columns)?)?;
         }
         Ok(all)
@@ -95,10 +181,8 @@ impl Solution {
         y: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (x, y) = (x.as_slice()?, y.as_slice()?);
-        let scales = *self.solved.hertz();
-        let at = |(x, y): (&f64, &f64)| {
-            scales.p0_pa * self.solved.pressure(x / scales.c_m, y / scales.c_m)
-        };
+        let HertzScales { c_m, p0_pa, .. } = self.case.hertz();
+        let at = |(x, y): (&f64, &f64)| p0_pa * self.at(x / c_m, y / c_m);
         let found: Vec<f64> = work(py, || x.iter().zip(y).map(at).collect())?;
         Ok(found.into_pyarray(py))
     }
@@ -114,11 +198,11 @@ impl Solution {
     ) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let body = body(body_name).map_err(raised)?;
         let (x, y, z) = (x.as_slice()?, y.as_slice()?, z.as_slice()?);
-        let scales = *self.solved.hertz();
+        let p0_pa = self.case.hertz().p0_pa;
         let found = work(py, || {
-            let at = x.iter().zip(y).zip(z).map(|((x, y), z)| [x, y, z].map(|v| v / scales.c_m));
-            let found = self.solved.stress(body, &at.collect::<Vec<_>>())?;
-            Ok(found.iter().flat_map(|s| (*s * scales.p0_pa).components()).collect::<Vec<f64>>())
+            let places = x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect();
+            let found = self.stresses(body, places)?;
+            Ok(found.iter().flat_map(|s| (*s * p0_pa).components()).collect::<Vec<f64>>())
         })?
         .map_err(raised)?;
         let n = x.len();
@@ -135,20 +219,16 @@ impl Solution {
         z: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray4<f64>>> {
         let body = body(body_name).map_err(raised)?;
-        let scales = *self.solved.hertz();
-        let axis = |values: &[f64]| values.iter().map(|v| v / scales.c_m).collect::<Vec<_>>();
-        let grid = Grid { x: axis(x.as_slice()?), y: axis(y.as_slice()?), z: axis(z.as_slice()?) };
+        let [x, y, z] = [x, y, z].map(|axis| axis.as_slice().map(<[f64]>::to_vec));
+        let grid = Grid { x: x?, y: y?, z: z? };
         let shape = [6, grid.z.len(), grid.y.len(), grid.x.len()];
-        let found = work(py, || {
-            let found = self.solved.on_grid(body, &grid)?;
-            Ok(found.values().iter().map(|v| v * scales.p0_pa).collect::<Vec<f64>>())
-        })?
-        .map_err(raised)?;
+        let found = work(py, || self.on_grid(body, grid))?.map_err(raised)?;
         found.into_pyarray(py).reshape(shape)
     }
 
     /// Writes the files of `edgeline solve` into a folder.
-    fn write(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
-        work(py, || write_locked(&self.found, &self.options, &folder))?.map_err(raised)
+    #[pyo3(name = "write")]
+    fn write_files(&self, py: Python<'_>, folder: PathBuf) -> PyResult<()> {
+        work(py, || self.write(&folder))?.map_err(raised)
     }
 }

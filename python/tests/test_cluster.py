@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import importlib.util
+import importlib
 import os
 import signal
-import sys
 from pathlib import Path
 from types import ModuleType
 from typing import Any
@@ -18,22 +17,15 @@ import edgeline
 COUNT = 1200
 
 
-@pytest.fixture(scope="module")
-def cluster() -> ModuleType:
-    """The example, as workers import it."""
+@pytest.fixture
+def cluster(monkeypatch: pytest.MonkeyPatch) -> ModuleType:
+    """The example; workers are started with this path, so that they find it, too."""
     pytest.importorskip("distributed")
-    examples = Path(__file__).parents[1] / "examples"
-    # The workers are processes of their own, which look there, too.
-    os.environ["PYTHONPATH"] = os.pathsep.join([str(examples), os.environ.get("PYTHONPATH", "")])
-    spec = importlib.util.spec_from_file_location("cluster", examples / "cluster.py")
-    assert spec and spec.loader
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["cluster"] = module
-    spec.loader.exec_module(module)
-    return module
+    monkeypatch.syspath_prepend(str(Path(__file__).parents[1] / "examples"))
+    return importlib.import_module("cluster")
 
 
-def test_a_worker_that_is_killed_costs_no_row(cluster: Any, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_worker_that_is_killed_costs_no_row(cluster: Any) -> None:
     from distributed import Client, LocalCluster
 
     local = {"n_workers": 2, "threads_per_worker": 1, "dashboard_address": None}

@@ -105,6 +105,28 @@ def test_every_method_carries_the_load(case: edgeline.Case, method: str) -> None
     assert solution.summary["method"] == method and method in repr(solution)
 
 
+def test_the_engine_on_cells(case: edgeline.Case, tmp_path: Path, program: Any) -> None:
+    solution = edgeline.solve(case, "mirror", tolerance=1e-6, engine="cells")
+    command = ("solve", "half-short", "--method", "mirror", "--engine", "cells")
+    done = program(*command, "--tolerance", "1e-6", "--out", tmp_path / "theirs")
+    assert done.returncode == 0, done.stderr
+    solution.write(tmp_path / "own")
+    theirs = sorted(path.name for path in (tmp_path / "theirs").iterdir())
+    for name in theirs:
+        if name.endswith((".csv", ".npy")):
+            own, other = (tmp_path / side / name for side in ("own", "theirs"))
+            assert own.read_bytes() == other.read_bytes(), name
+    assert solution.summary["details"]["engine"] == "cells"
+    # Along a curve off the end, the same stresses as at its points.
+    curves = solution.curves
+    at = np.flatnonzero((curves["body"] == "block") & (curves["curve"] == "depth-centre"))[::10]
+    stress = solution.stress("block", *(curves[f"{axis}_m"][at] for axis in "xyz"))
+    assert np.allclose(stress[:, 2], curves["sigma_zz_pa"][at], rtol=1e-9)
+    assert solution.pressure(0.0, 0.0) == solution.summary["p_centre_pa"]
+    with pytest.raises(edgeline.Error, match="a relative residual on cells"):
+        edgeline.solve(case, "mirror", tolerance=0.1, engine="cells")
+
+
 def test_what_does_not_exist_is_refused(case: edgeline.Case, solution: edgeline.Solution) -> None:
     for refused, wanted in [
         (lambda: edgeline.solve(case, "quarter"), 'method = "quarter" is not valid'),

@@ -5,10 +5,11 @@ use crate::base::Result;
 use crate::case::case_schema;
 use crate::host::{Lock, write_set};
 use crate::report::study_files::pretty;
-use crate::solve::Summary;
+use crate::solve::{CellDetails, Details, Summary};
 use clap::{Args, Command, ValueHint};
 use clap_complete::Shell;
 use clap_mangen::Man;
+use schemars::JsonSchema;
 use std::path::PathBuf;
 
 /// Writes shell completions, manual pages and JSON Schemas.
@@ -21,6 +22,15 @@ pub(super) struct Arguments {
     /// Folder for the files; made if it is not there
     #[arg(long, default_value = "extras", value_hint = ValueHint::DirPath)]
     out: PathBuf,
+}
+
+/// The `details` of a summary, by its engine.
+#[derive(JsonSchema)]
+#[serde(untagged)]
+#[expect(dead_code, reason = "only the schema is taken")]
+enum EngineDetails {
+    Line(Box<Details>),
+    Cells(CellDetails),
 }
 
 /// Writes what belongs to `program`.
@@ -47,7 +57,7 @@ pub(super) fn run(arguments: Arguments, mut program: Command) -> Result<Exit> {
             .expect("a vector takes all bytes");
         files.push((format!("{title}.1"), text));
     }
-    let summary = schemars::schema_for!(Summary);
+    let summary = schemars::schema_for!(Summary<EngineDetails>);
     files.push(("summary.schema.json".into(), pretty(&summary).into_bytes()));
     files.push(("case.schema.json".into(), pretty(&case_schema()).into_bytes()));
     let _lock = Lock::claim(&arguments.out)?;

@@ -43,7 +43,10 @@ pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
 }
 
 /// The relative residual if it is within its legal range.
-pub(super) fn checked_residual(residual: f64) -> Result<f64> {
+///
+/// # Errors
+/// As [`checked_tolerance`].
+pub fn checked_residual(residual: f64) -> Result<f64> {
     checked(residual, RESIDUALS, "a relative residual on cells", "1e-8")
 }
 

@@ -39,9 +39,14 @@ pub fn write<D: Serialize>(
 ///
 /// # Errors
 /// As [`write`]; [`crate::base::Error::Busy`] when another run has the folder.
-pub fn write_locked(solution: &Solution, options: &Options, folder: &Path) -> Result<()> {
+pub fn write_locked<D: Serialize>(
+    solution: &Solution<D>,
+    options: &Options,
+    more: Vec<(String, Vec<u8>)>,
+    folder: &Path,
+) -> Result<()> {
     let _lock = Lock::claim(folder)?;
-    write(solution, options, Vec::new(), folder)
+    write(solution, options, more, folder)
 }
 
 /// All tables of `solution`: `pressure`, `curves` and, if `options` asked for points, `points`.

@@ -35,6 +35,7 @@ const STEP: f64 = 1e-4;
 
 /// How a case was solved on cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct CellDetails {
     /// `cells`.
     pub engine: String,
@@ -108,6 +109,21 @@ pub fn solve_on_cells(
     let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
     let solution = stressed.solution(case, &scene, &problem, &pressure, seconds);
     Ok(CellSolution { solution, pressure })
+}
+
+/// Stresses (p0) at the points of `options` under the `pressure` that [`solve_on_cells`] found for `case`.
+///
+/// # Errors
+/// [`Error::Value`] that names the first point outside its body.
+pub fn stress_on_cells(
+    case: &Case,
+    options: &Options,
+    pressure: &CellPressure,
+) -> Result<Vec<StressTensor>> {
+    options.check(case)?;
+    let scene = Scene::new(case, options.method, options.psi);
+    let problem = scene.on_cells(pressure.grid, CellOptions::default().tolerance);
+    Ok(Stressed::new(case, &scene, options, &problem, pressure).points)
 }
 
 /// Cells over the contact of `scene` up to `half_width` (C): `counts` of them, or in even numbers twice as long as

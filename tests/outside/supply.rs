@@ -65,6 +65,18 @@ fn the_oldest_supported_compiler_is_the_same_everywhere() {
 }
 
 #[test]
+fn the_version_is_the_same_everywhere() {
+    let version = env!("CARGO_PKG_VERSION");
+    for (file, wanted) in [
+        ("python/Cargo.toml", format!("\nversion = \"{version}\"\n")),
+        ("CITATION.cff", format!("\nversion: {version}\n")),
+    ] {
+        let text = fs::read_to_string(root().join(file)).unwrap();
+        assert!(text.contains(&wanted), "{file} does not say {wanted:?}");
+    }
+}
+
+#[test]
 fn unsafe_code_stands_in_one_place() {
     let mut files: Vec<PathBuf> = Vec::new();
     let mut folders = vec![root().join("src")];
