@@ -42,7 +42,7 @@ const FREED: End = End { image_weight: Some(1.0), freed: true, gamma: None };
 const TOLERANCE: f64 = 1e-4;
 
 /// Shapes along the line that displace less than this part of the largest one are left out.
-const NEGLIGIBLE: f64 = 1e-6;
+const NEGLIGIBLE: f64 = 1e-5;
 
 /// A body with free ends at the coarse wavenumbers.
 #[derive(Debug)]

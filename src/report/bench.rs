@@ -80,7 +80,7 @@ struct ParetoRow {
     case: String,
     source: Source,
     origin: Origin,
-    /// A model's tolerance, a mesh's relative element size or the number of cells across.
+    /// A model's tolerance, a mesh's relative element size or the number of cells.
     setting: f64,
     unknowns: Option<u64>,
     err: Option<String>,

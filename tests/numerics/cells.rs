@@ -81,7 +81,13 @@ fn pressures_are_the_line_engines_for_every_edge_model() {
             let line = SolvedScene::new(&Scene { tolerance: 1e-4, ..scene.clone() }).unwrap();
             let cells = on_cells(&scene, 256, 400, 1e-8);
             let name = format!("{model}, S_l {slenderness}, L_r {ratio}");
-            small(&name, pressure_error(&cells, &line), 0.004);
+            // Singular at both ends, or at one, or nowhere.
+            let limit = match (model, ratio) {
+                (EdgeModel::HalfSpace, _) => 3e-3,
+                (_, 0.5) => 4e-4,
+                _ => 1e-4,
+            };
+            small(&name, pressure_error(&cells, &line), limit);
         }
     }
 }
@@ -127,7 +133,9 @@ fn stresses_under_free_ends_are_the_line_engines() {
                 .map(|(_, (got, want))| crate::common::apart(got, want).powi(2))
                 .collect();
             let rms = (off.iter().sum::<f64>() / off.len() as f64).sqrt();
-            small(&format!("{name}, {} of the {}", got.name, got.body.name()), rms, 0.006);
+            // On the surface the cells show the steps of their pressure.
+            let limit = if got.name.starts_with("surface") { 4e-3 } else { 2e-3 };
+            small(&format!("{name}, {} of the {}", got.name, got.body.name()), rms, limit);
         }
         // Most of it is the line engine's own, at a tolerance of 1e-3.
         near(name, cells.summary.approach_m / line.summary.approach_m, 1.0, 5e-3);

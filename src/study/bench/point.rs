@@ -86,7 +86,7 @@ pub struct BenchPoint {
     pub source: Source,
     /// The origin of its time.
     pub origin: Origin,
-    /// A model's tolerance (p0); a mesh's relative element size; cells across.
+    /// A model's tolerance (p0); a mesh's relative element size; the number of cells.
     pub setting: f64,
     /// Unknowns of both bodies (FEM).
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -175,7 +175,7 @@ fn published_points(case: &Case, models: &Models) -> Vec<WithCurves> {
             let point = BenchPoint {
                 timing: attempt.timing,
                 err: attempt.solution.as_ref().err().map(|e| e.to_string()),
-                ..BenchPoint::new(Engine::published(), Origin::Cells, grid[0] as f64)
+                ..BenchPoint::new(Engine::published(), Origin::Cells, (grid[0] * grid[1]) as f64)
             };
             (point, attempt.solution.ok().map(|solution| solution.curves))
         }

@@ -24,7 +24,7 @@ pub struct Speedup {
     pub fem_error: f64,
     /// Median seconds and spread.
     pub fem_seconds: (f64, f64),
-    /// The fastest tolerance within the level; of the published method the cells across.
+    /// The fastest tolerance within the level; of the published method the number of cells.
     pub tolerance: f64,
     /// The model's error there (p0).
     pub model_error: f64,
