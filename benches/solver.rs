@@ -75,9 +75,10 @@ fn kernels(c: &mut Criterion) {
 
 /// The block of a scene and its layers, one per wavenumber.
 fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
-    let block = scene.bodies.block;
-    let shape = Shape { contact: scene.half_length, half: block.half, nu: block.nu };
-    let body = Body::new(shape, scene.end(BodyKind::Block), Parity::Even, resolution);
+    let block = &scene.bodies.block;
+    let shape = Shape { half: block.half, nu: block.nu };
+    let line = resolution.contact_axis(scene.half_length);
+    let body = Body::new(&line, shape, scene.end(BodyKind::Block), Parity::Even, resolution);
     let wavenumbers = resolution.wavenumbers(block.half);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)
@@ -105,6 +106,10 @@ fn compliance_and_contact(c: &mut Criterion) {
             gap: &Straight,
             load: 0.5 * PI * axis.end(),
             moment: None,
+            tilt: 0.0,
+            open: [false; 2],
+            recedes: [false; 2],
+            guess: None,
         };
         let settings = ContactSettings {
             modes: resolution.modes,

@@ -1,4 +1,4 @@
-//! Materials, Hertz scales, the stress tensor, graded axes, wavenumbers, quadrature, the error
+//! Materials, Hertz scales, profiles, the stress tensor, graded axes, wavenumbers, quadrature, the error
 //! type, and numbers as text.
 
 mod bodies;
@@ -10,6 +10,7 @@ mod material;
 pub(crate) mod number;
 mod panels;
 mod parity;
+pub mod profile;
 mod quadrature;
 mod scales;
 mod tensor;
@@ -20,6 +21,7 @@ pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::Panels;
 pub use parity::Parity;
+pub use profile::Profile;
 pub use quadrature::gauss_legendre;
 pub use scales::HertzScales;
 pub use tensor::StressTensor;

@@ -1,7 +1,7 @@
 //! Axes chosen from a requested accuracy.
 
 use super::end::End;
-use crate::base::{Panels, Wavenumbers};
+use crate::base::{Panels, Parity, Wavenumbers};
 use serde::{Deserialize, Serialize};
 
 /// Wavenumber below which the contact's width has no effect.
@@ -13,6 +13,9 @@ const WIDEST: f64 = 1.0;
 /// Wavenumber times half-thickness beyond which the plate acts as two half-spaces: its remainder is
 /// negligible.
 pub(super) const PLATE_FADES: f64 = 8.0;
+
+/// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest one.
+const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 
 /// Exponent of the pressure at its end (0.23 for equal materials) from which the contact's
 /// iteration barely converges with smaller panels there, on blocks much softer than the roller.
@@ -221,11 +224,28 @@ impl Resolution {
         if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
     }
 
-    /// [`Resolution::contact_axis`], continued by panels up to a body's end face at `half`, graded
-    /// towards the face.
-    pub fn body_axis(&self, half_length: f64, half: f64) -> Panels {
-        let mut breaks = self.contact_axis(half_length).breaks().to_vec();
-        let ledge = half - half_length;
+    /// Panels from one end of the contact line to the other, at `from` and `to`, graded towards both.
+    pub fn line_axis(&self, [from, to]: [f64; 2]) -> Panels {
+        let middle = 0.5 * (from + to);
+        let half = self.contact_axis(0.5 * (to - from));
+        let inner = &half.breaks()[1..half.breaks().len() - 1];
+        let before = inner.iter().rev().map(|y| middle - y);
+        let after = inner.iter().map(|y| middle + y);
+        // The ends themselves are exact.
+        let breaks = [from].into_iter().chain(before).chain([middle]).chain(after).chain([to]);
+        Panels::new(breaks.collect(), self.order)
+    }
+
+    /// The `contact` on one side of a body's middle, continued by panels to the middle and to the end
+    /// face at `half`, graded towards the contact and the face.
+    pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
+        let mut breaks = contact.breaks().to_vec();
+        let near = breaks[0];
+        if near > 0.0 {
+            let inward = self.graded(self.corner.min(0.5 * near), near);
+            breaks.splice(..0, inward[1..].iter().rev().map(|s| (near - s).max(0.0)));
+        }
+        let ledge = half - contact.end();
         if ledge > 0.0 {
             // The effect of the end face on the surface is smooth at the contact's end: only the
             // face itself needs grading.
@@ -277,10 +297,16 @@ impl Resolution {
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder
     /// is negligible beyond `PLATE_FADES` / `half` and varies on the scale of the wavenumber
     /// across the contact, hence panels that grow from `k_min`.
-    pub fn face_wavenumbers(&self, half: f64) -> Panels {
+    ///
+    /// A plate in bending, under the odd part of a load, answers most to waves of the same length along
+    /// and across: its remainder varies on the scale of the smallest wavenumber across the contact.
+    pub fn face_wavenumbers(&self, half: f64, parity: Parity) -> Panels {
         let top = PLATE_FADES / half;
         let mut breaks = vec![0.0];
         let mut next = self.smallest_wavenumber(half);
+        if parity == Parity::Odd {
+            breaks.extend(BENDING.map(|part| part * next));
+        }
         while next < 0.6 * top {
             breaks.push(next);
             next = (next * 2.0 * self.ratio.sqrt()).min(next + WIDEST);

@@ -1,8 +1,8 @@
 //! A body that ends at y = -H and y = +H, as a set of layers, one per wavenumber across the
 //! contact.
 //!
-//! Symmetry: pressures are even in x and in y, so only y >= 0 is stored; the loads q on the two end
-//! faces are equal, and even in z. Lengths are in units of C. A layer's displacement is f p with
+//! Symmetry: pressures are even in x, and even or odd in y about the body's middle, so only y >= 0 is
+//! stored; the loads q on the two end faces are equal or opposite, and even in z. Lengths are in units of C. A layer's displacement is f p with
 //! u = (1 - nu^2)/(pi E) f p, so a half-space's f is 2 K0(k |y|).
 
 use super::axes::{PLATE_FADES, Resolution};
@@ -15,6 +15,7 @@ use crate::kernels::plate;
 use crate::kernels::wave::{WaveTable, WwPlaces};
 use nalgebra::{DMatrix, DMatrixView};
 use std::f64::consts::PI;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// A finite body: everything that does not depend on the wavenumber.
@@ -40,8 +41,8 @@ pub struct Body {
     images: Vec<Image>,
     /// The same for the stresses: an image weighted by psi has its full weight here.
     stress_images: Vec<Image>,
-    /// Nodes of `surface` that belong to the contact; they come first.
-    contact: usize,
+    /// Nodes of `surface` that belong to the contact.
+    contact: Range<usize>,
     /// Uniform strips beyond the images, which carry the mean of P: |y| and weight of quadrature
     /// points.
     strips: Vec<(f64, f64)>,
@@ -73,21 +74,24 @@ pub struct Layer {
     pub condition: f64,
 }
 
-/// The lengths and the material of a body.
+/// The length and the material of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Shape {
-    /// Half-length of the contact (C).
-    pub contact: f64,
-    /// Half-length of the body (C), at least `contact`.
+    /// Half-length of the body (C).
     pub half: f64,
     /// Poisson's ratio.
     pub nu: f64,
 }
 
+/// Shares of the last images of an alternating series, which close it (Euler's transformation of third
+/// order).
+const CLOSING: [f64; 3] = [0.875, 0.5, 0.125];
+
 /// A load at s >= 0 and its other half at -s, and their images in the end faces of a body.
 ///
 /// Even loads have the period 2 H of the body's length, and strips replace the images beyond the
-/// last. Odd loads change sign from one length to the next; half the last image closes their series.
+/// last. Odd loads change sign from one length to the next; [`CLOSING`] shares of three more images close
+/// their series.
 fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<Image> {
     let image = |lengths: i32, weight: f64| {
         let shift = 2.0 * half * f64::from(lengths);
@@ -99,24 +103,31 @@ fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<
     };
     let mut images = image(0, 1.0).to_vec();
     let Some(weight) = end.image_weight else { return images };
-    let closing = end.freed && parity == Parity::Odd;
-    let count = if end.freed { resolution.images as i32 + i32::from(closing) } else { 1 };
-    for n in 1..=count {
-        let weight = if closing && n == count { 0.5 * weight } else { weight };
+    let closing: &[f64] = if end.freed && parity == Parity::Odd { &CLOSING } else { &[] };
+    let full = if end.freed { resolution.images } else { 1 };
+    let weights = (0..full).map(|_| 1.0).chain(closing.iter().copied());
+    for (n, share) in (1..).zip(weights) {
+        let weight = share * weight;
         images.extend([-n, n].into_iter().flat_map(|lengths| image(lengths, weight)));
     }
     images
 }
 
 impl Body {
-    /// A body of this `shape` with end faces `end`, under loads of one `parity`.
-    pub fn new(shape: Shape, end: End, parity: Parity, resolution: &Resolution) -> Self {
-        let Shape { contact: half_length, half, nu } = shape;
-        let contact_axis = resolution.contact_axis(half_length);
-        let contact = contact_axis.len();
-        let surface =
-            if end.freed { resolution.body_axis(half_length, half) } else { contact_axis };
-        let ledge = half - half_length;
+    /// A body of this `shape` with end faces `end`, under loads of one `parity` on `contact`, an axis
+    /// on one side of the body's middle.
+    pub fn new(
+        contact: &Panels,
+        shape: Shape,
+        end: End,
+        parity: Parity,
+        resolution: &Resolution,
+    ) -> Self {
+        let Shape { half, nu } = shape;
+        let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
+        let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
+        let ledge = half - contact.end();
+        let contact = first..first + contact.len();
         let face = Sources::new(resolution.face_axis(ledge, half));
         let surface = Sources::new(surface);
         let images = images(half, &end, parity, resolution);
@@ -129,9 +140,9 @@ impl Body {
             nu,
             end,
             parity,
-            face_wavenumbers: resolution.face_wavenumbers(half),
+            face_wavenumbers: resolution.face_wavenumbers(half, parity),
             resolution: *resolution,
-            contact,
+            contact: contact.clone(),
             images,
             strips: Vec::new(),
             compliance_stencils: Vec::new(),
@@ -145,7 +156,7 @@ impl Body {
             surface,
             face,
         };
-        body.compliance_stencils = body.surface.axis.nodes()[..contact]
+        body.compliance_stencils = body.surface.axis.nodes()[contact]
             .iter()
             .map(|&y| {
                 let shortest = 2.0 / resolution.k_max;
@@ -256,9 +267,9 @@ impl Body {
         Stencil::new(from, images, along, depth, 2.0 / self.resolution.k_max, Peak::Kink)
     }
 
-    /// Number of contact nodes.
-    pub fn contact_len(&self) -> usize {
-        self.contact
+    /// The nodes of `surface` that belong to the contact.
+    pub fn contact(&self) -> Range<usize> {
+        self.contact.clone()
     }
 
     /// Number of face nodes within the reach of a wavenumber.
@@ -312,7 +323,7 @@ impl Body {
                 k0_of_all(k, stencil.offsets(), reach, &mut values);
                 stencil.add_row(&values, charges, nodes);
                 let mut strips = 0.0;
-                let y = self.surface.axis.nodes()[i];
+                let y = self.surface.axis.nodes()[self.contact.start + i];
                 self.for_strips(k, y, 0.0, |u, w| strips += w * k0(k * u.abs()));
                 self.add_mean(strips, nodes);
             });
@@ -321,20 +332,22 @@ impl Body {
         let displacement = 2.0 * displacement.finish();
         // An end face beyond the reach of this wavenumber carries no load.
         if !self.end.freed || self.ledge > self.reach(k) {
-            let compliance = displacement.columns(0, self.contact).into_owned();
+            let compliance = displacement.columns_range(self.contact()).into_owned();
             return Layer { compliance, surface: None, face: None, condition: 1.0 };
         }
         let to_face = self.surface_matrix(k);
         let from_face = self.faces_matrix(k, to_face.nrows());
         let system = DMatrix::identity(n, n) - from_face * &to_face;
         let norm = column_sum(&system);
-        let contact_columns = DMatrix::identity(n, self.contact);
-        let (surface, condition) = match linear::solve(system, contact_columns) {
+        let start = self.contact.start;
+        let unit = |i: usize, j: usize| f64::from(u8::from(i == start + j));
+        let contact_columns = || DMatrix::from_fn(n, self.contact.len(), unit);
+        let (surface, condition) = match linear::solve(system, contact_columns()) {
             Some(surface) => {
                 let condition = norm * column_sum(&surface);
                 (surface, condition)
             }
-            None => (DMatrix::identity(n, self.contact), f64::INFINITY),
+            None => (contact_columns(), f64::INFINITY),
         };
         Layer {
             compliance: displacement * &surface,

@@ -1,11 +1,14 @@
 //! The case file: one contact problem.
 
-use super::document::{Document, Entry, Table, read_text};
+use super::document::{Document, Entry, Table, nearest, read_text};
 use super::draft::{Draft, Form};
-use super::keys::{KEYS, Key, Presence};
+use super::keys::{KEYS, Key, others_of};
 use super::model::Case;
-use crate::base::Result;
+use super::profile::{ProfileKind, ProfileSpec};
+use super::profile_table::read_profile_table;
+use crate::base::{BodyKind, Result};
 use std::path::Path;
+use std::sync::Arc;
 
 impl Case {
     /// Reads a case file.
@@ -40,6 +43,7 @@ impl Case {
         only_tables(&root, &["name"])?;
         let (form, load) = form(&root)?;
         let mut draft = Draft::new(name(&root)?, form);
+        read_profiles(&root, path, &mut draft)?;
         for (key, entry) in entries(&root, &keys_of(form))? {
             key.set(&mut draft, entry.number()?);
         }
@@ -75,7 +79,9 @@ pub(super) fn keys_of(form: Form) -> Vec<&'static Key> {
 
 /// Refuses keys at the top level that are neither in `more` nor tables of a case file.
 pub(super) fn only_tables(root: &Table, more: &[&'static str]) -> Result<()> {
-    let mut known: Vec<&str> = more.iter().copied().chain(KEYS.iter().map(Key::table)).collect();
+    let tables = KEYS.iter().map(Key::table).filter(|table| !table.contains('.'));
+    let mut known: Vec<&str> = more.iter().copied().chain(tables).collect();
+    known.sort_unstable();
     known.dedup();
     root.only(&known)
 }
@@ -96,20 +102,51 @@ pub(super) fn entries<'d>(
     let mut found = Vec::new();
     for of_table in keys.chunk_by(|a, b| a.table() == b.table()) {
         let name = of_table[0].table();
-        let optional = of_table.iter().all(|key| key.presence == Presence::Optional);
-        if optional && root.get(name).is_none() {
-            continue;
-        }
-        let table = root.table(name)?;
-        table.only(&of_table.iter().map(|key| key.leaf()).collect::<Vec<_>>())?;
+        let table = match root.find(name) {
+            None if of_table.iter().all(|key| !key.is_required()) => continue,
+            None => root.table(name)?,
+            Some(entry) => entry.table()?,
+        };
+        let same = keys.iter().filter(|key| key.table() == name).map(|key| key.leaf());
+        let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
+        table.only(&known)?;
         for &key in of_table {
             let leaf = key.leaf();
-            let entry = match key.presence {
-                Presence::Optional => table.get(leaf),
-                _ => Some(table.require(leaf, &format!("{leaf} = {}", key.example))?),
+            let entry = match key.is_required() {
+                false => table.get(leaf),
+                true => Some(table.require(leaf, &format!("{leaf} = {}", key.example))?),
             };
             found.extend(entry.map(|entry| (key, entry)));
         }
     }
     Ok(found)
+}
+
+/// Takes the kinds and the files of the bodies' profiles; files are looked for beside the case file,
+/// which stands at `path`.
+pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
+    for body in BodyKind::ALL {
+        let Some(entry) = root.find(&format!("{}.profile", body.name())) else { continue };
+        let table = entry.table()?;
+        let entry = table.require("kind", "kind = \"crown\"")?;
+        let name = entry.string()?;
+        let Some(kind) = ProfileKind::ALL.into_iter().find(|kind| kind.name() == name) else {
+            let known = ProfileKind::ALL.map(ProfileKind::name);
+            let remedy =
+                format!("did you mean {}? There are {}", nearest(name, &known), known.join(", "));
+            return Err(entry.refuse("there is no such profile", remedy));
+        };
+        let mut spec = ProfileSpec::new(kind);
+        if let Some(file) = table.get("file") {
+            if kind != ProfileKind::Table {
+                let reason = format!("a {name} profile has no file");
+                return Err(file.refuse(reason, "remove it, or write kind = \"table\""));
+            }
+            let place = path.parent().unwrap_or(Path::new("")).join(file.string()?);
+            spec.table = Some(Arc::new(read_profile_table(&place)?));
+            spec.file = Some(place);
+        }
+        *draft.profile_mut(body) = Some(spec);
+    }
+    Ok(())
 }

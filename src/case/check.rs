@@ -3,13 +3,21 @@
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::{Case, Factors};
-use crate::base::{Error, Result};
+use crate::base::{BodyKind, Error, Result};
 
 /// Largest number of letters of a name.
 pub(super) const MAX_NAME: usize = 64;
 
 /// Rounding: a case from factors at a limit may exceed the limit by this factor.
 const ROUNDING: f64 = 1.0 + 1e-9;
+
+/// Least overlap of the bodies, in lengths of the shorter one.
+const LEAST_OVERLAP: f64 = 1e-2;
+
+/// The key at `path`.
+fn key(path: &str) -> &'static Key {
+    Key::find(path).expect("a key of the list")
+}
 
 impl Case {
     /// Refuses a case with a name or a number that is not legal, or whose factors are not.
@@ -19,29 +27,64 @@ impl Case {
     pub fn check(&self) -> Result<()> {
         check_name(&self.name)?;
         check_numbers(&Draft::of(self, Form::Load))?;
-        self.check_factors()
+        self.check_raceway()?;
+        self.check_factors()?;
+        self.check_pose()?;
+        self.check_profiles()
+    }
+
+    /// A roller fits into a concave raceway only if its radius is smaller.
+    fn check_raceway(&self) -> Result<()> {
+        let Some(radius) = self.block.radius_m else { return Ok(()) };
+        let roller = self.roller.radius_m;
+        if radius > 0.0 || -radius > roller * ROUNDING {
+            return Ok(());
+        }
+        let reason = format!("a roller of radius {roller:e} m does not fit into this raceway");
+        let remedy =
+            "make the raceway's radius larger than the roller's, or positive for a convex one";
+        Err(key("block.radius_m").refuse(radius, reason, remedy))
+    }
+
+    /// Checks that the bodies meet, and that the load lies where they do.
+    fn check_pose(&self) -> Result<()> {
+        let [block, roller] = BodyKind::ALL.map(|body| self.ends_m(body));
+        let (from, to) = (block[0].max(roller[0]), block[1].min(roller[1]));
+        let offset = self.pose.offset_m;
+        if to - from < LEAST_OVERLAP * self.shorter_m() {
+            let reason = format!("the bodies overlap along y by {:e} m only", (to - from).max(0.0));
+            let most = 0.5 * (self.roller.length_m + self.block.length_m);
+            let remedy = format!("keep |offset_m| well below {most:e} m");
+            return Err(key("pose.offset_m").refuse(offset, reason, &remedy));
+        }
+        let Some(eccentricity) = self.load.eccentricity_m else { return Ok(()) };
+        if let Some(tilt) = self.pose.tilt_rad {
+            let reason = "a load with eccentricity_m finds its own tilt".to_string();
+            let remedy = "remove tilt_rad, or eccentricity_m to hold the tilt";
+            return Err(key("pose.tilt_rad").refuse(tilt, reason, remedy));
+        }
+        if eccentricity <= from || eccentricity >= to {
+            let reason = format!(
+                "the load's line lies outside the overlap, {from:e} to {to:e} m: the roller \
+                         would fall over"
+            );
+            let remedy = "place it between the ends of the overlap";
+            return Err(key("load.eccentricity_m").refuse(eccentricity, reason, remedy));
+        }
+        Ok(())
     }
 
     /// Checks the factors that follow from the load and the lengths.
     fn check_factors(&self) -> Result<()> {
         let factors = self.factors();
-        let refuse = |path: &str, value: f64, reason: String, remedy: &str| {
-            let key = Key::find(path).expect("a key of the list");
-            Err(key.refuse(value, reason, remedy))
-        };
         let (block, roller) = (self.block.length_m, self.roller.length_m);
-        if factors.length_ratio > ROUNDING {
-            let reason = format!("the block is shorter than the roller ({roller:e} m)");
-            let remedy = "make it at least as long: equal lengths are flush ends";
-            return refuse("block.length_m", block, reason, remedy);
-        }
         let Factors { load, slenderness, length_ratio } = factors;
         let force = self.load.force_n;
         let ranges = [Factors::LENGTH_RATIO_RANGE, Factors::LOAD_RANGE, Factors::SLENDERNESS_RANGE];
         let checks = [
             ("block.length_m", block, "L_r = L1 / L2", length_ratio),
-            ("load.force_n", force, "W = w / (E* R L1)", load),
-            ("roller.length_m", roller, "S_l = L1 / (2 C)", slenderness),
+            ("load.force_n", force, "W = w / (E* R L)", load),
+            ("roller.length_m", roller, "S_l = L / (2 C)", slenderness),
         ];
         for ((path, own, name, value), (low, high)) in checks.into_iter().zip(ranges) {
             if !(low / ROUNDING..=high * ROUNDING).contains(&value) {
@@ -49,7 +92,7 @@ impl Case {
                     format!("{name} becomes {value:.3e} and must lie between {low:e} and {high:e}");
                 let remedy = "check the units of the load (N), the lengths and the radius (m), and \
                               the moduli (Pa)";
-                return refuse(path, own, reason, remedy);
+                return Err(key(path).refuse(own, reason, remedy));
             }
         }
         Ok(())

@@ -1,7 +1,8 @@
 //! A case as given in a file, before its numbers are checked.
 
 use super::model::{Case, Factors};
-use crate::base::Material;
+use super::profile::ProfileSpec;
+use crate::base::{BodyKind, Material};
 
 /// The two ways to give the load and the lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,17 +34,21 @@ impl Draft {
 
     /// The draft of a case, in the given form.
     pub fn of(case: &Case, form: Form) -> Self {
-        let factors = || {
-            let own = case.factors();
-            // The ratio of equal lengths may exceed 1 by rounding.
-            Factors { length_ratio: own.length_ratio.min(1.0), ..own }
-        };
-        Self { case: case.clone(), factors: (form == Form::Factors).then(factors) }
+        let factors = (form == Form::Factors).then(|| case.factors());
+        Self { case: case.clone(), factors }
     }
 
     /// The form in which the load is given.
     pub fn form(&self) -> Form {
         if self.factors.is_some() { Form::Factors } else { Form::Load }
+    }
+
+    /// The profile of a body.
+    pub(super) fn profile_mut(&mut self, body: BodyKind) -> &mut Option<ProfileSpec> {
+        match body {
+            BodyKind::Block => &mut self.case.block.profile,
+            BodyKind::Roller => &mut self.case.roller.profile,
+        }
     }
 
     /// The same under another name.

@@ -14,6 +14,10 @@ pub enum Presence {
     With(Form),
     /// Not required; it has a default.
     Optional,
+    /// Never; where the load and the lengths are given in the other form it must not stand.
+    OptionalWith(Form),
+    /// By its kind of profile, which may be without it.
+    Profile,
 }
 
 /// A number of a case.
@@ -31,12 +35,23 @@ pub struct Key {
     pub example: &'static str,
     /// Whether a file must contain it.
     pub presence: Presence,
+    /// A further condition of a legal value.
+    is_legal: Option<fn(f64) -> bool>,
     /// The legal values in words, if the two numbers of the range are not clear by themselves.
     rule: Option<&'static str>,
     /// What to do if a value is not legal.
     remedy: &'static str,
     get: fn(&Draft) -> Option<f64>,
     set: fn(&mut Draft, f64),
+}
+
+/// What a table of a case file has besides its numbers: texts, and tables below it.
+pub(super) fn others_of(table: &str) -> &'static [&'static str] {
+    match table {
+        "roller" | "block" => &["profile"],
+        "roller.profile" | "block.profile" => &["kind", "file"],
+        _ => &[],
+    }
 }
 
 impl PartialEq for Key {
@@ -63,7 +78,26 @@ impl Key {
 
     /// Whether a case with the load and the lengths in this form may contain it.
     pub fn is_of(&self, form: Form) -> bool {
-        !matches!(self.presence, Presence::With(other) if other != form)
+        let own = match self.presence {
+            Presence::With(own) | Presence::OptionalWith(own) => own,
+            Presence::Always | Presence::Optional | Presence::Profile => form,
+        };
+        own == form
+    }
+
+    /// Whether a file of its form has to give it.
+    pub fn is_required(&self) -> bool {
+        matches!(self.presence, Presence::Always | Presence::With(_))
+    }
+
+    /// Whether the draft has a place for it: a number of a profile needs the profile.
+    pub fn fits(&self, draft: &Draft) -> bool {
+        let profile = match self.table() {
+            "roller.profile" => &draft.case.roller.profile,
+            "block.profile" => &draft.case.block.profile,
+            _ => return self.is_of(draft.form()),
+        };
+        profile.as_ref().is_some_and(|p| p.kind.keys().contains(&self.leaf()))
     }
 
     /// Its value; `None` if the draft's form does not have it.
@@ -71,7 +105,7 @@ impl Key {
         self.is_of(draft.form()).then(|| (self.get)(draft)).flatten()
     }
 
-    /// Sets its value without a check.
+    /// Sets its value without a check; a number of a profile needs the profile.
     ///
     /// # Panics
     /// If the draft's form does not have it, see [`Key::is_of`].
@@ -86,7 +120,7 @@ impl Key {
     /// [`Error::Value`].
     pub fn check(&self, value: f64) -> Result<()> {
         let (low, high) = self.range;
-        if (low..=high).contains(&value) {
+        if (low..=high).contains(&value) && self.is_legal.is_none_or(|legal| legal(value)) {
             return Ok(());
         }
         let reason = match self.rule {
@@ -102,6 +136,11 @@ impl Key {
     pub(super) fn refuse(&self, value: f64, reason: String, remedy: &str) -> Error {
         let (key, value) = (self.path.to_string(), format!("{value:e}"));
         Error::Value { key, value, reason, remedy: remedy.to_string() }
+    }
+
+    /// The same key with a further condition on its legal values.
+    const fn only(self, is_legal: fn(f64) -> bool) -> Self {
+        Self { is_legal: Some(is_legal), ..self }
     }
 
     /// The same key with its legal values described in words.
@@ -128,19 +167,31 @@ const CORRECT: &str = "correct the value, and check its unit";
 /// Path, column, quantity, range, example, presence, and how to read and write the value in a
 /// draft: a field of `case`, or of `factors` if the draft has them.
 macro_rules! key {
-    ($path:literal, $column:literal, $what:literal, $range:expr, $example:literal, $presence:expr,
+    ($path:expr, $column:expr, $what:expr, $range:expr, $example:literal, $presence:expr,
      case $(.$field:ident)+) => {
         key!($path, $column, $what, $range, $example, $presence,
             |draft| Some(draft.case$(.$field)+),
             |draft, value| draft.case$(.$field)+ = value)
     };
-    ($path:literal, $column:literal, $what:literal, $range:expr, $example:literal, $presence:expr,
+    ($path:expr, $column:expr, $what:expr, $range:expr, $example:literal, $presence:expr,
+     some $body:ident.profile.$field:ident) => {
+        key!($path, $column, $what, $range, $example, $presence,
+            |draft| draft.case.$body.profile.as_ref()?.$field,
+            |draft, value| draft.case.$body.profile.iter_mut().for_each(|p| p.$field = Some(value)))
+    };
+    ($path:expr, $column:expr, $what:expr, $range:expr, $example:literal, $presence:expr,
+     some $(.$field:ident)+) => {
+        key!($path, $column, $what, $range, $example, $presence,
+            |draft| draft.case$(.$field)+,
+            |draft, value| draft.case$(.$field)+ = Some(value))
+    };
+    ($path:expr, $column:expr, $what:expr, $range:expr, $example:literal, $presence:expr,
      factors.$field:ident) => {
         key!($path, $column, $what, $range, $example, $presence,
             |draft| draft.factors.map(|factors| factors.$field),
             |draft, value| draft.factors.iter_mut().for_each(|factors| factors.$field = value))
     };
-    ($path:literal, $column:literal, $what:literal, $range:expr, $example:literal, $presence:expr,
+    ($path:expr, $column:expr, $what:expr, $range:expr, $example:literal, $presence:expr,
      $get:expr, $set:expr) => {
         Key {
             path: $path,
@@ -149,6 +200,7 @@ macro_rules! key {
             range: $range,
             example: $example,
             presence: $presence,
+            is_legal: None,
             rule: None,
             remedy: CORRECT,
             get: $get,
@@ -157,14 +209,68 @@ macro_rules! key {
     };
 }
 
+/// Legal range of places along y (m).
+const PLACES: (f64, f64) = (-LENGTHS.1, LENGTHS.1);
+
+/// Legal range of drops of a profile (m).
+const DROPS: (f64, f64) = (1e-12, 1.0);
+
+/// Legal range of forces (N).
+const FORCES: (f64, f64) = (1e-12, 1e15);
+
+/// Legal range of tilts (rad): beyond, the slope is not small.
+const TILTS: (f64, f64) = (-0.1, 0.1);
+
+const ECCENTRICITY: &str = "y of the load's line of action from the roller's middle in metres";
+
 const ALWAYS: Presence = Presence::Always;
 const OPTIONAL: Presence = Presence::Optional;
 const WITH_LOAD: Presence = Presence::With(Form::Load);
 const WITH_FACTORS: Presence = Presence::With(Form::Factors);
 
+/// A number of a body's profile.
+macro_rules! profile_key {
+    ($body:ident, $field:ident, $what:literal, $range:expr, $example:literal) => {
+        key!(
+            concat!(stringify!($body), ".profile.", stringify!($field)),
+            concat!(stringify!($body), "_profile_", stringify!($field)),
+            $what, $range, $example, Presence::Profile, some $body.profile.$field
+        )
+    };
+    ($body:ident, radius_m) => {
+        profile_key!($body, radius_m, "the radius of a crown or of a relief's arcs in metres", LENGTHS,
+            "5.0")
+    };
+    ($body:ident, amplitude_m) => {
+        profile_key!($body, amplitude_m, "the factor of a logarithmic profile in metres", DROPS, "2e-6")
+    };
+    ($body:ident, k) => {
+        profile_key!($body, k, "k of a logarithmic profile", (1e-9, 1f64.next_down()), "0.95")
+            .ruled("k of a logarithmic profile is greater than 0 and less than 1",
+                "write for example 0.95: with 1 the ends would drop without limit")
+    };
+    ($body:ident, design_force_n) => {
+        profile_key!($body, design_force_n, "the force in newtons that the profile is made for",
+            FORCES, "5000.0")
+    };
+    ($body:ident, k1) => {
+        profile_key!($body, k1, "K1 of Fujiwara's profile", (1e-3, 1e3), "1.5")
+    };
+    ($body:ident, k2) => {
+        profile_key!($body, k2, "K2 of Fujiwara's profile", (1e-9, 1.0), "0.6")
+    };
+    ($body:ident, zm_m) => {
+        profile_key!($body, zm_m, "the drop of Fujiwara's profile at the end in metres", DROPS, "10e-6")
+    };
+    ($body:ident, straight_m) => {
+        profile_key!($body, straight_m, "the length of a relief's straight part in metres", (0.0, 1e4),
+            "6e-3")
+    };
+}
+
 /// All numbers of a case, in the order of its file. The keys of a table stand side by side.
 #[rustfmt::skip]
-pub static KEYS: [Key; 13] = [
+pub static KEYS: [Key; 34] = [
     key!("roller.radius_m", "radius_m", "the roller's radius in metres", LENGTHS, "10e-3", ALWAYS,
         case.roller.radius_m),
     key!("roller.length_m", "roller_length_m", "the roller's length in metres", LENGTHS, "10e-3",
@@ -173,22 +279,50 @@ pub static KEYS: [Key; 13] = [
         case.roller.material.young_pa),
     key!("roller.poisson", "roller_poisson", "Poisson's ratio", RATIOS, "0.3", ALWAYS,
         case.roller.material.poisson).ruled(RATIO_RULE, RATIO_REMEDY),
+    profile_key!(roller, radius_m),
+    profile_key!(roller, amplitude_m),
+    profile_key!(roller, k),
+    profile_key!(roller, design_force_n),
+    profile_key!(roller, k1),
+    profile_key!(roller, k2),
+    profile_key!(roller, zm_m),
+    profile_key!(roller, straight_m),
     key!("block.length_m", "block_length_m", "the block's length in metres", LENGTHS, "20e-3",
         WITH_LOAD, case.block.length_m),
     key!("block.young_pa", "block_young_pa", "Young's modulus in pascals", MODULI, "210e9", ALWAYS,
         case.block.material.young_pa),
     key!("block.poisson", "block_poisson", "Poisson's ratio", RATIOS, "0.3", ALWAYS,
         case.block.material.poisson).ruled(RATIO_RULE, RATIO_REMEDY),
+    key!("block.radius_m", "block_radius_m", "the radius of a raceway in metres, negative if concave,",
+        PLACES, "-0.05", OPTIONAL, some .block.radius_m)
+        .only(|radius| radius.abs() >= LENGTHS.0)
+        .ruled("a raceway's radius lies between -1e4 and 1e4 m and is not zero",
+            "remove it for a flat block"),
+    profile_key!(block, radius_m),
+    profile_key!(block, amplitude_m),
+    profile_key!(block, k),
+    profile_key!(block, design_force_n),
+    profile_key!(block, k1),
+    profile_key!(block, k2),
+    profile_key!(block, zm_m),
+    profile_key!(block, straight_m),
     key!("dimensionless.W", "W", "the load factor W", Factors::LOAD_RANGE, "5e-4", WITH_FACTORS,
         factors.load),
     key!("dimensionless.S_l", "S_l", "the slenderness S_l", Factors::SLENDERNESS_RANGE, "5.0",
         WITH_FACTORS, factors.slenderness),
     key!("dimensionless.L_r", "L_r", "the length ratio L_r", Factors::LENGTH_RATIO_RANGE, "1.0",
         WITH_FACTORS, factors.length_ratio)
-        .ruled("the roller is at most as long as the block, and L_r = L1 / L2 lies between 1e-3 and 1",
-            "write 1 for flush ends"),
-    key!("load.force_n", "force_n", "the load in newtons", (1e-12, 1e15), "1000.0", WITH_LOAD,
+        .ruled("L_r = L1 / L2 lies between 1e-3 and 1e3", "write 1 for flush ends"),
+    key!("dimensionless.eccentricity_m", "dimensionless_eccentricity_m", ECCENTRICITY, PLACES, "0.0",
+        Presence::OptionalWith(Form::Factors), some .load.eccentricity_m),
+    key!("load.force_n", "force_n", "the load in newtons", FORCES, "1000.0", WITH_LOAD,
         case.load.force_n),
+    key!("load.eccentricity_m", "eccentricity_m", ECCENTRICITY, PLACES, "0.0",
+        Presence::OptionalWith(Form::Load), some .load.eccentricity_m),
+    key!("pose.tilt_rad", "tilt_rad", "the tilt in radians", TILTS, "0.0", OPTIONAL,
+        some .pose.tilt_rad),
+    key!("pose.offset_m", "offset_m", "y of the block's middle from the roller's in metres", PLACES,
+        "0.0", OPTIONAL, case.pose.offset_m),
     key!("accuracy.tolerance", "tolerance", "the tolerance, a fraction of p0,", (1e-5, 1e-1), "1e-3",
         OPTIONAL, case.accuracy.tolerance),
     key!("cells.half_width_m", "cells_half_width_m", "the half-width of the cells in metres", LENGTHS,

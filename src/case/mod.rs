@@ -9,6 +9,9 @@ mod keys;
 #[cfg(feature = "cli")]
 mod levels;
 mod model;
+mod profile;
+mod profile_table;
+mod profiles;
 #[cfg(feature = "cli")]
 mod schema;
 #[cfg(feature = "cli")]
@@ -25,7 +28,8 @@ mod tests;
 pub use builtin::{BUILTIN_CASES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
-pub use model::{Accuracy, Block, Case, Cells, Factors, Load, Roller};
+pub use model::{Accuracy, Block, Case, Cells, Factors, Load, Pose, Roller};
+pub use profile::{ProfileKind, ProfileSpec};
 #[cfg(feature = "cli")]
 pub use {
     schema::case_schema,

@@ -1,12 +1,13 @@
 //! One contact problem in SI units. The structs have the form of the case file: serde writes it,
 //! and each field is declared once. `keys.rs` lists their numbers.
 
-use crate::base::{HertzScales, Material};
+use super::profile::ProfileSpec;
+use crate::base::{BodyKind, HertzScales, Material};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
-/// A right circular cylinder with its axis along y.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// A circular cylinder with its axis along y, and its profile.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Roller {
     /// Radius (m).
     pub radius_m: f64,
@@ -15,16 +16,25 @@ pub struct Roller {
     /// Material.
     #[serde(flatten)]
     pub material: Material,
+    /// Drop of the generatrix; none if it is straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
 }
 
-/// A rectangular block, deep and wide against the contact.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// A block, deep and wide against the contact: rectangular, or a raceway.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Block {
-    /// Length along y (m), not shorter than the roller.
+    /// Length along y (m).
     pub length_m: f64,
     /// Material.
     #[serde(flatten)]
     pub material: Material,
+    /// Radius of a raceway (m), negative if it is concave; none for a flat surface.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub radius_m: Option<f64>,
+    /// Drop of the generatrix; none if it is straight.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile: Option<ProfileSpec>,
 }
 
 /// The load that presses the roller on the block.
@@ -32,6 +42,34 @@ pub struct Block {
 pub struct Load {
     /// Force (N), of the whole roller.
     pub force_n: f64,
+    /// y of the force's line of action from the roller's middle (m). The roller is then free to tilt;
+    /// without it the tilt is held.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub eccentricity_m: Option<f64>,
+}
+
+/// How the bodies stand to each other.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Pose {
+    /// The tilt that is held (rad); positive where the side of larger y is pressed deeper. It is that of
+    /// the lines x = 0 at the depth of one roller radius in both bodies, by least squares over the
+    /// overlap.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub tilt_rad: Option<f64>,
+    /// y of the block's middle from the roller's (m).
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub offset_m: f64,
+}
+
+fn is_zero(v: &f64) -> bool {
+    *v == 0.0
+}
+
+impl Pose {
+    /// Whether the bodies are parallel and their middles at one place.
+    fn is_plain(&self) -> bool {
+        *self == Self::default()
+    }
 }
 
 /// The accuracy of the solution; not a part of the problem.
@@ -67,6 +105,9 @@ pub struct Case {
     pub block: Block,
     /// The load.
     pub load: Load,
+    /// How the bodies stand to each other.
+    #[serde(default, skip_serializing_if = "Pose::is_plain")]
+    pub pose: Pose,
     /// The accuracy.
     pub accuracy: Accuracy,
     /// The cells, where the case says anything of them.
@@ -77,9 +118,9 @@ pub struct Case {
 /// The three factors of the study.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Factors {
-    /// Load factor W = w / (E* R L1).
+    /// Load factor W = w / (E* R L), L the length of the shorter body.
     pub load: f64,
-    /// Contact slenderness S_l = L1 / (2 C).
+    /// Contact slenderness S_l = L / (2 C).
     pub slenderness: f64,
     /// Contact length ratio L_r = L1 / L2.
     pub length_ratio: f64,
@@ -92,7 +133,7 @@ impl Factors {
     /// Legal range of S_l.
     pub const SLENDERNESS_RANGE: (f64, f64) = (0.5, 1e4);
     /// Legal range of L_r.
-    pub const LENGTH_RATIO_RANGE: (f64, f64) = (1e-3, 1.0);
+    pub const LENGTH_RATIO_RANGE: (f64, f64) = (1e-3, 1e3);
 }
 
 /// Numbers of two cases that agree to this fraction are equal: formatting, reading and the
@@ -117,9 +158,10 @@ impl Case {
     ) -> Self {
         let mut case = Self {
             name: name.into(),
-            roller: Roller { radius_m, length_m: f64::NAN, material: roller },
-            block: Block { length_m: f64::NAN, material: block },
-            load: Load { force_n: f64::NAN },
+            roller: Roller { radius_m, length_m: f64::NAN, material: roller, profile: None },
+            block: Block { length_m: f64::NAN, material: block, radius_m: None, profile: None },
+            load: Load { force_n: f64::NAN, eccentricity_m: None },
+            pose: Pose::default(),
             accuracy: Accuracy::default(),
             cells: None,
         };
@@ -135,29 +177,55 @@ impl Case {
 
     /// Sets the lengths and the force from `factors`, the radius and the materials.
     pub(super) fn set_factors(&mut self, factors: Factors) {
-        let e_star = self.roller.material.contact_modulus(&self.block.material);
-        let radius_m = self.roller.radius_m;
+        let e_star = self.contact_modulus();
+        let radius_m = self.equivalent_radius_m();
         let c_m = 2.0 * radius_m * (factors.load / std::f64::consts::PI).sqrt();
-        let length_m = 2.0 * c_m * factors.slenderness;
-        self.roller.length_m = length_m;
-        self.block.length_m = length_m / factors.length_ratio;
-        self.load.force_n = factors.load * e_star * radius_m * length_m;
+        let shorter_m = 2.0 * c_m * factors.slenderness;
+        let ratio = factors.length_ratio;
+        self.roller.length_m = if ratio > 1.0 { shorter_m * ratio } else { shorter_m };
+        self.block.length_m = if ratio > 1.0 { shorter_m } else { shorter_m / ratio };
+        self.load.force_n = factors.load * e_star * radius_m * shorter_m;
+    }
+
+    /// E* (Pa).
+    pub fn contact_modulus(&self) -> f64 {
+        self.roller.material.contact_modulus(&self.block.material)
+    }
+
+    /// Radius of the cylinder whose gap to a plane is that of the bodies (m).
+    pub fn equivalent_radius_m(&self) -> f64 {
+        let roller_m = self.roller.radius_m;
+        self.block.radius_m.map_or(roller_m, |block_m| 1.0 / (1.0 / roller_m + 1.0 / block_m))
+    }
+
+    /// Length of the shorter body (m), on which W, S_l, C and p0 rest.
+    pub fn shorter_m(&self) -> f64 {
+        self.roller.length_m.min(self.block.length_m)
+    }
+
+    /// y of both ends of a body, from the roller's middle (m).
+    pub fn ends_m(&self, body: BodyKind) -> [f64; 2] {
+        let (middle, half) = match body {
+            BodyKind::Block => (self.pose.offset_m, 0.5 * self.block.length_m),
+            BodyKind::Roller => (0.0, 0.5 * self.roller.length_m),
+        };
+        [middle - half, middle + half]
     }
 
     /// The Hertz line-contact scales.
     pub fn hertz(&self) -> HertzScales {
-        let e_star = self.roller.material.contact_modulus(&self.block.material);
-        HertzScales::new(e_star, self.roller.radius_m, self.roller.length_m, self.load.force_n)
+        let (e_star, radius_m) = (self.contact_modulus(), self.equivalent_radius_m());
+        HertzScales::new(e_star, radius_m, self.shorter_m(), self.load.force_n)
     }
 
     /// W, S_l and L_r.
     pub fn factors(&self) -> Factors {
         let hertz = self.hertz();
-        let (roller, force_n) = (self.roller, self.load.force_n);
+        let shorter_m = self.shorter_m();
         Factors {
-            load: force_n / (hertz.e_star_pa * roller.radius_m * roller.length_m),
-            slenderness: roller.length_m / (2.0 * hertz.c_m),
-            length_ratio: roller.length_m / self.block.length_m,
+            load: self.load.force_n / (hertz.e_star_pa * self.equivalent_radius_m() * shorter_m),
+            slenderness: shorter_m / (2.0 * hertz.c_m),
+            length_ratio: self.roller.length_m / self.block.length_m,
         }
     }
 

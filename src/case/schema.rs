@@ -3,6 +3,8 @@
 use super::check::MAX_NAME;
 use super::draft::Form;
 use super::keys::{KEYS, Key, Presence};
+use super::profile::ProfileKind;
+use crate::base::BodyKind;
 use serde_json::{Map, Value, json};
 
 /// The schema of a case file, JSON Schema of 2020-12. It does not say what several numbers have to meet
@@ -17,6 +19,19 @@ pub fn case_schema() -> Value {
         if key.presence == Presence::Always {
             push(&mut table["required"], key.leaf());
         }
+    }
+    for body in BodyKind::ALL.map(BodyKind::name) {
+        let mut profile = tables.remove(&format!("{body}.profile")).expect("a body has a profile");
+        profile["properties"]["kind"] = json!({
+            "description": "The kind of the profile.",
+            "enum": ProfileKind::ALL.map(ProfileKind::name),
+        });
+        profile["properties"]["file"] = json!({
+            "description": "CSV with the columns y_m,drop_m, beside the case file; for a table.",
+            "type": "string",
+        });
+        push(&mut profile["required"], "kind");
+        tables[body]["properties"]["profile"] = profile;
     }
     let needed = |(_, table): &(&String, &Value)| table["required"] != json!([]);
     let names = tables.iter().filter(needed).map(|(name, _)| name.as_str());

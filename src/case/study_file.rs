@@ -1,7 +1,7 @@
 //! The study file: a factorial design around one pair of bodies, and further cases.
 
 use super::builtin::builtin_case;
-use super::case_file::{entries, name};
+use super::case_file::{entries, name, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, read_text};
 use super::draft::{Draft, Form};
@@ -68,8 +68,8 @@ impl Study {
                 root.error("is a case file, not a study file", "run `edgeline solve` on it")
             );
         }
-        root.only(&["name", "centre", "cases", "roller", "block", "factors", "accuracy"])?;
-        let base = read_base(&root)?;
+        root.only(&["name", "centre", "cases", "roller", "block", "pose", "factors", "accuracy"])?;
+        let base = read_base(&root, path)?;
         let study_name = name(&root)?;
         check_name(study_name).map_err(|e| root.place(e))?;
         let table = root.table("factors")?;
@@ -139,10 +139,12 @@ impl Study {
 }
 
 /// The values that all cases of the design share.
-fn read_base(root: &Table) -> Result<Draft> {
-    let keys: Vec<&'static Key> =
-        KEYS.iter().filter(|key| !matches!(key.presence, Presence::With(_))).collect();
+fn read_base(root: &Table, path: &Path) -> Result<Draft> {
+    let of_form =
+        |key: &&Key| matches!(key.presence, Presence::With(_) | Presence::OptionalWith(_));
+    let keys: Vec<&'static Key> = KEYS.iter().filter(|key| !of_form(key)).collect();
     let mut draft = Draft::new("base", Form::Factors);
+    read_profiles(root, path, &mut draft)?;
     for (key, entry) in entries(root, &keys)? {
         key.set(&mut draft, read_number(key, &entry)?);
     }

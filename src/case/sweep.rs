@@ -129,7 +129,16 @@ impl Sweep {
                 reason: "a number belongs here".into(),
                 remedy: "write for example 1.5".into(),
             })?;
-            keys.iter().for_each(|key| key.set(&mut draft, value));
+            for key in keys {
+                if !key.fits(&draft) {
+                    let reason = "the case has no profile with this number".to_string();
+                    let remedy =
+                        "give the base case such a profile, or remove the column".to_string();
+                    let (key, value) = (key.path.to_string(), format!("{value:e}"));
+                    return Err(Error::Value { key, value, reason, remedy });
+                }
+                key.set(&mut draft, value);
+            }
         }
         draft.case()
     }

@@ -117,7 +117,9 @@ fn given_once(columns: &[Column]) -> Finding<Vec<&'static Key>> {
 
 /// The form in which the columns give the load; factors if the base gives it.
 fn form_of(given: &[&Key]) -> Finding<Form> {
-    let any_of = |form: Form| given.iter().any(|key| key.presence == Presence::With(form));
+    let any_of = |form: Form| {
+        given.iter().any(|key| matches!(key.presence, Presence::With(own) | Presence::OptionalWith(own) if own == form))
+    };
     match (any_of(Form::Factors), any_of(Form::Load)) {
         (true, true) => Err((
             "gives the load twice, by W, S_l, L_r and by force_n and lengths".into(),
@@ -130,7 +132,7 @@ fn form_of(given: &[&Key]) -> Finding<Form> {
 
 /// Refuses a table without a base that lacks a required number.
 fn nothing_missing(given: &[&Key], form: Form) -> Finding<()> {
-    let needed = |key: &&Key| key.is_of(form) && key.presence != Presence::Optional;
+    let needed = |key: &&Key| key.is_of(form) && key.is_required();
     let missing: Vec<&str> =
         KEYS.iter().filter(needed).filter(|key| !given.contains(key)).map(|key| key.path).collect();
     if missing.is_empty() {

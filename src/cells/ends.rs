@@ -13,8 +13,8 @@
 
 use super::grid::Grid;
 use super::influence::EvenTransform;
-use crate::base::{Panels, Parity, Wavenumbers};
-use crate::body::{Body, End, Layer, Resolution, Shape};
+use crate::base::{Panels, Wavenumbers};
+use crate::body::{End, Resolution, Shape, Stack};
 use crate::contact;
 use crate::stress::{Field, Load};
 use nalgebra::{DMatrix, DVector};
@@ -47,8 +47,7 @@ const NEGLIGIBLE: f64 = 1e-5;
 /// A body with free ends at the coarse wavenumbers.
 #[derive(Debug)]
 struct Freed {
-    body: Body,
-    layers: Vec<Layer>,
+    stack: Stack,
     /// Share of the compliance of all bodies like this one.
     share: f64,
 }
@@ -80,19 +79,16 @@ impl FreeEnds {
                 None => distinct.push(*body),
             }
         }
-        let at_all = |body: &Body| -> Vec<Layer> {
-            wavenumbers.coarse().nodes().par_iter().map(|k| body.layer(*k)).collect()
-        };
         let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
         let pairs = distinct.iter().map(|&FreeBody { half, nu, share }| {
-            let shape = Shape { contact: half_length, half, nu };
-            let [body, mirrored] =
-                [FREED, MIRRORED].map(|end| Body::new(shape, end, Parity::Even, &resolution));
-            let (layers, others) = (at_all(&body), at_all(&mirrored));
-            for (sum, (freed, mirrored)) in sums.iter_mut().zip(layers.iter().zip(others)) {
-                *sum += (&freed.compliance - mirrored.compliance) * share;
+            let (place, coarse) = ((0.0, Shape { half, nu }), wavenumbers.coarse().nodes());
+            let [stack, mirrored] = [FREED, MIRRORED]
+                .map(|end| Stack::new(&axis, true, place, end, (&resolution, coarse)));
+            for (i, sum) in sums.iter_mut().enumerate() {
+                stack.add_compliance(i, share, sum);
+                mirrored.add_compliance(i, -share, sum);
             }
-            Freed { body, layers, share }
+            Freed { stack, share }
         });
         let bodies = pairs.collect();
         let basis = DMatrix::zeros(0, 0);
@@ -130,7 +126,7 @@ impl FreeEnds {
     /// 1/H: it grows too fast towards k = 0 to be interpolated.
     fn uniform(&self, k: f64) -> f64 {
         let of = |freed: &Freed| {
-            let half = freed.body.half;
+            let half = freed.stack.body().half;
             freed.share * 2.0 * PI / (k * half) * (-k * half).exp()
         };
         self.bodies.iter().map(of).sum()
@@ -165,10 +161,12 @@ impl FreeEnds {
         moments: &DMatrix<f64>,
         tolerance: f64,
     ) -> Field<'a> {
-        let own = |freed: &&Freed| freed.body.half == half && freed.body.nu == nu;
+        let own = |freed: &&Freed| {
+            let body = freed.stack.body();
+            body.half == half && body.nu == nu
+        };
         let freed = self.bodies.iter().find(own).expect("one of the bodies");
-        let (body, numbers) = (&freed.body, &self.wavenumbers);
-        Field::new(body, numbers, &freed.layers, pressure, moments, None, tolerance)
+        Field::new(&freed.stack, &self.wavenumbers, pressure, moments, None, tolerance)
     }
 
     /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on

@@ -260,7 +260,7 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
         (false, Engine::Line) => "",
     };
     lines.push(format!(
-        "wrote summary.json, pressure.csv, curves.csv{points}{field} into {}",
+        "wrote summary.json, pressure.csv, line_load.csv, curves.csv{points}{field} into {}",
         arguments.out.display()
     ));
     lines.join("\n") + "\n"

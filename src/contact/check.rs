@@ -14,6 +14,9 @@ const PLACES: [f64; 6] = [0.31, 0.73, 0.97, 1.05, 1.3, 2.2];
 /// nothing about the rest.
 const END: f64 = 0.2;
 
+/// The same where a contact narrows to a tip, as a part of its length.
+const TIP: f64 = 0.05;
+
 /// Refuses a solution that violates a law of contact by more than `tolerance`: there is no gap
 /// under pressure and no penetration elsewhere (in units of C^2 / (2 R)), and the pressure is not
 /// tensile (p0).
@@ -33,7 +36,7 @@ pub(super) fn check(
     ];
     let nodes = problem.axis.nodes().iter().enumerate();
     let counted: Vec<usize> = nodes
-        .filter(|(j, y)| *j == 0 && !problem.both_ends || problem.distance_to_end(**y) >= END)
+        .filter(|(j, y)| *j == 0 && !problem.both_ends || !near_end(problem, solution, **y))
         .map(|(j, _)| j)
         .collect();
     for (t, gaps) in PLACES.iter().zip(gaps_of(operator, problem, solution, &PLACES)) {
@@ -57,6 +60,15 @@ pub(super) fn check(
         limit: tolerance,
         remedy: "another [accuracy] tolerance or another model may do".into(),
     })
+}
+
+/// Whether `y` lies so close to an end of the contact that its gap says nothing about the rest.
+fn near_end(problem: &Problem, solution: &ContactSolution, y: f64) -> bool {
+    let [from, to] = solution.ends;
+    let length = to - from;
+    let before = if problem.both_ends { (y - from).abs() } else { f64::INFINITY };
+    let tip = if problem.may_end() { TIP * length } else { 0.0 };
+    before.min((to - y).abs()) < END.max(tip) || problem.distance_to_end(y) < END
 }
 
 /// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes along the line, at the distances
@@ -119,6 +131,10 @@ mod tests {
             gap: &Straight,
             load: 2.0 * PI,
             moment: None,
+            tilt: 0.0,
+            open: [false; 2],
+            recedes: [false; 2],
+            guess: None,
         };
         let solution = solve(&problem, &settings).unwrap();
         // Hertz: no gap within, and x sqrt(x^2 - 1) - ln(x + sqrt(x^2 - 1)) beyond.

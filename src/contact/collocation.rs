@@ -159,7 +159,7 @@ impl LinearProblem<'_> {
                         matrix[(row, *column)] += weight * factor;
                     }
                 }
-                right[row] = -self.problem.gap.at(a * t, self.operator.axis.nodes()[i]);
+                right[row] = -self.problem.gap(a * t, self.operator.axis.nodes()[i]);
             }
         }
     }

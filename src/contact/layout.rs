@@ -14,6 +14,12 @@ const INNER_MODES: usize = 3;
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
+/// Part of a contact's half-length at a tip in which the square of the half-width is linear.
+const TIP_LENGTH: f64 = 0.04;
+
+/// Fewest free nodes in contact.
+const LEAST: usize = 2;
+
 /// Limit of the ratio of a node's edge slope to that of a free node, with which its singular
 /// amplitude scales.
 const STEEPEST: f64 = 10.0;
@@ -36,40 +42,83 @@ pub(super) struct Layout {
     starts: Vec<usize>,
 }
 
-impl Layout {
-    /// All modes everywhere.
-    pub fn new(problem: &Problem, settings: &ContactSettings) -> Self {
-        let axis = problem.axis;
-        let mut limit = f64::INFINITY;
-        let mut free = Vec::new();
-        for (j, &y) in axis.nodes().iter().enumerate().rev() {
-            let apart = y <= limit && problem.distance_to_end(y) >= settings.spacing;
-            if apart || j == 0 && free.is_empty() {
-                free.push(j);
-                limit = y - settings.spacing;
-            }
+/// The free nodes of those in `contact`, ascending: from each end towards the middle, so that mirror
+/// images of a contact have mirror images of them.
+fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<usize> {
+    let nodes = problem.axis.nodes();
+    // Where the contact ends before the bodies do, it narrows to a tip.
+    let receded = [contact.start > 0, contact.end < nodes.len()];
+    let last = [nodes[contact.start], nodes[contact.end - 1]];
+    let breaks = problem.axis.breaks();
+    let ends = [breaks[0], problem.axis.end()];
+    let tip = TIP_LENGTH * 0.5 * (last[1] - last[0]) * if problem.both_ends { 1.0 } else { 2.0 };
+    let near = |side: usize, y: f64| {
+        if side == 0 && !problem.both_ends {
+            return false;
         }
-        free.reverse();
+        let end = if receded[side] { last[side] } else { ends[side] };
+        let apart = if receded[side] || problem.open[side] { tip.max(spacing) } else { spacing };
+        (y - end).abs() < apart
+    };
+    let middle = match problem.both_ends {
+        true => contact.start + contact.len() / 2,
+        false => contact.start,
+    };
+    let side = |inward: &mut dyn Iterator<Item = usize>| {
+        let mut last: Option<f64> = None;
+        let apart = |j: &usize| {
+            let y = nodes[*j];
+            let far = last.is_none_or(|last| (y - last).abs() >= spacing);
+            let is_free = far && !near(0, y) && !near(1, y);
+            if is_free {
+                last = Some(y);
+            }
+            is_free
+        };
+        inward.filter(apart).collect::<Vec<_>>()
+    };
+    let mut free = side(&mut (contact.start..middle));
+    let after = side(&mut (middle..contact.end).rev());
+    free.extend(after.into_iter().rev());
+    if free.is_empty() { vec![middle] } else { free }
+}
+
+impl Layout {
+    /// All modes at the nodes that are in `contact`, none at the others.
+    pub fn new(problem: &Problem, settings: &ContactSettings, contact: Range<usize>) -> Self {
+        let axis = problem.axis;
+        let free = free_nodes(problem, settings.spacing, &contact);
         let shares = axis
             .nodes()
             .iter()
             .enumerate()
             .map(|(j, y)| {
                 let after = free.partition_point(|f| *f < j);
-                if after == 0 || free.len() == 1 {
+                // Towards a plane of symmetry the half-width is uniform.
+                if free.len() == 1 || after == 0 && !problem.both_ends {
                     return [(0, 1.0), (0, 0.0)];
                 }
-                let before = after.min(free.len() - 1) - 1;
+                // At an open end the half-width is zero.
+                if problem.open[1] && contact.end == axis.len() && after == free.len() {
+                    let last = axis.nodes()[free[after - 1]];
+                    return [(after - 1, (axis.end() - y) / (axis.end() - last)), (0, 0.0)];
+                }
+                if problem.open[0] && contact.start == 0 && after == 0 {
+                    let (first, end) = (axis.nodes()[free[0]], axis.breaks()[0]);
+                    return [(0, (y - end) / (first - end)), (0, 0.0)];
+                }
+                let before = after.clamp(1, free.len() - 1) - 1;
                 let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
                 let share = (y - a) / (b - a);
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
-        let modes_at = |y: &f64| match problem.distance_to_end(*y) > DISTURBED {
+        let modes_at = |(j, y): (usize, &f64)| match problem.distance_to_end(*y) > DISTURBED {
+            _ if !contact.contains(&j) => 0,
             true => settings.modes.min(INNER_MODES),
             false => settings.modes,
         };
-        let counts = axis.nodes().iter().map(modes_at).collect();
+        let counts = axis.nodes().iter().enumerate().map(modes_at).collect();
         let mut layout = Self { free, shares, counts, starts: Vec::new() };
         layout.number();
         layout
@@ -84,6 +133,31 @@ impl Layout {
             next += modes + usize::from(self.is_free(j));
         }
         self.starts.push(next);
+    }
+
+    /// The nodes in `contact` without those towards an end that carry no load: from the outermost free
+    /// nodes inwards those whose pressure, with its singular mode, sums to tension.
+    pub fn shrunk(
+        &self,
+        problem: &Problem,
+        contact: &Range<usize>,
+        unknowns: &DVector<f64>,
+    ) -> Range<usize> {
+        // The integrals of sqrt(1 - t^2) and of 1 / sqrt(1 - t^2) are pi / 2 and pi.
+        let lifted = |j: usize| {
+            let first = self.modes(j).next().map_or(0.0, |first| unknowns[first]);
+            first + 2.0 * unknowns[self.singular(j)] < 0.0
+        };
+        let mut left = 0..self.free.len();
+        while problem.recedes[0] && left.len() > LEAST && lifted(self.free[left.start]) {
+            left.start += 1;
+        }
+        while problem.recedes[1] && left.len() > LEAST && lifted(self.free[left.end - 1]) {
+            left.end -= 1;
+        }
+        let start = if left.start == 0 { contact.start } else { self.free[left.start - 1] + 1 };
+        let end = if left.end == self.free.len() { contact.end } else { self.free[left.end] };
+        start..end
     }
 
     fn is_free(&self, j: usize) -> bool {

@@ -21,14 +21,16 @@ mod layout;
 mod operator;
 mod problem;
 mod settings;
+mod slices;
 mod solution;
 mod solver;
 
 pub use approach::reference;
 pub use check::gaps;
-pub use gap::{Gap, Straight};
+pub use gap::{Gap, Shaped, Straight};
 pub use operator::{Compliance, LineOperator, Operator};
 pub use problem::Problem;
 pub use settings::ContactSettings;
+pub use slices::Slices;
 pub use solution::ContactSolution;
 pub use solver::solve;

@@ -15,6 +15,8 @@ pub struct ContactSolution {
     pub approach: f64,
     /// Tilt in units of C / (2 R): the growth of the approach per C along y.
     pub tilt: f64,
+    /// The contact's ends along the axis.
+    pub ends: [f64; 2],
     /// Number of iterations.
     pub iterations: usize,
     /// [`super::ContactSettings::spacing`] with which it converged.
@@ -26,6 +28,22 @@ pub struct ContactSolution {
 }
 
 impl ContactSolution {
+    /// The same solution in units of length and of pressure that are 1 / `factor` of the present ones;
+    /// displacements are in units of C^2 / (2 R).
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();
+        Self {
+            half_widths: scale(&self.half_widths),
+            coefficients: self.coefficients.iter().map(scale).collect(),
+            approach: factor * factor * self.approach,
+            tilt: factor * self.tilt,
+            ends: self.ends.map(|y| factor * y),
+            residual: factor * self.residual,
+            ..self.clone()
+        }
+    }
+
     /// Fourier transform int p cos(k x) dx of the pressure at every node.
     pub fn transform(&self, k: f64) -> DVector<f64> {
         let mut modes = Vec::new();

@@ -10,6 +10,7 @@ use super::solution::ContactSolution;
 use crate::base::{Error, Result};
 use crate::kernels::strip;
 use nalgebra::DVector;
+use std::ops::Range;
 
 /// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance
 /// of the singularity.
@@ -18,8 +19,9 @@ const NEGLIGIBLE: f64 = 0.1;
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
-/// Smallest half-width in the iteration (C).
+/// Smallest half-width in the iteration (C), and that of a contact that ends at a tip.
 const NARROWEST: f64 = 0.05;
+const TIP: f64 = 1e-3;
 
 /// Solves for the pressure that carries the problem's load.
 ///
@@ -62,8 +64,10 @@ fn solve_once(
     settings: &ContactSettings,
 ) -> Result<ContactSolution> {
     let n = problem.axis.len();
-    let mut layout = Layout::new(problem, settings);
-    let mut half_widths = vec![1.0; n];
+    let mut contact = 0..n;
+    let mut layout = Layout::new(problem, settings, contact.clone());
+    let guess = |y: &f64| problem.guess.map_or(1.0, |slices| slices.half_width(*y).max(TIP));
+    let mut half_widths: Vec<f64> = problem.axis.nodes().iter().map(guess).collect();
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
@@ -93,21 +97,32 @@ fn solve_once(
             })
             .collect();
         last = worst;
-        if worst <= settings.tolerance && !layout.release(problem.both_ends, &unknowns) {
+        let shrunk = layout.shrunk(problem, &contact, &unknowns);
+        let settled = shrunk == contact;
+        if settled && worst <= settings.tolerance && !layout.release(problem.both_ends, &unknowns) {
+            let ends = ends(problem, &layout, &contact, &half_widths);
             let solution = carrying(problem, &layout, half_widths, &unknowns);
             return Ok(ContactSolution {
                 iterations: iteration,
                 spacing: settings.spacing,
                 residual: worst,
+                ends,
                 ..solution
             });
         }
         for (a, shares) in half_widths.iter_mut().zip(&layout.shares) {
-            *a = shares
-                .iter()
-                .map(|(free, share)| share * wanted[*free])
-                .sum::<f64>()
-                .max(NARROWEST);
+            let mean = |of: fn(f64) -> f64| -> f64 {
+                shares.iter().map(|(free, share)| share * of(wanted[*free])).sum()
+            };
+            // Towards an open end the square is linear.
+            *a = match problem.may_end() {
+                true => mean(|a| a * a).max(TIP * TIP).sqrt(),
+                false => mean(|a| a).max(NARROWEST),
+            };
+        }
+        if !settled {
+            contact = shrunk;
+            layout = Layout::new(problem, settings, contact.clone());
         }
     }
     Err(Error::NotConverged {
@@ -160,10 +175,54 @@ fn carrying(
         half_widths,
         coefficients,
         approach: motions[0],
-        tilt: motions.get(1).copied().unwrap_or(0.0),
+        tilt: motions.get(1).copied().unwrap_or(problem.tilt),
+        ends: [0.0; 2],
         load_error,
         iterations: 0,
         spacing: 0.0,
         residual: 0.0,
     }
+}
+
+/// Where the contact ends: at the axis's ends, or, where the bodies go on, where the square of the half-width,
+/// continued from the last three free nodes, is zero; far beyond the axis if it does not fall.
+fn ends(
+    problem: &Problem,
+    layout: &Layout,
+    contact: &Range<usize>,
+    half_widths: &[f64],
+) -> [f64; 2] {
+    let (axis, free) = (problem.axis, &layout.free);
+    let square = |j: usize| (axis.nodes()[j], half_widths[j].powi(2));
+    // By a line through two nodes, corrected to the parabola through three.
+    let zero = |[near, next, far]: [usize; 3]| {
+        let [(y0, s0), (y1, s1), (y2, s2)] = [near, next, far].map(square);
+        let outward = (y0 - y1).signum();
+        let first = (s0 - s1) / (y0 - y1);
+        let second = (first - (s1 - s2) / (y1 - y2)) / (y0 - y2);
+        if first * outward >= 0.0 {
+            return outward * f64::INFINITY;
+        }
+        let mut at = y0 - s0 / first;
+        for _ in 0..4 {
+            let value = s0 + (at - y0) * (first + second * (at - y1));
+            let slope = first + second * (2.0 * at - y0 - y1);
+            if slope * outward < 0.0 {
+                at -= value / slope;
+            }
+        }
+        at
+    };
+    let before = contact.start > 0 || problem.open[0];
+    let after = contact.end < axis.len() || problem.open[1];
+    let last = free.len().max(3) - 1;
+    let enough = free.len() >= 3;
+    [
+        if before && enough { zero([free[0], free[1], free[2]]) } else { axis.breaks()[0] },
+        if after && enough {
+            zero([free[last], free[last - 1], free[last - 2]])
+        } else {
+            axis.end()
+        },
+    ]
 }

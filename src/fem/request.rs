@@ -2,7 +2,7 @@
 //! `fem/edgeline_fem/request.py` reads.
 
 use super::result::{wanted_curves, wanted_lines};
-use crate::case::{Accuracy, Block, Case, Cells, Load, Roller};
+use crate::case::{Accuracy, Block, Case, Cells, Load, Pose, Roller};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -18,6 +18,8 @@ pub(super) struct Problem {
     block: Block,
     #[serde(flatten)]
     load: Load,
+    #[serde(flatten)]
+    pose: Pose,
     #[serde(skip)]
     accuracy: Accuracy,
     #[serde(skip)]

@@ -1,8 +1,10 @@
 //! The output of the finite-element program: `fem.json`, `curves.csv`, `pressure.csv`.
 
 use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::stress::curves::{CURVE_NAMES, across_contact, contact_line, standard_curves};
+use crate::solve::Scene;
+use crate::stress::curves::{CURVE_NAMES, Span, across_contact, curves_on};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -152,18 +154,25 @@ impl MeshResult {
 
 /// The standard curves of both bodies of `case` (C).
 fn curves_of(case: &Case) -> impl Iterator<Item = CurveSpec> {
+    let (c_m, span) = (case.hertz().c_m, span_of(case));
+    BodyKind::ALL
+        .into_iter()
+        .flat_map(move |body| curves_on(body, &span, case.ends_m(body).map(|y| y / c_m)))
+}
+
+/// The contact line of `case` (C).
+fn span_of(case: &Case) -> Span {
     let c_m = case.hertz().c_m;
-    let half_length = 0.5 * case.roller.length_m / c_m;
-    let block = 0.5 * case.block.length_m / c_m;
-    let bodies = [(BodyKind::Block, block), (BodyKind::Roller, half_length)].into_iter();
-    bodies.flat_map(move |(body, half)| standard_curves(body, half_length, half))
+    let [block, roller] = BodyKind::ALL.map(|body| case.ends_m(body));
+    let ends = [block[0].max(roller[0]), block[1].min(roller[1])].map(|y| y / c_m);
+    Span { ends, symmetric: Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric() }
 }
 
 /// The points of the pressure lines of `case` (C).
 fn lines_of(case: &Case) -> [(&'static str, Vec<[f64; 2]>); 2] {
-    let half_length = 0.5 * case.roller.length_m / case.hertz().c_m;
-    let along_y = contact_line(half_length).into_iter().map(|y| [0.0, y]).collect();
-    let along_x = across_contact().into_iter().map(|x| [x, 0.0]).collect();
+    let span = span_of(case);
+    let along_y = span.contact_line().into_iter().map(|y| [0.0, y]).collect();
+    let along_x = across_contact().into_iter().map(|x| [x, span.centre()]).collect();
     let [first, second] = LINE_NAMES;
     [(first, along_y), (second, along_x)]
 }

@@ -43,7 +43,7 @@ fn a_record_belongs_to_a_problem_not_to_a_name() {
     let renamed = Case { name: "other".into(), ..case.clone() };
     let found = FemResults::embedded_of(&renamed).unwrap().unwrap();
     assert_eq!(found.case.name, "validation-nu025");
-    let heavier = Case { load: Load { force_n: case.load.force_n * 1.001 }, ..case };
+    let heavier = Case { load: Load { force_n: case.load.force_n * 1.001, ..case.load }, ..case };
     assert_eq!(FemResults::embedded_of(&heavier).unwrap(), None);
 }
 

@@ -1,5 +1,5 @@
-//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `curves.csv`
-//! and `points.csv`.
+//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `line_load.csv`,
+//! `curves.csv` and `points.csv`.
 
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
@@ -49,9 +49,9 @@ pub fn write_locked<D: Serialize>(
     write(solution, options, more, folder)
 }
 
-/// All tables of `solution`: `pressure`, `curves` and, if `options` asked for points, `points`.
+/// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points, `points`.
 pub fn tables<D>(solution: &Solution<D>, options: &Options) -> Vec<Columns> {
-    let mut tables = vec![pressure(solution), curves(solution)];
+    let mut tables = vec![pressure(solution), line_load(solution), curves(solution)];
     if !options.points.is_empty() {
         tables.push(points(solution, options));
     }
@@ -67,6 +67,17 @@ fn pressure<D>(solution: &Solution<D>) -> Columns {
     });
     let columns = numbers(["x_m", "y_m", "dx_m", "dy_m", "p_pa"].map(String::from), rows);
     Columns { name: "pressure", columns }
+}
+
+/// The load per length and the half-width along the contact.
+fn line_load<D>(solution: &Solution<D>) -> Columns {
+    let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
+    let rows = solution
+        .line_loads
+        .iter()
+        .map(|line| [line.y * c_m, line.load * c_m * p0_pa, line.half_width * c_m]);
+    let names = ["y_m", "line_load_n_per_m", "half_width_m"];
+    Columns { name: "line_load", columns: numbers(names.map(String::from), rows) }
 }
 
 /// The standard curves, one row a point.

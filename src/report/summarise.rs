@@ -95,8 +95,8 @@ fn case_summary(run: &CaseRun) -> CaseSummary {
         hertz: case.hertz(),
         load_n: case.load.force_n,
         tolerance: case.accuracy.tolerance,
-        roller: case.roller,
-        block: case.block,
+        roller: case.roller.clone(),
+        block: case.block.clone(),
         fem: run.references.first().map_or_else(
             || CaseReference::Missing { missing: "the study has no reference".to_string() },
             case_reference,

@@ -3,16 +3,18 @@
 use super::cells::{PressureCell, largest};
 use super::lines;
 use super::options::Options;
-use super::scene::{Scene, Seconds};
+use super::scene::Scene;
 use super::solved::{Solution, most_stressed, wanted_curves};
+use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, Columns, Grid};
-use crate::contact::Straight;
-use crate::stress::curves::{across_contact, contact_line};
+use crate::stress::curves::across_contact;
+use crate::stress::round::LocalContact;
 use crate::stress::{
-    BodyKind, CurveSpec, Curves, Load, PressureLine, RoundStress, StressCurve, Work, round,
+    BodyField, BodyKind, CurveSpec, Curves, LineLoad, Load, PressureLine, RoundStress, StressCurve,
+    Work, round,
 };
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
@@ -90,6 +92,15 @@ pub fn solve_on_cells(
 ) -> Result<CellSolution> {
     options.check(case)?;
     let scene = Scene::new(case, options.method, options.psi);
+    if !scene.is_symmetric() || case.block.radius_m.is_some() {
+        return Err(Error::Value {
+            key: "--engine".into(),
+            value: "cells".into(),
+            reason: "cells take bodies with their middles at one place, parallel, on a flat block"
+                .into(),
+            remedy: "solve this case with --engine line".into(),
+        });
+    }
     let start = Instant::now();
     let half_width = case.cells.map(|cells| cells.half_width_m / case.hertz().c_m);
     let first = grid(&scene, cells.counts, half_width.unwrap_or(FIRST_WIDTH))?;
@@ -97,7 +108,7 @@ pub fn solve_on_cells(
     let setup = start.elapsed().as_secs_f64();
     let mut growths = if half_width.is_some() { 0 } else { MOST_GROWTHS };
     let pressure = loop {
-        match problem.solve_telling(&Straight, progress) {
+        match problem.solve_telling(&scene.gap(), progress) {
             Err(Error::Uncovered { .. }) if growths > 0 => growths -= 1,
             found => break found?,
         }
@@ -161,8 +172,10 @@ impl Stressed {
                 let columns = Columns::new(pressure, free.axis());
                 let moments = columns.moments(free.wavenumbers());
                 let field = |kind: BodyKind| {
-                    let body = scene.bodies[kind];
-                    free.field((body.half, body.nu), &columns, &moments, scene.tolerance)
+                    let body = &scene.bodies[kind];
+                    let own = (body.half, body.nu);
+                    let field = free.field(own, &columns, &moments, scene.tolerance);
+                    BodyField::new(field, 1.0)
                 };
                 lines::stresses(free.shared(), field, &specs, &places)
             }
@@ -207,17 +220,20 @@ impl Stressed {
         let carried: f64 = cells.iter().map(|c| c.p * p0_pa * (c.dx * c_m) * (c.dy * c_m)).sum();
         let top = largest(&cells);
         let lines = pressure_lines(scene, pressure);
-        let critical = most_stressed(&self.curves, scene.half_length);
+        let critical = most_stressed(&self.curves, &scene.span());
         let approach = pressure.approach - problem.mean_displacement(pressure, radius_m / c_m);
         let summary = Summary {
             case: case.name.clone(),
             method: scene.model,
             hertz,
             load_n: case.load.force_n,
-            approach_m: approach * c_m * c_m / (2.0 * radius_m),
+            approach_m: approach * c_m * c_m / (2.0 * case.equivalent_radius_m()),
+            tilt_rad: 0.0,
             p_centre_pa: pressure.at(0.0, 0.0) * p0_pa,
             p_max_pa: top.p * p0_pa,
             p_max_at_m: [top.x, top.y].map(|v| (v * c_m).abs()),
+            centre_of_pressure_m: [0.0; 2],
+            contact_y_m: contact_ends(pressure).map(|y| y * c_m),
             converged: true,
             iterations: pressure.iterations,
             load_error_rel: (carried / case.load.force_n - 1.0).abs(),
@@ -234,7 +250,8 @@ impl Stressed {
             },
         };
         let curves = Curves { hertz, pressure: lines, stress: self.curves };
-        Solution { summary, curves, cells, points: self.points }
+        let line_loads = line_loads(pressure);
+        Solution { summary, curves, cells, line_loads, points: self.points }
     }
 }
 
@@ -268,7 +285,29 @@ fn rounded(field: &CellField, [x, y, z]: [f64; 3]) -> RoundStress {
     } else {
         (field.at(x + STEP, y, z) - field.at(x - STEP, y, z)) * (0.5 / STEP)
     };
-    RoundStress::new(x, z, flat, &slope)
+    RoundStress::new(x, z, flat, &slope, &LocalContact::HERTZ)
+}
+
+/// The load per length of each row of cells.
+fn line_loads(pressure: &CellPressure) -> Vec<LineLoad> {
+    let grid = &pressure.grid;
+    let (a, b) = grid.half_sides();
+    let row = |(j, row): (usize, &[f64])| LineLoad {
+        y: grid.y(j),
+        weight: 2.0 * b,
+        load: 2.0 * a * row.iter().sum::<f64>(),
+        half_width: a * row.iter().filter(|p| **p > 0.0).count() as f64,
+    };
+    pressure.pressure.chunks_exact(grid.nx).enumerate().map(row).collect()
+}
+
+/// The ends along y of the cells that carry a pressure.
+fn contact_ends(pressure: &CellPressure) -> [f64; 2] {
+    let lines = line_loads(pressure);
+    let loaded = || lines.iter().filter(|line| line.load > 0.0);
+    let end =
+        |line: Option<&LineLoad>, side: f64| line.map_or(0.0, |l| l.y + side * 0.5 * l.weight);
+    [end(loaded().next(), -1.0), end(loaded().next_back(), 1.0)]
 }
 
 /// The pressures of the cells that the two standard lines go through.
@@ -279,7 +318,7 @@ fn pressure_lines(scene: &Scene, pressure: &CellPressure) -> Vec<PressureLine> {
         at,
         own_error: None,
     };
-    let along = contact_line(scene.half_length);
+    let along = scene.span().contact_line();
     vec![
         line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
         line("along-x", across_contact().into_iter().map(|x| [x, 0.0]).collect()),

@@ -1,7 +1,8 @@
 //! The contact pressure in cells, whose sum is the load.
 
-use super::scene::SolvedScene;
+use super::solved_scene::SolvedScene;
 use crate::kernels::strip;
+use crate::stress::Load;
 
 /// Cells of the written pressure across the contact (C).
 const CELL: f64 = 0.05;
@@ -42,7 +43,8 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
     };
     let profiles: Vec<Vec<f64>> = (0..axis.len()).map(profile).collect();
     let nodes = axis.nodes().iter().zip(axis.weights()).zip(&profiles);
-    let sides = nodes.clone().rev().map(|n| (-1.0, n)).chain(nodes.map(|n| (1.0, n)));
+    let mirrored = nodes.clone().rev().filter(|_| pressure.is_symmetric()).map(|n| (-1.0, n));
+    let sides = mirrored.chain(nodes.map(|n| (1.0, n)));
     for (side, ((&y, &dy), profile)) in sides {
         let reach = profile.len() as i32 - 1;
         for i in -reach..=reach {

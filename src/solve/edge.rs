@@ -2,7 +2,7 @@
 //!
 //! [`crate::body::corner_exponent`] gives the law of the corner.
 
-use super::scene::SolvedScene;
+use super::solved_scene::SolvedScene;
 use crate::base::BodyKind;
 use nalgebra::{DMatrix, DVector, SVD};
 use serde::{Deserialize, Serialize};
@@ -49,27 +49,62 @@ pub enum EdgeStrength {
         /// Largest deviation of p from the fit (p0).
         residual: f64,
     },
+    /// The contact ends before the bodies do, and p falls to zero.
+    Zero {
+        /// y of the contact's end (C).
+        at_c: f64,
+    },
 }
 
-/// The strength of the end of a solved scene; none if the model follows neither law: with images
+/// The two ends of the contact.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// At the larger y.
+    Positive,
+    /// At the smaller y.
+    Negative,
+}
+
+impl Side {
+    /// 1 or -1.
+    fn sign(self) -> f64 {
+        match self {
+            Self::Positive => 1.0,
+            Self::Negative => -1.0,
+        }
+    }
+
+    /// The side's one of two ends that ascend.
+    fn of<T: Copy>(self, ends: [T; 2]) -> T {
+        match self {
+            Self::Positive => ends[1],
+            Self::Negative => ends[0],
+        }
+    }
+}
+
+/// The strength of one end of a solved scene; none if the model follows neither law: with images
 /// weighted by psi > 1 in both bodies, the pressure at flush ends oscillates in ln s.
-pub fn edge_strength(solved: &SolvedScene) -> Option<EdgeStrength> {
+pub fn edge_strength(solved: &SolvedScene, side: Side) -> Option<EdgeStrength> {
     let scene = &solved.scene;
+    if side.of(solved.open) {
+        return Some(EdgeStrength::Zero { at_c: side.of(solved.ends()) });
+    }
     let oscillates = |kind| scene.end(kind).image_weight.is_some_and(|psi| psi > 1.0);
-    match scene.corner_exponent() {
-        Some(m) => Some(singular(solved, m, SINGULAR_RANGE)),
+    match side.of(scene.corner_exponents()) {
+        Some(m) => Some(singular(solved, side, m, SINGULAR_RANGE)),
         None if BodyKind::ALL.into_iter().any(oscillates) => None,
-        None => Some(finite(solved, FINITE_RANGE)),
+        None => Some(finite(solved, side, FINITE_RANGE)),
     }
 }
 
 /// Distances of a fit, and the pressures there.
-fn samples(solved: &SolvedScene, [low, high]: [f64; 2]) -> Vec<(f64, f64)> {
-    let half_length = solved.scene.half_length;
+fn samples(solved: &SolvedScene, side: Side, [low, high]: [f64; 2]) -> Vec<(f64, f64)> {
+    let end = side.of(solved.scene.overlap());
     (0..POINTS)
         .map(|i| {
             let s = low * (high / low).powf(i as f64 / (POINTS - 1) as f64);
-            (s, solved.pressure.at(0.0, half_length - s))
+            (s, solved.pressure.at(0.0, end - side.sign() * s))
         })
         .collect()
 }
@@ -83,8 +118,13 @@ fn least_squares<const N: usize>(basis: &[[f64; N]], values: &[f64]) -> [f64; N]
 }
 
 /// Fits K s^-m on a range of s (C); `corner_exponent` is passed through.
-pub fn singular(solved: &SolvedScene, corner_exponent: f64, range_c: [f64; 2]) -> EdgeStrength {
-    let samples = samples(solved, range_c);
+pub fn singular(
+    solved: &SolvedScene,
+    side: Side,
+    corner_exponent: f64,
+    range_c: [f64; 2],
+) -> EdgeStrength {
+    let samples = samples(solved, side, range_c);
     let basis: Vec<_> = samples.iter().map(|(s, _)| [1.0, -s.ln()]).collect();
     let values: Vec<f64> = samples.iter().map(|(_, p)| p.ln()).collect();
     let [log_factor, exponent] = least_squares(&basis, &values);
@@ -95,8 +135,8 @@ pub fn singular(solved: &SolvedScene, corner_exponent: f64, range_c: [f64; 2]) -
 }
 
 /// Fits limit + log_slope s ln(1/s) + slope s on a range of s (C).
-pub fn finite(solved: &SolvedScene, range_c: [f64; 2]) -> EdgeStrength {
-    let samples = samples(solved, range_c);
+pub fn finite(solved: &SolvedScene, side: Side, range_c: [f64; 2]) -> EdgeStrength {
+    let samples = samples(solved, side, range_c);
     let basis: Vec<_> = samples.iter().map(|(s, _)| [1.0, -s * s.ln(), *s]).collect();
     let values: Vec<f64> = samples.iter().map(|(_, p)| *p).collect();
     let [limit, log_slope, slope] = least_squares(&basis, &values);

@@ -6,12 +6,12 @@ use crate::stress::BodyKind;
 /// Relative tolerance of a coordinate, which may have lost digits in a file.
 const ROUNDING: f64 = 1e-9;
 
-/// The extent of a body in its own frame (m): |y| up to its half-length, and z from its surface
-/// down. Across the contact it is unlimited.
+/// The extent of a body (m): y from end to end, z from its surface down. Across the contact it has no
+/// end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     body: BodyKind,
-    half_length_m: f64,
+    ends_m: [f64; 2],
     depth_m: f64,
 }
 
@@ -31,16 +31,16 @@ pub struct Outside {
 impl Extent {
     /// The extent of one of the bodies of `case`.
     pub fn of(case: &Case, body: BodyKind) -> Self {
-        let (length_m, depth_m) = match body {
-            BodyKind::Block => (case.block.length_m, f64::INFINITY),
-            BodyKind::Roller => (case.roller.length_m, 2.0 * case.roller.radius_m),
+        let depth_m = match body {
+            BodyKind::Block => f64::INFINITY,
+            BodyKind::Roller => 2.0 * case.roller.radius_m,
         };
-        Self { body, half_length_m: 0.5 * length_m, depth_m }
+        Self { body, ends_m: case.ends_m(body), depth_m }
     }
 
-    /// Half of the body's length (m).
-    pub fn half_length_m(&self) -> f64 {
-        self.half_length_m
+    /// The body's ends along y (m).
+    pub fn ends_m(&self) -> [f64; 2] {
+        self.ends_m
     }
 
     /// Whether the point `at_m` (m) lies within the body.
@@ -59,7 +59,11 @@ impl Extent {
         let name = self.body.name();
         let inside = match axis {
             0 => true,
-            1 => value_m.abs() <= self.half_length_m * (1.0 + ROUNDING),
+            1 => {
+                let [from, to] = self.ends_m;
+                let rounding = ROUNDING * (to - from);
+                (from - rounding..=to + rounding).contains(&value_m)
+            }
             _ => (0.0..=self.depth_m).contains(&value_m),
         };
         let (reason, remedy) = if !value_m.is_finite() {
@@ -67,7 +71,12 @@ impl Extent {
         } else if inside {
             return Ok(());
         } else if axis == 1 {
-            (format!("is outside the {name}"), format!("keep |y| <= {:e} m", self.half_length_m))
+            let [from, to] = self.ends_m;
+            let remedy = match from == -to {
+                true => format!("keep |y| <= {to:e} m"),
+                false => format!("keep y from {from:e} to {to:e} m"),
+            };
+            (format!("is outside the {name}"), remedy)
         } else if self.body == BodyKind::Block {
             (format!("is outside the {name}"), "keep z >= 0".to_string())
         } else {

@@ -2,12 +2,15 @@
 //! solution.
 
 use super::cells::{largest, pressure_cells};
-use super::scene::{Scene, SolvedScene};
-use super::solved::approach_m;
-use crate::base::{HertzScales, Result};
+use super::scene::Scene;
+use super::solved::{approach_m, place_of};
+use super::solved_scene::SolvedScene;
+use crate::base::{HertzScales, PerBody, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::Case;
-use crate::stress::{BodyKind, Critical, EDGE, RoundStress, away_from_edge, curves};
+use crate::stress::{
+    BodyKind, Critical, EDGE, RoundStress, away_from_edge, away_from_edges, curves,
+};
 
 /// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
 pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
@@ -58,37 +61,42 @@ pub fn key_results(
     let top = largest(&cells);
     let along = |s: f64| {
         let y = scene.half_length - s;
-        (y >= 0.0).then(|| solved.pressure.at(0.0, y))
+        (y >= 0.0).then(|| solved.pressure.at(0.0, scene.middle + y))
     };
     let at_end = END_DISTANCES.map(along);
-    let centre = solved.pressure.at(0.0, 0.0);
+    let centre = solved.pressure.at(0.0, scene.span().centre());
     for (i, case) in cases.iter().enumerate() {
-        let (hertz, radius_m) = (case.hertz(), case.roller.radius_m);
+        let hertz = case.hertz();
+        let of_radius = |radius_m: f64| hertz.c_m / radius_m;
+        let curvatures = PerBody {
+            block: case.block.radius_m.map_or(0.0, of_radius),
+            roller: of_radius(case.roller.radius_m),
+        };
         each(
             i,
             KeyResults {
                 hertz,
                 load_n: case.load.force_n,
-                approach_m: approach_m(&solved, &hertz, radius_m),
+                approach_m: approach_m(&solved, case),
                 p_centre: centre,
                 p_max: top.p,
-                p_max_at: [top.x.abs(), top.y.abs()],
+                p_max_at: place_of(&solved, top),
                 p_at: at_end,
-                critical: critical(&samples, hertz.c_m / radius_m),
+                critical: critical(&samples, &curvatures),
             },
         );
     }
     Ok(())
 }
 
-/// The largest von Mises stress of the samples, where the roller's C / R is `curvature`.
-fn critical(samples: &[Sample], curvature: f64) -> Critical {
+/// The largest von Mises stress of the samples of bodies with these C / R.
+fn critical(samples: &[Sample], curvatures: &PerBody<f64>) -> Critical {
     let values = samples.iter().map(|(body, at, stress)| {
-        let value = match body {
-            BodyKind::Block => stress.flat.von_mises(),
-            BodyKind::Roller => stress.at(curvature).von_mises(),
+        let shaped = match body {
+            BodyKind::Block => stress.on_one_side(curvatures.block),
+            BodyKind::Roller => stress.at(curvatures.roller),
         };
-        Critical { body: *body, value, at: *at }
+        Critical { body: *body, value: shaped.von_mises(), at: *at }
     });
     let best = values.reduce(|best, next| if next.value > best.value { next } else { best });
     best.expect("both bodies have samples")
@@ -114,23 +122,26 @@ fn samples(solved: &SolvedScene) -> Vec<Sample> {
             break;
         }
         if solved.scene.tolerance < Resolution::COARSE {
-            every_point(solved, kind, body.half, &mut all);
+            every_point(solved, kind, body.ends(), &mut all);
         } else {
-            search(solved, kind, body.half, &mut all);
+            search(solved, kind, body.ends(), 1.0, &mut all);
+            if !solved.scene.is_symmetric() {
+                search(solved, kind, body.ends(), -1.0, &mut all);
+            }
         }
     }
     all
 }
 
 /// All points of the standard curves.
-fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>) {
+fn every_point(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], all: &mut Vec<Sample>) {
     let field = solved.field(kind);
-    let half_length = solved.scene.half_length;
+    let span = solved.scene.span();
     let mut columns: Vec<([f64; 2], Vec<f64>)> = Vec::new();
     let mut index = std::collections::HashMap::new();
-    for curve in curves::standard_curves(kind, half_length, half) {
+    for curve in curves::curves_on(kind, &span, ends) {
         for [x, y, z] in curve.points {
-            if !away_from_edge([x, y, z], half_length, EDGE) {
+            if !away_from_edges([x, y, z], span.ends, EDGE) {
                 continue;
             }
             let column = *index.entry((y.to_bits(), z.to_bits())).or_insert_with(|| {
@@ -146,10 +157,12 @@ fn every_point(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sa
     }
 }
 
-/// A first pass over all standard curves, and then closer points around the largest stress.
-fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>) {
+/// A first pass over all standard curves, and then closer points around the largest stress, on one `side`
+/// of the overlap's middle, 1 or -1. Places here are distances from it.
+fn search(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], side: f64, all: &mut Vec<Sample>) {
     let field = solved.field(kind);
-    let half_length = solved.scene.half_length;
+    let (half_length, middle) = (solved.scene.half_length, solved.scene.middle);
+    let half = if side > 0.0 { ends[1] - middle } else { middle - ends[0] };
     let start = all.len();
     let mut seen = Vec::new();
     let mut add = |y: f64, z: f64, all: &mut Vec<Sample>| -> f64 {
@@ -161,8 +174,9 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
             return 0.0;
         }
         seen.push((y.to_bits(), z.to_bits()));
-        let stress = field.round_at(y, z, &[0.0])[0];
-        all.push((kind, [0.0, y, z], stress));
+        let place = middle + side * y;
+        let stress = field.round_at(place, z, &[0.0])[0];
+        all.push((kind, [0.0, place, z], stress));
         stress.flat.von_mises()
     };
     for y in [0.0, 0.9 * half_length, half_length] {
@@ -180,8 +194,8 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
     }
     // The surface across the contact, where it is largest for small Poisson's ratios.
     let xs = [0.25, 0.5, 0.75, 1.0, 1.25];
-    for (x, s) in xs.into_iter().zip(field.round_at(0.0, 0.0, &xs)) {
-        all.push((kind, [x, 0.0, 0.0], s));
+    for (x, s) in xs.into_iter().zip(field.round_at(middle, 0.0, &xs)) {
+        all.push((kind, [x, middle, 0.0], s));
     }
     // A step to either side of the largest stress, halved twice.
     let best = |all: &[Sample]| {
@@ -190,7 +204,8 @@ fn search(solved: &SolvedScene, kind: BodyKind, half: f64, all: &mut Vec<Sample>
     };
     let mut step = 0.125;
     for _ in 0..3 {
-        let Some((_, [_, y, z])) = best(all) else { return };
+        let Some((_, [_, place, z])) = best(all) else { return };
+        let y = side * (place - middle);
         let on_depth = [0.0, 0.9 * half_length, half_length].contains(&y);
         if on_depth {
             add(y, z + step, all);

@@ -1,6 +1,6 @@
 //! Stresses at many points: those on one line along an axis share much of their computation.
 
-use crate::stress::{BodyKind, CurveSpec, Field, RoundStress, Work};
+use crate::stress::{BodyField, BodyKind, CurveSpec, RoundStress, Work};
 use rayon::prelude::*;
 
 /// Points of one body that share much of their computation.
@@ -46,7 +46,7 @@ pub(super) struct Stresses {
 /// their fields are `shared`.
 pub(super) fn stresses<'a>(
     shared: bool,
-    field: impl Fn(BodyKind) -> Field<'a>,
+    field: impl Fn(BodyKind) -> BodyField<'a>,
     curves: &[CurveSpec],
     points: &[(BodyKind, [f64; 3])],
 ) -> Stresses {
@@ -114,7 +114,7 @@ fn lines(shared: bool, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) ->
 
 impl Line {
     /// The stresses at the points, in their order.
-    fn stresses(&self, field: &Field) -> Vec<RoundStress> {
+    fn stresses(&self, field: &BodyField) -> Vec<RoundStress> {
         let coordinate = |axis: usize| self.points.iter().map(|p| p.0[axis]).collect::<Vec<_>>();
         match self.along {
             Along::X(y, z) => field.round_at(y, z, &coordinate(0)),

@@ -9,10 +9,12 @@ mod grid;
 mod group;
 mod key_results;
 mod lines;
+mod motion;
 mod on_cells;
 mod options;
 mod scene;
 mod solved;
+mod solved_scene;
 mod summary;
 
 #[cfg(test)]
@@ -25,6 +27,7 @@ pub use grid::MOST_GRID_POINTS;
 pub use group::{solve, solve_group};
 pub use key_results::{END_DISTANCES, KeyResults, key_results};
 pub use options::{Options, Point};
-pub use scene::{Scene, SceneBody, SceneKey, Seconds, SolvedScene};
+pub use scene::{Scene, SceneBody, SceneKey, Tilt};
 pub use solved::{Solution, SolvedCase};
+pub use solved_scene::{Seconds, SolvedScene};
 pub use summary::{Avoided, CriticalSummary, Details, Measure, Summary, WorkSummary};

@@ -5,7 +5,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::BodyKind;
-use crate::stress::curves::CURVE_NAMES;
+use crate::stress::curves::{CURVE_NAMES, END_CURVES};
 
 /// The edge model of a solution, and what to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,12 +43,21 @@ impl Options {
         }
     }
 
+    /// Whether the curve called `name` is wanted; one at the -y end is with its twin at the other end.
+    pub fn wants(&self, name: &str) -> bool {
+        let twin = END_CURVES.iter().find(|[_, other]| *other == name).map(|[twin, _]| *twin);
+        self.curves.iter().any(|wanted| wanted == name || Some(wanted.as_str()) == twin)
+    }
+
     /// Refuses curves that do not exist and points outside their body.
     ///
     /// # Errors
     /// [`Error::Value`] that names the first of them.
     pub fn check(&self, case: &Case) -> Result<()> {
-        let unknown = |name: &&String| !CURVE_NAMES.contains(&name.as_str());
+        let known = |name: &str| {
+            CURVE_NAMES.contains(&name) || END_CURVES.iter().any(|[_, other]| *other == name)
+        };
+        let unknown = |name: &&String| !known(name);
         if let Some(name) = self.curves.iter().find(unknown) {
             let nearest = CURVE_NAMES
                 .iter()

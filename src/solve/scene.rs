@@ -1,47 +1,67 @@
 //! A contact in units of C and p0: a case without its scales.
 
-use super::lines;
-use crate::base::{Error, Material, Panels, Parity, PerBody, Result, Wavenumbers};
-use crate::body::{Body, EdgeModel, End, Layer, Resolution, Shape, corner_exponent};
-use crate::case::{Accuracy, Block, Case, Load, Roller};
-use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Straight};
-use crate::stress::{BodyKind, CurveSpec, Field, Load as _, Pressure};
-use nalgebra::DMatrix;
-use rayon::prelude::*;
+use crate::base::{Material, PerBody, Profile};
+use crate::body::{EdgeModel, End, corner_exponent};
+use crate::case::{Accuracy, Block, Case, Load, Pose, Roller};
+use crate::contact::Shaped;
+use crate::stress::BodyKind;
+use crate::stress::curves::Span;
 use std::f64::consts::PI;
-use std::time::Instant;
 
-/// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
-/// scenes stay within 2 (docs/robustness.md); errors of the solver exceed it by far.
-const SOUNDNESS: f64 = 5.0;
-
-/// Largest condition number of a body's equations for which rounding is negligible: it costs this
-/// many units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
-/// (docs/robustness.md).
-const WORST_CONDITION: f64 = 1e7;
-
-/// Tolerance of the contact's iteration, in tolerances of the scene.
-const CONTACT_TOLERANCE: f64 = 1e-2;
+/// Ends that differ by less than this part of a half-length are flush.
+const FLUSH: f64 = 1e-9;
 
 /// One of the two bodies of a [`Scene`].
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct SceneBody {
     /// Half-length (C).
     pub half: f64,
+    /// Place of its middle (C).
+    pub middle: f64,
     /// Poisson's ratio.
     pub nu: f64,
     /// Share of the contact compliance, E* (1 - nu^2) / E.
     pub share: f64,
+    /// Its profile, in units of C; none if it is straight.
+    pub profile: Option<Profile>,
 }
 
-/// A dimensionless contact. The load factor W is not in it: only the approach's reference depth
-/// and the roller's diametral tension know the radius.
+impl SceneBody {
+    /// Its ends along y (C).
+    pub fn ends(&self) -> [f64; 2] {
+        [self.middle - self.half, self.middle + self.half]
+    }
+}
+
+/// What is known of the bodies' tilt.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Tilt {
+    /// It is held (C / (2 R)), for the lines x = 0 at the depth of the roller's radius.
+    Held(f64),
+    /// It is free, and the load's line of action lies at this y (C).
+    Free(f64),
+}
+
+/// A dimensionless contact. The load factor W is not in it, unless a profile or a tilt needs it: only the
+/// approach's reference depth and the roller's diametral tension know the radius. y is counted from the
+/// roller's middle.
 #[derive(Debug, Clone)]
 pub struct Scene {
-    /// S_l, the contact's half-length (C).
+    /// Half-length of the bodies' overlap (C).
     pub half_length: f64,
+    /// Place of the overlap's middle (C).
+    pub middle: f64,
     /// The two bodies.
     pub bodies: PerBody<SceneBody>,
+    /// The load, the integral of p (C^2 p0).
+    pub load: f64,
+    /// The tilt.
+    pub tilt: Tilt,
+    /// 2 R / C, R the equivalent radius, where a profile or a held tilt needs it, otherwise zero.
+    pub steepness: f64,
+    /// Depth (C) of the lines whose tilt is held; zero where none is, or where they are parallel by
+    /// symmetry.
+    pub depth: f64,
     /// The edge model.
     pub model: EdgeModel,
     /// Weight of the images of `guilbault`; by default [`crate::body::guilbault_psi`] of each body.
@@ -50,52 +70,191 @@ pub struct Scene {
     pub tolerance: f64,
 }
 
+impl SceneBody {
+    /// A straight body of half-length `half` (C) with its middle at y = 0, of Poisson's ratio `nu` and
+    /// `share` of the compliance.
+    pub fn straight(half: f64, nu: f64, share: f64) -> Self {
+        Self { half, middle: 0.0, nu, share, profile: None }
+    }
+}
+
 impl Scene {
+    /// The scene of parallel `bodies` with their middles at one place, by default edge models' own psi.
+    pub fn symmetric(bodies: PerBody<SceneBody>, model: EdgeModel, tolerance: f64) -> Self {
+        let half_length = bodies.block.half.min(bodies.roller.half);
+        Self {
+            half_length,
+            middle: 0.0,
+            bodies,
+            load: PI * half_length,
+            tilt: Tilt::Held(0.0),
+            steepness: 0.0,
+            depth: 0.0,
+            model,
+            psi: None,
+            tolerance,
+        }
+    }
+
     /// The scene of a case.
     pub fn new(case: &Case, model: EdgeModel, psi: Option<f64>) -> Self {
         // Each field of a case is in the scene, in the scales or in neither.
-        let Case { name: _, roller, block, load, accuracy: Accuracy { tolerance }, cells: _ } =
+        let Case { name: _, roller, block, load, pose, accuracy: Accuracy { tolerance }, cells: _ } =
             case;
-        let Roller { radius_m: _, length_m: roller_length_m, material: roller_material } = *roller;
-        let Block { length_m: block_length_m, material: block_material } = *block;
-        let Load { force_n: _ } = load;
+        let Roller { radius_m, length_m: roller_m, material: roller_material, profile: _ } = roller;
+        let Block { length_m: block_m, material: block_material, radius_m: _, profile: _ } = block;
+        let Load { force_n: _, eccentricity_m } = load;
+        let Pose { tilt_rad, offset_m } = pose;
         let hertz = case.hertz();
-        let half = |length_m: f64| rounded(0.5 * length_m / hertz.c_m);
-        let body = |half: f64, material: Material| SceneBody {
-            half,
+        let c_m = hertz.c_m;
+        let steepness = 2.0 * case.equivalent_radius_m() / c_m;
+        let half = |length_m: f64| rounded(0.5 * length_m / c_m);
+        let roller_half = half(*roller_m);
+        // What is symmetric but for rounding is symmetric.
+        let nothing = |v: f64, size: f64| if v.abs() < FLUSH * size { 0.0 } else { rounded(v) };
+        let offset = nothing(offset_m / c_m, roller_half);
+        let roller_ends = [-roller_half, roller_half];
+        // Rounding must not leave a ledge at flush ends.
+        let mut block_ends = [-1.0, 1.0].map(|side| offset + side * half(*block_m));
+        let shorter = roller_half.min(half(*block_m));
+        for (own, other) in block_ends.iter_mut().zip(roller_ends) {
+            if (*own - other).abs() < FLUSH * shorter {
+                *own = other;
+            }
+        }
+        let body = |[from, to]: [f64; 2], material: &Material, kind: BodyKind| SceneBody {
+            half: 0.5 * (to - from),
+            middle: 0.5 * (from + to),
             nu: material.poisson,
             share: rounded(hertz.e_star_pa * material.plane_strain_compliance()),
+            profile: case.profile(kind).map(|profile| profile.scaled(1.0 / c_m)),
         };
-        let half_length = half(roller_length_m);
-        let block = half(block_length_m);
-        // Rounding must not leave a ledge at flush ends.
-        let block = if block < half_length * (1.0 + 1e-9) { half_length } else { block };
-        Self {
-            half_length,
-            bodies: PerBody {
-                block: body(block, block_material),
-                roller: body(half_length, roller_material),
-            },
+        let bodies = PerBody {
+            block: body(block_ends, block_material, BodyKind::Block),
+            roller: body(roller_ends, roller_material, BodyKind::Roller),
+        };
+        let tilt = match eccentricity_m {
+            Some(y) => Tilt::Free(nothing(y / c_m, roller_half)),
+            None => Tilt::Held(nothing(tilt_rad.unwrap_or(0.0) * steepness, 1.0 / roller_half)),
+        };
+        let profiled = bodies.iter().any(|body| body.profile.is_some());
+        let from = block_ends[0].max(roller_ends[0]);
+        let to = block_ends[1].min(roller_ends[1]);
+        let scene = Self {
+            half_length: 0.5 * (to - from),
+            middle: 0.5 * (from + to),
+            load: PI * shorter,
+            steepness: if profiled { steepness } else { 0.0 },
+            depth: 0.0,
+            bodies,
+            tilt,
             model,
             psi,
             tolerance: *tolerance,
+        };
+        match scene.tilt {
+            // A load in the middle of what is symmetric leaves it parallel.
+            Tilt::Free(0.0) if scene.is_aligned() => Self { tilt: Tilt::Held(0.0), ..scene },
+            Tilt::Held(_) if !scene.is_symmetric() => Self { depth: radius_m / c_m, ..scene },
+            _ => scene,
         }
+    }
+
+    /// The same scene in a unit of length that is 1 / `factor` of the present one; the units of pressure,
+    /// of load and of displacement follow, so that the gap stays x^2.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let body = |body: &SceneBody| SceneBody {
+            half: factor * body.half,
+            middle: factor * body.middle,
+            profile: body.profile.as_ref().map(|profile| profile.scaled(factor)),
+            ..body.clone()
+        };
+        Self {
+            half_length: factor * self.half_length,
+            middle: factor * self.middle,
+            bodies: self.bodies.map(body),
+            load: factor.powi(3) * self.load,
+            tilt: match self.tilt {
+                Tilt::Held(tilt) => Tilt::Held(factor * tilt),
+                Tilt::Free(arm) => Tilt::Free(factor * arm),
+            },
+            steepness: factor * self.steepness,
+            depth: factor * self.depth,
+            ..self.clone()
+        }
+    }
+
+    /// Whether bodies and gap are symmetric about y = 0.
+    fn is_aligned(&self) -> bool {
+        let even = |profile: &Profile| profile.is_even();
+        let aligned = |b: &SceneBody| b.middle == 0.0 && b.profile.as_ref().is_none_or(even);
+        self.bodies.iter().all(aligned)
+    }
+
+    /// Whether the contact is symmetric about y = 0.
+    pub fn is_symmetric(&self) -> bool {
+        self.is_aligned() && self.tilt == Tilt::Held(0.0)
+    }
+
+    /// Whether the contact may end before the bodies do; between straight and parallel ones it does not.
+    pub fn may_end(&self) -> bool {
+        self.steepness != 0.0 || !self.is_symmetric()
+    }
+
+    /// The overlap of the bodies, from end to end (C).
+    pub fn overlap(&self) -> [f64; 2] {
+        [self.middle - self.half_length, self.middle + self.half_length]
+    }
+
+    /// The contact line, for the standard curves.
+    pub fn span(&self) -> Span {
+        Span { ends: self.overlap(), symmetric: self.is_symmetric() }
+    }
+
+    /// The gap between the bodies, parallel and without load.
+    pub fn gap(&self) -> Shaped {
+        let profiles = self.bodies.iter().filter_map(|body| {
+            let profile = body.profile.clone()?;
+            Some((body.middle, profile))
+        });
+        Shaped { profiles: profiles.collect(), steepness: self.steepness }
     }
 
     /// The key of the solution: scenes with equal keys share one. It contains all of the scene,
     /// with numbers rounded to twelve digits. Numbers that differ by less may still round to
     /// different keys, which costs a solve but is no error.
     pub fn key(&self) -> SceneKey {
-        let Self { half_length, bodies, model, psi, tolerance } = self;
+        let Self {
+            half_length,
+            middle,
+            bodies,
+            load,
+            tilt,
+            steepness,
+            depth,
+            model,
+            psi,
+            tolerance,
+        } = self;
+        let (is_free, tilt) = match tilt {
+            Tilt::Held(tilt) => (false, tilt),
+            Tilt::Free(arm) => (true, arm),
+        };
+        let mut numbers = vec![*half_length, *middle, *load, *tilt, *steepness, *depth, *tolerance];
+        for SceneBody { half, middle, nu, share, profile } in bodies.iter() {
+            numbers.extend([*half, *middle, *nu, *share]);
+            let own = profile.as_ref().map(Profile::numbers).unwrap_or_default();
+            numbers.push(own.len() as f64);
+            numbers.extend(own);
+        }
         // 0.0 and -0.0 are equal.
-        let bits = |v: f64| (rounded(v) + 0.0).to_bits();
-        let body = |SceneBody { half, nu, share }: &SceneBody| [half, nu, share].map(|v| bits(*v));
+        let bits = |v: &f64| (rounded(*v) + 0.0).to_bits();
         SceneKey {
-            half_length: bits(*half_length),
-            bodies: PerBody { block: body(&bodies.block), roller: body(&bodies.roller) },
+            numbers: numbers.iter().map(bits).collect(),
+            is_free,
             model: *model,
-            psi: psi.map(bits),
-            tolerance: bits(*tolerance),
+            psi: psi.as_ref().map(bits),
         }
     }
 
@@ -104,230 +263,37 @@ impl Scene {
         self.model.end(self.bodies[kind].nu, self.psi)
     }
 
-    /// The exponent m > 0 of the pressure s^-m at the contact's end; none if it is not singular.
+    /// The exponents m > 0 of the pressure s^-m at the overlap's ends; none where it is not singular.
+    pub fn corner_exponents(&self) -> [Option<f64>; 2] {
+        let overlap = self.overlap();
+        [0, 1].map(|side| {
+            let bodies = BodyKind::ALL.map(|kind| {
+                let body = &self.bodies[kind];
+                let ledge = (body.ends()[side] - overlap[side]).abs();
+                let flush = ledge <= FLUSH * self.half_length;
+                (body.share, if flush { self.end(kind) } else { End::ENDLESS })
+            });
+            corner_exponent(&bodies)
+        })
+    }
+
+    /// The larger one of [`Scene::corner_exponents`].
     pub fn corner_exponent(&self) -> Option<f64> {
-        let bodies = BodyKind::ALL.map(|kind| {
-            let SceneBody { half, share, .. } = self.bodies[kind];
-            let flush = half <= self.half_length * (1.0 + 1e-9);
-            (share, if flush { self.end(kind) } else { End::ENDLESS })
-        });
-        corner_exponent(&bodies)
+        let [first, second] = self.corner_exponents();
+        first.into_iter().chain(second).reduce(f64::max)
     }
 }
 
 /// The key that scenes of one solution share, see [`Scene::key`].
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct SceneKey {
-    half_length: u64,
-    bodies: PerBody<[u64; 3]>,
+    numbers: Vec<u64>,
+    is_free: bool,
     model: EdgeModel,
     psi: Option<u64>,
-    tolerance: u64,
 }
 
 /// The number rounded to twelve digits, to remove differences by rounding.
 fn rounded(v: f64) -> f64 {
     format!("{v:.12e}").parse().expect("a formatted number")
-}
-
-/// Run time of each stage (s).
-#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
-pub struct Seconds {
-    /// Axes and compliance.
-    pub setup: f64,
-    /// Contact.
-    pub contact: f64,
-    /// Stresses.
-    pub stress: f64,
-    /// Total.
-    pub total: f64,
-}
-
-/// A solved scene, which gives pressures and stresses anywhere.
-#[derive(Debug)]
-pub struct SolvedScene {
-    /// The scene.
-    pub scene: Scene,
-    /// Its resolution.
-    pub resolution: Resolution,
-    /// Wavenumbers across the contact.
-    pub wavenumbers: Wavenumbers,
-    /// The contact pressure.
-    pub pressure: Pressure,
-    /// The solution of the contact; its approach lacks the reference (see
-    /// [`SolvedScene::approach`]).
-    pub contact: ContactSolution,
-    /// Run times of set-up and contact.
-    pub seconds: Seconds,
-    /// The largest condition number of the bodies' equations, see [`Layer::condition`].
-    pub condition: f64,
-    /// [`Pressure::moments`].
-    moments: DMatrix<f64>,
-    bodies: Vec<(Body, Vec<Layer>)>,
-    compliances: Vec<DMatrix<f64>>,
-}
-
-impl SolvedScene {
-    /// Solves a scene at the resolution for its tolerance.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
-    /// violates a law of contact or the equations are ill-conditioned.
-    pub fn new(scene: &Scene) -> Result<Self> {
-        let end = scene.end(BodyKind::Block);
-        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
-        Self::with_resolution(scene, &resolution)
-    }
-
-    /// Solves a scene at a given resolution.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
-    /// violates a law of contact or the equations are ill-conditioned.
-    pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
-        let start = Instant::now();
-        let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
-        let wavenumbers = resolution.wavenumbers(longest);
-        let coarse = wavenumbers.coarse();
-        let axis = resolution.contact_axis(scene.half_length);
-        let PerBody { block, roller } = scene.bodies;
-        // Bodies with the same ends and Poisson's ratio share one computation.
-        let alike = block.half == roller.half && block.nu == roller.nu;
-        let distinct = if alike { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
-        let bodies: Vec<(Body, Vec<Layer>)> = distinct
-            .iter()
-            .map(|&kind| {
-                let SceneBody { half, nu, .. } = scene.bodies[kind];
-                let shape = Shape { contact: scene.half_length, half, nu };
-                let body = Body::new(shape, scene.end(kind), Parity::Even, resolution);
-                let layers = coarse.nodes().par_iter().map(|&k| body.layer(k)).collect();
-                (body, layers)
-            })
-            .collect();
-        let condition = checked_condition(&bodies)?;
-        let compliances: Vec<_> = (0..coarse.len())
-            .map(|i| {
-                let of = |body: usize| &bodies[body.min(bodies.len() - 1)].1[i].compliance;
-                of(0) * block.share + of(1) * roller.share
-            })
-            .collect();
-        let setup = start.elapsed().as_secs_f64();
-        let settings = ContactSettings {
-            modes: resolution.modes,
-            spacing: resolution.spacing,
-            tolerance: CONTACT_TOLERANCE * scene.tolerance,
-            max_iterations: 40,
-            soundness: SOUNDNESS * scene.tolerance.max(Resolution::FINEST),
-        };
-        let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &compliances };
-        let contact = contact::solve(&straight(&compliance, &axis), &settings)?;
-        let pressure =
-            Pressure::new(axis, contact.half_widths.clone(), contact.coefficients.clone());
-        let moments = pressure.moments(&wavenumbers);
-        let total = start.elapsed().as_secs_f64();
-        Ok(Self {
-            scene: scene.clone(),
-            resolution: *resolution,
-            wavenumbers,
-            pressure,
-            contact,
-            seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
-            condition,
-            moments,
-            bodies,
-            compliances,
-        })
-    }
-
-    /// The body and its layers, shared by identical bodies.
-    fn body(&self, kind: BodyKind) -> &(Body, Vec<Layer>) {
-        let index = match kind {
-            BodyKind::Block => 0,
-            BodyKind::Roller => self.bodies.len() - 1,
-        };
-        &self.bodies[index]
-    }
-
-    /// Whether the contact iteration reached its tolerance.
-    pub fn converged(&self) -> bool {
-        self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
-    }
-
-    /// Whether both bodies share one computation.
-    pub fn bodies_shared(&self) -> bool {
-        self.bodies.len() == 1
-    }
-
-    /// The stress field of a body, without the contribution of the roller's round shape.
-    pub fn field(&self, kind: BodyKind) -> Field<'_> {
-        self.field_with(kind, self.body(kind).0.end.gamma, self.scene.tolerance)
-    }
-
-    /// Stresses on `curves` and at single `points` (C).
-    pub(super) fn stresses(
-        &self,
-        curves: &[CurveSpec],
-        points: &[(BodyKind, [f64; 3])],
-    ) -> lines::Stresses {
-        lines::stresses(self.bodies_shared(), |kind| self.field(kind), curves, points)
-    }
-
-    /// [`SolvedScene::field`] with a transition factor other than the edge model's, and with
-    /// contributions below `tolerance` (p0) neglected.
-    pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
-        let (body, layers) = self.body(kind);
-        let (numbers, moments) = (&self.wavenumbers, &self.moments);
-        Field::new(body, numbers, layers, &self.pressure, moments, gamma, tolerance)
-    }
-
-    /// The compliance of both bodies together.
-    fn compliance(&self) -> Compliance<'_> {
-        Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances }
-    }
-
-    /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of
-    /// `places`, which are distances from x = 0 in half-widths of each node.
-    pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
-        let compliance = self.compliance();
-        let problem = straight(&compliance, self.pressure.axis());
-        contact::gaps(&problem, &self.contact, places)
-    }
-
-    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
-    pub fn approach(&self, depth: f64) -> f64 {
-        self.contact.approach
-            - contact::reference(&self.compliance(), |k| self.contact.transform(k), depth)
-    }
-}
-
-/// The largest condition number of the bodies' equations, refused if rounding would not be
-/// negligible.
-fn checked_condition(bodies: &[(Body, Vec<Layer>)]) -> Result<f64> {
-    let condition = bodies
-        .iter()
-        .flat_map(|(_, layers)| layers)
-        .map(|l| l.condition)
-        .fold(1.0, |a: f64, b| if b.is_nan() { f64::INFINITY } else { a.max(b) });
-    if condition <= WORST_CONDITION {
-        return Ok(condition);
-    }
-    Err(Error::Unsound {
-        law: "the condition number of the end faces' equations",
-        value: condition,
-        limit: WORST_CONDITION,
-        remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
-    })
-}
-
-/// The contact of a straight roller that is pressed on the block in its middle: one half of it.
-fn straight<'a>(compliance: &'a Compliance<'a>, axis: &'a Panels) -> Problem<'a> {
-    Problem {
-        compliance,
-        axis,
-        both_ends: false,
-        gap: &Straight,
-        load: 0.5 * PI * axis.end(),
-        moment: None,
-    }
 }

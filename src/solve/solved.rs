@@ -2,20 +2,21 @@
 //! and stresses at any points.
 
 use super::cells::{PressureCell, largest, pressure_cells};
-use super::edge::edge_strength;
+use super::edge::{Side, edge_strength};
 use super::extent::Extent;
 use super::grid::check_grid;
 use super::lines;
 use super::options::Options;
-use super::scene::{Scene, Seconds, SolvedScene};
+use super::scene::Scene;
+use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::case::Case;
-use crate::stress::curves::{across_contact, contact_line, standard_curves};
+use crate::stress::curves::{Span, across_contact, curves_on};
 use crate::stress::grid::on_grid;
 use crate::stress::{
-    BodyKind, Critical, CurveSpec, Curves, EDGE, Grid, GridStress, PressureLine, RoundStress,
-    StressCurve, away_from_edge, round,
+    BodyKind, Critical, CurveSpec, Curves, EDGE, Grid, GridStress, LineLoad, Load, PressureLine,
+    RoundStress, StressCurve, away_from_edges, round,
 };
 use std::sync::Arc;
 use std::time::Instant;
@@ -39,6 +40,8 @@ pub struct Solution<D = Details> {
     pub curves: Curves,
     /// The contact pressure in cells.
     pub cells: Vec<PressureCell>,
+    /// The load per length along the whole contact, in ascending order of y.
+    pub line_loads: Vec<LineLoad>,
     /// Stresses at the extra points (p0), in their order.
     pub points: Vec<StressTensor>,
 }
@@ -46,8 +49,8 @@ pub struct Solution<D = Details> {
 impl<D> Solution<D> {
     /// The same with other details.
     pub fn map_details<E>(self, of: impl FnOnce(D) -> E) -> Solution<E> {
-        let Self { summary, curves, cells, points } = self;
-        Solution { summary: summary.map_details(of), curves, cells, points }
+        let Self { summary, curves, cells, line_loads, points } = self;
+        Solution { summary: summary.map_details(of), curves, cells, line_loads, points }
     }
 }
 
@@ -92,6 +95,13 @@ impl SolvedCase {
         &self.scene
     }
 
+    /// Tilt of the lines x = 0 one roller radius below the surfaces (rad).
+    fn tilt_rad(&self) -> f64 {
+        let radius = self.case.roller.radius_m / self.hertz.c_m;
+        let slope = self.hertz.c_m / (2.0 * self.case.equivalent_radius_m());
+        self.scene.tilt(radius) * slope
+    }
+
     /// The contact pressure (p0) at `x`, `y` (C).
     pub fn pressure(&self, x: f64, y: f64) -> f64 {
         self.scene.pressure.at(x, y)
@@ -126,11 +136,13 @@ impl SolvedCase {
     pub fn on_grid(&self, body: BodyKind, grid: &Grid) -> Result<GridStress> {
         check_grid(&self.case, body, grid)?;
         // The body's end may exceed itself by rounding.
-        let half = Extent::of(&self.case, body).half_length_m() / self.hertz.c_m;
-        let y = grid.y.iter().map(|y| y.clamp(-half, half)).collect();
+        let [from, to] = Extent::of(&self.case, body).ends_m().map(|y| y / self.hertz.c_m);
+        let y = grid.y.iter().map(|y| y.clamp(from, to)).collect();
         let grid = Grid { y, ..grid.clone() };
-        let curvature = (body == BodyKind::Roller).then(|| self.curvature());
-        Ok(on_grid(&self.scene.field(body), &grid, curvature))
+        let shaped = |s: &RoundStress| self.shaped(body, s);
+        let round: Option<&(dyn Fn(&RoundStress) -> StressTensor + Sync)> =
+            if self.is_round(body) { Some(&shaped) } else { None };
+        Ok(on_grid(&self.scene.field(body), &grid, round))
     }
 
     /// The complete solution.
@@ -159,9 +171,20 @@ impl SolvedCase {
         let points = self.options.points.iter().zip(&stresses.found.points);
         let points = points.map(|(point, s)| self.shaped(point.body, s)).collect();
         let cells = pressure_cells(&self.scene);
-        let critical = most_stressed(&curves.stress, self.scene.scene.half_length);
+        let critical = most_stressed(&curves.stress, &self.scene.scene.span());
         let summary = self.summary(stresses, critical, &cells);
-        Solution { summary, curves, cells, points }
+        let line_loads = self.line_loads();
+        Solution { summary, curves, cells, line_loads, points }
+    }
+
+    /// The load per length along the whole contact.
+    fn line_loads(&self) -> Vec<LineLoad> {
+        let half = self.scene.pressure.line_loads();
+        if !self.scene.pressure.is_symmetric() {
+            return half;
+        }
+        let mirrored = half.iter().rev().map(|line| LineLoad { y: -line.y, ..*line });
+        mirrored.chain(half.iter().copied()).collect()
     }
 
     /// The roller's C / R.
@@ -169,11 +192,17 @@ impl SolvedCase {
         self.hertz.c_m / self.case.roller.radius_m
     }
 
-    /// The stress of a body (p0); that of the roller includes the contribution of its radius.
+    /// Whether a body's surface is round.
+    fn is_round(&self, body: BodyKind) -> bool {
+        body == BodyKind::Roller || self.case.block.radius_m.is_some()
+    }
+
+    /// The stress of a body (p0) with what its radius adds.
     fn shaped(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
-        match body {
-            BodyKind::Block => stress.flat,
-            BodyKind::Roller => stress.at(self.curvature()),
+        match (body, self.case.block.radius_m) {
+            (BodyKind::Roller, _) => stress.at(self.curvature()),
+            (BodyKind::Block, None) => stress.flat,
+            (BodyKind::Block, Some(radius_m)) => stress.on_one_side(self.hertz.c_m / radius_m),
         }
     }
 
@@ -185,10 +214,10 @@ impl SolvedCase {
             at,
             own_error: None,
         };
-        let along = contact_line(self.scene.scene.half_length);
+        let span = self.scene.scene.span();
         vec![
-            line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
-            line("along-x", across_contact().into_iter().map(|x| [x, 0.0]).collect()),
+            line("along-y", span.contact_line().into_iter().map(|y| [0.0, y]).collect()),
+            line("along-x", across_contact().into_iter().map(|x| [x, span.centre()]).collect()),
         ]
     }
 
@@ -221,10 +250,13 @@ impl SolvedCase {
             method: solved.scene.model,
             hertz: self.hertz,
             load_n: case.load.force_n,
-            approach_m: approach_m(solved, &self.hertz, case.roller.radius_m),
-            p_centre_pa: self.pressure(0.0, 0.0) * p0_pa,
+            approach_m: approach_m(solved, case),
+            tilt_rad: self.tilt_rad(),
+            p_centre_pa: self.pressure(0.0, solved.scene.span().centre()) * p0_pa,
             p_max_pa: top.p * p0_pa,
-            p_max_at_m: [top.x, top.y].map(|v| (v * c_m).abs()),
+            p_max_at_m: place_of(solved, top).map(|v| v * c_m),
+            centre_of_pressure_m: [0.0, centre_of_pressure(solved) * c_m],
+            contact_y_m: solved.ends().map(|y| y * c_m),
             converged: solved.converged(),
             iterations: solved.contact.iterations,
             load_error_rel: (carried / case.load.force_n - 1.0).abs(),
@@ -246,7 +278,10 @@ impl SolvedCase {
             resolution: solved.resolution,
             wavenumbers: [solved.wavenumbers.coarse().len(), solved.wavenumbers.fine().len()],
             contact_nodes: solved.pressure.axis().len(),
-            edge: edge_strength(solved),
+            edge: edge_strength(solved, Side::Positive),
+            edge_neg: (!solved.pressure.is_symmetric())
+                .then(|| edge_strength(solved, Side::Negative))
+                .flatten(),
             edge_residual: solved.contact.residual,
             condition: solved.condition,
             bodies_shared: solved.bodies_shared(),
@@ -263,20 +298,39 @@ impl SolvedCase {
 pub(super) fn wanted_curves(scene: &Scene, options: &Options) -> Vec<CurveSpec> {
     let bodies = BodyKind::ALL.into_iter().zip(scene.bodies.iter());
     let wanted = bodies.filter(|(kind, _)| options.bodies.contains(kind));
-    let all = wanted.flat_map(|(kind, body)| standard_curves(kind, scene.half_length, body.half));
-    all.filter(|c| options.curves.iter().any(|n| n == c.name)).collect()
+    let all = wanted.flat_map(|(kind, body)| curves_on(kind, &scene.span(), body.ends()));
+    all.filter(|curve| options.wants(curve.name)).collect()
 }
 
-/// The most stressed point of the curves, apart from the surroundings of the roller's edge.
-pub(super) fn most_stressed(curves: &[StressCurve], half_length: f64) -> Option<Critical> {
+/// y of the line of action of the pressure's resultant (C).
+fn centre_of_pressure(scene: &SolvedScene) -> f64 {
+    if scene.pressure.is_symmetric() {
+        return 0.0;
+    }
+    let lines = scene.pressure.line_loads();
+    let sum = |of: fn(f64) -> f64| -> f64 {
+        lines.iter().map(|line| of(line.y) * line.weight * line.load).sum()
+    };
+    sum(|y| y) / sum(|_| 1.0)
+}
+
+/// x and y of the cell of largest pressure; the positive ones where mirror images have the same.
+pub(super) fn place_of(scene: &SolvedScene, cell: &PressureCell) -> [f64; 2] {
+    let y = if scene.pressure.is_symmetric() { cell.y.abs() } else { cell.y };
+    [cell.x.abs(), y]
+}
+
+/// The most stressed point of the curves outside the surroundings of the overlap's edges.
+pub(super) fn most_stressed(curves: &[StressCurve], span: &Span) -> Option<Critical> {
     let points = curves.iter().flat_map(|c| c.at.iter().zip(&c.stress).map(|p| (c.body, p)));
-    let away = points.filter(|(_, (at, _))| away_from_edge(**at, half_length, EDGE));
+    let away = points.filter(|(_, (at, _))| away_from_edges(**at, span.ends, EDGE));
     let values =
         away.map(|(body, (at, stress))| Critical { body, value: stress.von_mises(), at: *at });
     values.reduce(|best, next| if next.value > best.value { next } else { best })
 }
 
-/// Approach of points one roller radius, `radius_m` (m), below the surfaces (m).
-pub(super) fn approach_m(scene: &SolvedScene, hertz: &HertzScales, radius_m: f64) -> f64 {
-    scene.approach(radius_m / hertz.c_m) * (hertz.c_m * hertz.c_m / (2.0 * radius_m))
+/// Approach of points one roller radius below the surfaces (m).
+pub(super) fn approach_m(scene: &SolvedScene, case: &Case) -> f64 {
+    let (c_m, radius_m) = (case.hertz().c_m, case.roller.radius_m);
+    scene.approach(radius_m / c_m) * (c_m * c_m / (2.0 * case.equivalent_radius_m()))
 }

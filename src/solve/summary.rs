@@ -1,7 +1,7 @@
 //! The numbers of a solution in SI units, as in `summary.json`.
 
 use super::edge::EdgeStrength;
-use super::scene::Seconds;
+use super::solved_scene::Seconds;
 use crate::base::HertzScales;
 use crate::body::{EdgeModel, Resolution};
 use crate::stress::{BodyKind, Critical, Work};
@@ -21,12 +21,19 @@ pub struct Summary<D = Details> {
     pub load_n: f64,
     /// Approach of the bodies' far points that the model implies (m).
     pub approach_m: f64,
+    /// Tilt of the lines x = 0 one roller radius below the surfaces, by least squares over the contact
+    /// (rad); positive where the side of larger y is pressed deeper.
+    pub tilt_rad: f64,
     /// Pressure at the contact's centre (Pa).
     pub p_centre_pa: f64,
     /// Largest pressure of the cells (Pa).
     pub p_max_pa: f64,
     /// Its place x, y (m).
     pub p_max_at_m: [f64; 2],
+    /// Where the pressure's resultant acts: x, y (m).
+    pub centre_of_pressure_m: [f64; 2],
+    /// The contact's ends along y (m).
+    pub contact_y_m: [f64; 2],
     /// Whether the contact iteration reached its tolerance.
     pub converged: bool,
     /// Iterations of the contact solve.
@@ -50,9 +57,12 @@ impl<D> Summary<D> {
             hertz: self.hertz,
             load_n: self.load_n,
             approach_m: self.approach_m,
+            tilt_rad: self.tilt_rad,
             p_centre_pa: self.p_centre_pa,
             p_max_pa: self.p_max_pa,
             p_max_at_m: self.p_max_at_m,
+            centre_of_pressure_m: self.centre_of_pressure_m,
+            contact_y_m: self.contact_y_m,
             converged: self.converged,
             iterations: self.iterations,
             load_error_rel: self.load_error_rel,
@@ -112,6 +122,9 @@ pub struct Details {
     pub contact_nodes: usize,
     /// Strength of the contact's end, if the model has a law for it.
     pub edge: Option<EdgeStrength>,
+    /// The same at the -y end of a contact that is not symmetric.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub edge_neg: Option<EdgeStrength>,
     /// Remaining amplitude of the pressure's singularity across the contact (p0).
     pub edge_residual: f64,
     /// The largest condition number of the bodies' equations.

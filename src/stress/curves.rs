@@ -32,6 +32,75 @@ pub const CURVE_NAMES: [&str; 13] = [
     "depth-end-x1.4",
 ];
 
+/// The curves that name an end, at the +y end of the contact and at the -y end of a contact that is not
+/// symmetric.
+pub const END_CURVES: [[&str; 2]; 6] = [
+    ["depth-0.9", "depth-0.9-neg"],
+    ["depth-end", "depth-end-neg"],
+    ["depth-0.9-x0.7", "depth-0.9-x0.7-neg"],
+    ["depth-end-x0.7", "depth-end-x0.7-neg"],
+    ["depth-0.9-x1.4", "depth-0.9-x1.4-neg"],
+    ["depth-end-x1.4", "depth-end-x1.4-neg"],
+];
+
+/// The part of the contact line that the curves lie on.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Span {
+    /// The ends of the bodies' overlap (C).
+    pub ends: [f64; 2],
+    /// Whether the contact is symmetric about y = 0; one half of it is then enough.
+    pub symmetric: bool,
+}
+
+impl Span {
+    /// A symmetric contact of half-length `half_length` (C).
+    pub fn symmetric(half_length: f64) -> Self {
+        Self { ends: [-half_length, half_length], symmetric: true }
+    }
+
+    /// The middle of the overlap.
+    pub fn middle(&self) -> f64 {
+        0.5 * (self.ends[0] + self.ends[1])
+    }
+
+    /// Half of the overlap's length.
+    pub fn half_length(&self) -> f64 {
+        0.5 * (self.ends[1] - self.ends[0])
+    }
+
+    /// y of the curves in the middle: the roller's middle, or that of the overlap if it lies elsewhere.
+    pub fn centre(&self) -> f64 {
+        if self.ends[0] < 0.0 && 0.0 < self.ends[1] { 0.0 } else { self.middle() }
+    }
+
+    /// y of the points on the contact line, ascending.
+    pub fn contact_line(&self) -> Vec<f64> {
+        self.both_sides([0.0; 2])
+    }
+
+    /// y of the points on the contact line and, beyond its ends, on the `ledges` of a body.
+    fn both_sides(&self, ledges: [f64; 2]) -> Vec<f64> {
+        let half_length = self.half_length();
+        let side = |ledge: f64| {
+            let mut y = contact_line(half_length);
+            if ledge > SAME * half_length {
+                let reach = ledge.min(OUTWARD);
+                let outward =
+                    SAMPLED_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
+                y.extend(outward.map(|s| half_length + s));
+                y.push(half_length + reach);
+            }
+            y
+        };
+        if self.symmetric {
+            return side(ledges[1]);
+        }
+        let middle = self.middle();
+        let before = side(ledges[0]).into_iter().skip(1).rev().map(|u| middle - u);
+        before.chain(side(ledges[1]).into_iter().map(|u| middle + u)).collect()
+    }
+}
+
 /// Positions x of the depth profiles off the plane of symmetry, inside and outside the contact
 /// (units of C).
 const OFF_PLANE: [f64; 2] = [0.7, 1.4];
@@ -93,28 +162,38 @@ pub fn depths() -> Vec<f64> {
 /// `body_half_length` that of the body (units of C); a longer body's curves along y go on past
 /// the roller's end for up to three C. z is the depth below the body's surface at the point's x.
 pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
-    let mut y = contact_line(half_length);
-    let ledge = body_half_length - half_length;
-    if ledge > SAME * half_length {
-        let reach = ledge.min(OUTWARD);
-        let outward = SAMPLED_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
-        y.extend(outward.map(|s| half_length + s));
-        y.push(half_length + reach);
-    }
+    let ends = [-body_half_length, body_half_length];
+    curves_on(body, &Span::symmetric(half_length), ends)
+}
+
+/// The standard curves of one body with these `ends` (C), on any contact line. Curves along y of a
+/// contact that is not symmetric go over all of it, and each of [`END_CURVES`] stands at both ends.
+pub fn curves_on(body: BodyKind, span: &Span, ends: [f64; 2]) -> Vec<CurveSpec> {
+    let y = span.both_sides([span.ends[0] - ends[0], ends[1] - span.ends[1]]);
+    let (middle, centre, half_length) = (span.middle(), span.centre(), span.half_length());
     let mut x = across_contact();
     x.extend([1.75, 2.0, 2.5, 3.0]);
     let along_y = |depth: f64| y.iter().map(|&y| [0.0, y, depth]).collect::<Vec<_>>();
-    let along_z = |x: f64| {
-        [0.0, 0.9 * half_length, half_length]
-            .map(|y| depths().iter().map(|&z| [x, y, z]).collect::<Vec<_>>())
-    };
-    let across = x.iter().map(|&x| [x, 0.0, 0.0]).collect();
+    let down = |x: f64, y: f64| depths().iter().map(|&z| [x, y, z]).collect::<Vec<_>>();
+    let along_z = |x: f64| [centre, middle + 0.9 * half_length, span.ends[1]].map(|y| down(x, y));
+    let across = x.iter().map(|&x| [x, centre, 0.0]).collect();
     let points = [along_y(0.0), across]
         .into_iter()
         .chain(along_z(0.0))
         .chain([along_y(0.5), along_y(0.78)])
         .chain(OFF_PLANE.into_iter().flat_map(along_z));
-    CURVE_NAMES.iter().zip(points).map(|(&name, points)| CurveSpec { body, name, points }).collect()
+    let mut curves: Vec<CurveSpec> = CURVE_NAMES
+        .iter()
+        .zip(points)
+        .map(|(&name, points)| CurveSpec { body, name, points })
+        .collect();
+    if !span.symmetric {
+        let other = |x: f64| [middle - 0.9 * half_length, span.ends[0]].map(|y| down(x, y));
+        let points = [0.0].into_iter().chain(OFF_PLANE).flat_map(other);
+        let names = END_CURVES.iter().map(|[_, name]| *name);
+        curves.extend(names.zip(points).map(|(name, points)| CurveSpec { body, name, points }));
+    }
+    curves
 }
 
 #[cfg(test)]
@@ -142,6 +221,19 @@ mod tests {
                 assert_eq!(points.len(), of(&format!("depth-{place}")).len());
             }
         }
+        let span = Span { ends: [-3.0, 5.0], symmetric: false };
+        let curves = curves_on(BodyKind::Block, &span, [-3.0, 7.0]);
+        assert_eq!(curves.len(), CURVE_NAMES.len() + END_CURVES.len());
+        let ends = |name: &str| {
+            let points = &curves.iter().find(|c| c.name == name).unwrap().points;
+            [points[0], points[points.len() - 1]]
+        };
+        assert_eq!(ends("surface-along-y"), [[0.0, -3.0, 0.0], [0.0, 7.0, 0.0]]);
+        assert!(curves[0].points.windows(2).all(|p| p[0][1] < p[1][1]));
+        assert_eq!(ends("depth-end-x1.4-neg"), [[1.4, -3.0, 0.0], [1.4, -3.0, 5.0]]);
+        assert_eq!(ends("depth-end-x0.7"), [[0.7, 5.0, 0.0], [0.7, 5.0, 5.0]]);
+        assert!((ends("depth-0.9-neg")[0][1] + 2.6).abs() < 1e-12);
+        assert_eq!(ends("depth-centre")[0], [0.0; 3]);
         for rounded in [5.0 * (1.0 - 1e-15), 5.0 * (1.0 + 1e-15)] {
             let flush = standard_curves(BodyKind::Block, 5.0, rounded);
             assert_eq!(flush[0].points.len(), 20);

@@ -8,10 +8,10 @@
 //! additional wavenumbers.
 
 use super::load::Load;
-use super::round::RoundStress;
-use super::waves::{Influence, Waves};
+use super::round::{LocalContact, RoundStress};
+use super::waves::{Influence, PartLoads, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
-use crate::body::{Body, Layer, transition};
+use crate::body::{Body, Stack, transition};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::wave::WAVES;
 use nalgebra::{Complex, DMatrix};
@@ -80,16 +80,19 @@ const NEGLIGIBLE: f64 = 0.005;
 /// Points closer to a surface than this (C, or in body half-lengths) count as on it.
 const ON_SURFACE: f64 = 1e-9;
 
+/// Distance from the contact's end (C) within which its local half-width is not that of the loads
+/// around.
+const END_REACH: f64 = 1.0;
+
 /// Step of the difference quotient along x (C).
 const STEP: f64 = 1e-4;
 
 /// The stress field of one body.
 #[derive(Debug)]
 pub struct Field<'a> {
-    body: &'a Body,
+    stack: &'a Stack,
     pressure: &'a dyn Load,
     wavenumbers: &'a Wavenumbers,
-    layers: &'a [Layer],
     /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
     /// with the quadrature over the fine ones in their loads.
     central: Arc<Waves>,
@@ -103,12 +106,15 @@ pub struct Field<'a> {
     /// Negligible contribution of one wavenumber to a stress (p0).
     negligible: f64,
     counters: Counters,
-    /// [`Body::plate_kernel`] of the waves of `central`, for the most recent y.
+    /// Whether what a round surface adds follows the local contact.
+    follows_contact: bool,
+    /// [`Body::plate_kernel`] of the waves of `central`, for the most recent distances from the
+    /// body's middle.
     plates: Mutex<Vec<(f64, Plates)>>,
 }
 
-/// The kernels of a plate's remainder, for each wavenumber.
-type Plates = Arc<Vec<Vec<[f64; 6]>>>;
+/// The kernels of a plate's remainder, for each part of the load and each wavenumber.
+type Plates = Arc<Vec<Vec<Vec<[f64; 6]>>>>;
 
 /// Largest number of positions y whose plate kernels are kept for other points.
 const KEPT_PLATES: usize = 128;
@@ -119,37 +125,59 @@ const KEPT_PLATES: usize = 128;
 const FADED: usize = 8;
 
 impl<'a> Field<'a> {
-    /// The field of `body` whose `layers` belong to `wavenumbers`, under `pressure` with its
+    /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure` with its
     /// [`Load::moments`]. Wavenumbers that change no stress by more than about a tenth of
     /// `tolerance` (p0) are neglected.
     pub fn new(
-        body: &'a Body,
+        stack: &'a Stack,
         wavenumbers: &'a Wavenumbers,
-        layers: &'a [Layer],
         pressure: &'a dyn Load,
         moments: &DMatrix<f64>,
         gamma: Option<f64>,
         tolerance: f64,
     ) -> Self {
         let (k, shares) = (wavenumbers.coarse().nodes().to_vec(), |i: usize| (i, [1.0]));
-        let central = Arc::new(Waves::new(body, k, None, moments.clone(), layers, shares));
+        let central = Arc::new(Waves::new(stack, k, None, moments.clone(), shares));
         let negligible = NEGLIGIBLE * tolerance;
         let all = Mutex::default();
         let counters = Counters::default();
         let plates = Mutex::default();
         Self {
-            body,
+            stack,
             pressure,
             wavenumbers,
-            layers,
             central,
             all,
             gamma,
             tolerance,
             negligible,
             counters,
+            follows_contact: false,
             plates,
         }
+    }
+
+    /// The same field, where what a round surface adds follows the local contact, not that of the mean
+    /// load all along the line.
+    #[must_use]
+    pub fn following_contact(self, follows_contact: bool) -> Self {
+        Self { follows_contact, ..self }
+    }
+
+    /// The plane contact that a round surface at `y` has.
+    fn local_contact(&self, y: f64) -> LocalContact {
+        if !self.follows_contact {
+            return LocalContact::HERTZ;
+        }
+        let [from, to] = self.pressure.ends();
+        // What is added depends on the loads within C: the steep ends themselves are no measure.
+        let inset = END_REACH.min(0.5 * (to - from));
+        self.pressure.local_contact(y.clamp(from + inset, to - inset))
+    }
+
+    /// Whether the contact is symmetric about y = 0.
+    pub fn is_symmetric(&self) -> bool {
+        self.pressure.is_symmetric()
     }
 
     /// The kernel evaluations so far.
@@ -160,22 +188,25 @@ impl<'a> Field<'a> {
         Work { done, beyond_reach, ends, faded }
     }
 
-    /// The plate's kernels in the plane x = 0 at `y`, shared by all points with that y.
-    fn plates(&self, y: f64) -> Plates {
+    /// The plate's kernels in the plane x = 0 at the distance `eta` from the body's middle, shared by
+    /// all points with that distance.
+    fn plates(&self, eta: f64) -> Plates {
         let kept = |plates: &[(f64, Plates)]| {
-            plates.iter().find(|(at, _)| *at == y).map(|(_, plates)| plates.clone())
+            plates.iter().find(|(at, _)| *at == eta).map(|(_, plates)| plates.clone())
         };
         if let Some(plates) = kept(&self.plates.lock().unwrap_or_else(|e| e.into_inner())) {
             return plates;
         }
-        let kernels: Plates = Arc::new(
-            self.central.plate_waves.iter().map(|w| self.body.plate_kernel(w, y)).collect(),
-        );
+        let parts = self.stack.parts().iter().zip(&self.central.parts);
+        let kernels = parts.map(|((body, _), loads)| {
+            loads.plate_waves.iter().map(|wave| body.plate_kernel(wave, eta)).collect()
+        });
+        let kernels: Plates = Arc::new(kernels.collect());
         let mut plates = self.plates.lock().unwrap_or_else(|e| e.into_inner());
         if plates.len() >= KEPT_PLATES {
             plates.clear();
         }
-        plates.push((y, kernels.clone()));
+        plates.push((eta, kernels.clone()));
         kernels
     }
 
@@ -192,7 +223,7 @@ impl<'a> Field<'a> {
         let transforms = self.pressure.transforms(&k).transpose();
         let weights = Some(numbers.fine().weights());
         let shares = |i: usize| numbers.interpolation(i);
-        let waves = Arc::new(Waves::new(self.body, k, weights, transforms, self.layers, shares));
+        let waves = Arc::new(Waves::new(self.stack, k, weights, transforms, shares));
         known.push((level, waves.clone()));
         waves
     }
@@ -208,12 +239,13 @@ impl<'a> Field<'a> {
 
     /// [`Field::at`], with the contribution of a round surface per C / R.
     pub fn round_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<RoundStress> {
-        rounded(xs, &[z], |all| vec![self.at(y, z, all)]).swap_remove(0)
+        let contact = self.local_contact(y);
+        rounded(xs, &[z], &contact, |all| vec![self.at(y, z, all)]).swap_remove(0)
     }
 
     /// [`Field::down`], with the contribution of a round surface per C / R.
     pub fn round_down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<RoundStress>> {
-        rounded(xs, zs, |all| self.down(all, y, zs))
+        rounded(xs, zs, &self.local_contact(y), |all| self.down(all, y, zs))
     }
 
     /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in
@@ -255,60 +287,91 @@ impl<'a> Field<'a> {
         if self.gamma.is_some() {
             return 0.0;
         }
-        let ends = [self.pressure.axis().end(), self.body.half].map(|end| (end - y.abs()).abs());
+        let [from, to] = self.pressure.ends();
+        let face = self.stack.body().half - (y - self.stack.middle).abs();
         // Half-widths are near 1.
-        ends[0].min(ends[1]).min((1.0 - x.abs()).abs())
+        let places = [y - from, to - y, face, 1.0 - x.abs()];
+        places.into_iter().fold(f64::INFINITY, |near, to| near.min(to.abs()))
     }
 
     /// [`Field::along`] in the plane x = 0, with the contribution of a round surface per C / R.
     pub fn round_along(&self, z: f64, ys: &[f64]) -> Vec<RoundStress> {
         let flat = self.along(0.0, z, ys);
-        flat.into_iter().map(|s| RoundStress::new(0.0, z, s, &StressTensor::default())).collect()
+        let slope = StressTensor::default();
+        let round = |(s, y): (StressTensor, &f64)| {
+            RoundStress::new(0.0, z, s, &slope, &self.local_contact(*y))
+        };
+        flat.into_iter().zip(ys).map(round).collect()
     }
 
-    /// Stresses at the points (`x`, y, `z`) for each y >= 0 of `ys`, in their order. They equal
+    /// Stresses at the points (`x`, y, `z`) for each y of `ys`, in their order. They equal
     /// [`Field::at`], interpolated if the points are closer together than the field's length of
-    /// variation.
+    /// variation. Each side of the contact is sampled by itself.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
-        let end = self.pressure.axis().end();
-        if z > ON_SURFACE {
-            return self.along_below(x, z, ys, end);
+        let mut stresses = vec![StressTensor::default(); ys.len()];
+        let [from, to] = self.pressure.ends();
+        let middle = 0.5 * (from + to);
+        for side in [1.0, -1.0] {
+            let own = |y: f64| if side > 0.0 { y >= middle } else { y < middle };
+            let (places, own): (Vec<usize>, Vec<f64>) =
+                ys.iter().enumerate().filter(|(_, y)| own(**y)).unzip();
+            let line = Side { x, z, middle, side, end: 0.5 * (to - from) };
+            let found = match z > ON_SURFACE {
+                true => self.along_below(&line, &own),
+                false => self.along_surface(&line, &own),
+            };
+            places.into_iter().zip(found).for_each(|(i, s)| stresses[i] = s);
         }
-        // On the surface the smooth part varies over the distances from the two ends of the
-        // contact: it is even in y, and analytic in ln((end - y) (end + y)) within imaginary parts
-        // of pi.
-        let place = |y: f64| ((end - y) * (end + y)).ln();
-        let inner = ys.iter().filter(|y| **y <= end - SMOOTH_DISTANCE).map(|y| place(*y));
+        stresses
+    }
+
+    /// [`Field::along`] on the surface, on one side.
+    fn along_surface(&self, line: &Side, ys: &[f64]) -> Vec<StressTensor> {
+        // The smooth part varies over the distances from the two ends of the contact, and is analytic in
+        // ln((end - u) / (end + u)) within imaginary parts of pi; if it is even, it is so in
+        // ln((end - u) (end + u)), too, which needs the one half alone.
+        let (x, end, even) = (line.x, line.end, self.pressure.is_symmetric());
+        let place = |y: f64| {
+            let u = line.off_middle(y);
+            if even { ((end - u) * (end + u)).ln() } else { ((end - u) / (end + u)).ln() }
+        };
+        let off_middle = |t: f64| match even {
+            true => (end * end - t.exp()).max(0.0).sqrt(),
+            false => -end * (0.5 * t).tanh(),
+        };
+        let far = |y: f64| line.off_middle(y) <= end - SMOOTH_DISTANCE;
+        let inner = ys.iter().filter(|y| far(**y)).map(|y| place(*y));
         let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), PI)];
         let nodes = self.sampling(inner, poles).map(|axis| {
-            let y = |t: &f64| (end * end - t.exp()).max(0.0).sqrt();
-            let at_node = |t: &f64| self.remainders(y(t), 0.0, &[x])[0];
+            let at_node = |t: &f64| self.remainders(line.y(off_middle(*t)), 0.0, &[x])[0];
             let values: Vec<StressTensor> = axis.nodes().iter().map(at_node).collect();
             (axis, values)
         });
         ys.iter()
             .map(|&y| match &nodes {
-                Some((axis, values)) if y <= end - SMOOTH_DISTANCE => {
+                Some((axis, values)) if far(y) => {
                     self.complete(x, y, 0.0, interpolated(axis, values, place(y)))
                 }
-                _ => self.at(y, z, &[x])[0],
+                _ => self.at(y, 0.0, &[x])[0],
             })
             .collect()
     }
 
-    /// [`Field::along`] below the surface. At a depth z below a corner, of the contact at y = `end`
-    /// or of the body, the field has poles at the distances +-i z from the corner. With y = end + z
-    /// sinh t the points are dense where the field varies, and the poles of the contact's end are
-    /// at t = +-i pi/2.
-    fn along_below(&self, x: f64, z: f64, ys: &[f64], end: f64) -> Vec<StressTensor> {
-        let corner = Complex::new((self.body.half - end) / z, 1.0).asinh();
-        let place = |y: f64| ((y - end) / z).asinh();
+    /// [`Field::along`] below the surface, on one side. At a depth z below a corner, of the contact at
+    /// u = `end` from its middle or of the body, the field has poles at the distances +-i z from the
+    /// corner. With u = end + z sinh t the points are dense where the field varies, and the poles of
+    /// the contact's end are at t = +-i pi/2.
+    fn along_below(&self, line: &Side, ys: &[f64]) -> Vec<StressTensor> {
+        let (x, z, end) = (line.x, line.z, line.end);
+        let face = self.stack.body().half + line.side * (self.stack.middle - line.middle);
+        let corner = Complex::new((face - end) / z, 1.0).asinh();
+        let place = |y: f64| ((line.off_middle(y) - end) / z).asinh();
         let poles = |_| vec![(0.0, FRAC_PI_2), (corner.re, corner.im)];
         let Some(axis) = self.sampling(ys.iter().map(|y| place(*y)), poles) else {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         };
-        let nodes: Vec<StressTensor> =
-            axis.nodes().iter().map(|t| self.at(end + z * t.sinh(), z, &[x])[0]).collect();
+        let at_node = |t: &f64| self.at(line.y(end + z * t.sinh()), z, &[x])[0];
+        let nodes: Vec<StressTensor> = axis.nodes().iter().map(at_node).collect();
         ys.iter().map(|y| interpolated(&axis, &nodes, place(*y))).collect()
     }
 
@@ -341,30 +404,32 @@ impl<'a> Field<'a> {
 
     /// Whether `y` (C) lies on an end face.
     fn on_face(&self, y: f64) -> bool {
-        self.body.half - y.abs() < ON_SURFACE * self.body.half
+        let half = self.stack.body().half;
+        half - (y - self.stack.middle).abs() < ON_SURFACE * half
     }
 
     /// The stress of the endless contact with the local pressure plus `remainder`.
     fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
-        for (j, weight) in self.pressure.neighbours(y.abs()) {
+        let body = self.stack.body();
+        for (j, weight) in self.pressure.neighbours(y) {
             let [xx, zz, xz] = self.pressure.endless(j, x, z).map(|s| weight * s);
             s.xx += xx;
             s.zz += zz;
             s.xz += xz;
-            s.yy += self.body.nu * (xx + zz);
+            s.yy += body.nu * (xx + zz);
         }
         if z == 0.0 {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
         }
-        if self.on_face(y) && self.body.end.freed {
+        if self.on_face(y) && body.end.freed {
             (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
         }
-        if y < 0.0 { s.mirrored(StressTensor::ODD_IN_Y) } else { s }
+        s
     }
 
-    /// Stresses at (x, |`y`|, `z`) for each x of `xs`, less those of an endless contact of the
+    /// Stresses at (x, `y`, `z`) for each x of `xs`, less those of an endless contact of the
     /// pressure at `y`.
     fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
@@ -374,7 +439,7 @@ impl<'a> Field<'a> {
         } else {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
-        let mut target = Target::new(self, &waves, y.abs(), z);
+        let mut target = Target::new(self, &waves, y, z);
         let mut sums = vec![[0.0; 6]; xs.len()];
         let mut fading = 0;
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
@@ -399,31 +464,67 @@ impl<'a> Field<'a> {
     }
 }
 
+/// One side of a line of points along y, from the contact's middle.
+struct Side {
+    x: f64,
+    z: f64,
+    /// y of the contact's middle.
+    middle: f64,
+    /// 1 or -1: the sign of y - middle.
+    side: f64,
+    /// The contact's half-length.
+    end: f64,
+}
+
+impl Side {
+    /// Distance of `y` from the middle.
+    fn off_middle(&self, y: f64) -> f64 {
+        self.side * (y - self.middle)
+    }
+
+    /// The place at the distance `u` from the middle.
+    fn y(&self, u: f64) -> f64 {
+        self.middle + self.side * u
+    }
+}
+
 /// A point (y, z) and the influence of all loads on it.
 struct Target<'a> {
-    body: &'a Body,
     waves: &'a Waves,
-    y: f64,
+    nu: f64,
     z: f64,
+    /// The influence of each part of the loads.
+    parts: Vec<PartTarget<'a>>,
+    /// The contact's nodes that interpolate the local pressure, and their shares.
+    local: Vec<(usize, f64)>,
+    work: Work,
+}
+
+/// The influence of the even or the odd part of the loads on a point.
+struct PartTarget<'a> {
+    body: &'a Body,
+    loads: &'a PartLoads,
+    /// Distance from the body's middle.
+    eta: f64,
+    /// Whether the point lies on the other side of the middle.
+    behind: bool,
     surface: Influence,
     /// The loads on the end faces at +H and -H, if any.
     faces: Option<[Influence; 2]>,
     /// The influence of the surface's loads on the end face, and the share of its normal stress
     /// that the stress correction subtracts at the point.
     correction: Option<(Influence, f64)>,
-    /// The contact's nodes that interpolate the local pressure, and their shares.
-    local: Vec<(usize, f64)>,
     plate: Option<PlateAt>,
     /// The stresses of the most recent [`WAVES`] wavenumbers.
     stresses: BlockStress,
-    work: Work,
     /// Scratch space.
-    loads: Vec<[f32; WAVES]>,
+    scratch: Vec<[f32; WAVES]>,
 }
 
-/// The plate's remainder at a point: its kernels, if they are kept, and its phases.
+/// The plate's remainder at a point: its kernels, if they are kept with the number of the part of the
+/// load that they belong to, and its phases.
 struct PlateAt {
-    kernels: Option<Plates>,
+    kernels: Option<(Plates, usize)>,
     phases: Vec<(f64, f64)>,
 }
 
@@ -438,34 +539,81 @@ struct BlockStress {
 }
 
 impl<'a> Target<'a> {
-    /// The point (`y` >= 0, `z`) of `field` under the loads of `waves`.
+    /// The point (`y`, `z`) of `field` under the loads of `waves`.
     fn new(field: &'a Field, waves: &'a Waves, y: f64, z: f64) -> Self {
-        let body = field.body;
+        Self {
+            waves,
+            nu: field.stack.body().nu,
+            z,
+            parts: (0..waves.parts.len()).map(|i| PartTarget::new(field, waves, i, y, z)).collect(),
+            local: field.pressure.neighbours(y),
+            work: Work::default(),
+        }
+    }
+
+    /// Number of all loads.
+    fn loads(&self) -> usize {
+        self.parts.iter().map(PartTarget::loads).sum()
+    }
+
+    /// Amplitudes of the six components at wavenumber number `i`; wavenumbers must be evaluated in
+    /// order.
+    fn amplitudes(&mut self, i: usize) -> [f64; 6] {
+        let mut amplitudes = [0.0; 6];
+        for part in &mut self.parts {
+            let own = part.amplitudes(i, &mut self.work);
+            let sign = if part.behind { part.body.parity.sign() } else { 1.0 };
+            for (component, (sum, own)) in amplitudes.iter_mut().zip(own).enumerate() {
+                let turned = part.behind && StressTensor::ODD_IN_Y[component];
+                *sum += if turned { -sign * own } else { sign * own };
+            }
+        }
+        self.take_endless_contact(i, &mut amplitudes);
+        amplitudes
+    }
+
+    /// Subtracts the effect of an endless contact with the local pressure.
+    fn take_endless_contact(&self, i: usize, amplitudes: &mut [f64; 6]) {
+        let (k, z) = (self.waves.k[i], self.z);
+        let p: f64 = self.local.iter().map(|(j, w)| w * self.waves.contact[(i, *j)]).sum();
+        let e = (-k * z).exp() * p;
+        amplitudes[0] += (1.0 - k * z) * e;
+        amplitudes[1] += 2.0 * self.nu * e;
+        amplitudes[2] += (1.0 + k * z) * e;
+        amplitudes[4] += k * z * e;
+    }
+}
+
+impl<'a> PartTarget<'a> {
+    /// The point (`y`, `z`) of `field` under part number `part` of the loads of `waves`.
+    fn new(field: &'a Field, waves: &'a Waves, part: usize, y: f64, z: f64) -> Self {
+        let (body, loads) = (&field.stack.parts()[part].0, &waves.parts[part]);
+        let y = y - field.stack.middle;
+        let eta = y.abs();
         let faces = body.end.freed.then(|| {
-            let depths = [if field.on_face(y) { 0.0 } else { body.half - y }, body.half + y];
-            Influence::of_faces(body, waves, y, z, depths)
+            let near = if body.half - eta < ON_SURFACE * body.half { 0.0 } else { body.half - eta };
+            Influence::of_faces(body, waves, eta, z, [near, body.half + eta])
         });
         let correction = field.gamma.map(|gamma| {
-            let shares = [body.half - y, body.half + y].map(|s| transition(s, z, gamma));
-            (Influence::of_surface(body, waves, body.half, z), shares[0] + shares[1])
+            let [near, far] = [body.half - eta, body.half + eta].map(|s| transition(s, z, gamma));
+            let share = near + body.parity.sign() * far;
+            (Influence::of_surface(body, waves, body.half, z), share)
         });
         let plate = body.end.freed.then(|| PlateAt {
-            kernels: waves.central.then(|| field.plates(y)),
+            kernels: waves.central.then(|| (field.plates(eta), part)),
             phases: body.plate_phases(z),
         });
         Self {
             body,
-            waves,
-            y,
-            z,
-            surface: Influence::of_surface(body, waves, y, z),
+            loads,
+            eta,
+            behind: y < 0.0,
+            surface: Influence::of_surface(body, waves, eta, z),
             faces,
             correction,
-            local: field.pressure.neighbours(y),
             plate,
             stresses: BlockStress::default(),
-            work: Work::default(),
-            loads: Vec::new(),
+            scratch: Vec::new(),
         }
     }
 
@@ -482,19 +630,20 @@ impl<'a> Target<'a> {
 
     /// Sums the loads of the [`WAVES`] wavenumbers from number `first` on.
     fn sum_block(&mut self, first: usize) {
-        let (body, block, loads) = (self.body, &self.waves.blocks[first / WAVES], &mut self.loads);
-        self.stresses.surface = self.surface.stresses(body, block, loads);
+        let (body, scratch) = (self.body, &mut self.scratch);
+        let block = &self.loads.blocks[first / WAVES];
+        self.stresses.surface = self.surface.stresses(body, block, scratch);
         if let Some((end, _)) = &self.correction {
-            self.stresses.end = end.stresses(body, block, loads);
+            self.stresses.end = end.stresses(body, block, scratch);
         }
-        if let Some(faces) = self.faces.as_ref().filter(|_| first < self.waves.ends) {
-            self.stresses.faces = faces.each_ref().map(|f| f.stresses(body, block, loads));
+        if let Some(faces) = self.faces.as_ref().filter(|_| first < self.loads.ends) {
+            self.stresses.faces = faces.each_ref().map(|f| f.stresses(body, block, scratch));
         }
     }
 
-    /// Amplitudes of the six components at wavenumber number `i`; wavenumbers must be evaluated in
-    /// order.
-    fn amplitudes(&mut self, i: usize) -> [f64; 6] {
+    /// Amplitudes of the six components at wavenumber number `i`, on the side y > 0 of the body's
+    /// middle.
+    fn amplitudes(&mut self, i: usize, work: &mut Work) -> [f64; 6] {
         let wave = i % WAVES;
         if wave == 0 {
             self.sum_block(i);
@@ -506,15 +655,14 @@ impl<'a> Target<'a> {
             amplitudes[1] -= on_end.ww * share;
             done += count;
         }
-        let loaded_ends = self.body.end.freed && i < self.waves.ends;
+        let loaded_ends = self.body.end.freed && i < self.loads.ends;
         if loaded_ends {
             done += self.add_faces(i, &mut amplitudes);
         }
         let ends = if loaded_ends { 0 } else { self.on_faces() };
-        self.work.done += done as u64;
-        self.work.ends += ends as u64;
-        self.work.beyond_reach += (self.loads() - ends - done) as u64;
-        self.take_endless_contact(i, &mut amplitudes);
+        work.done += done as u64;
+        work.ends += ends as u64;
+        work.beyond_reach += (self.loads() - ends - done) as u64;
         amplitudes
     }
 
@@ -529,28 +677,17 @@ impl<'a> Target<'a> {
             done += count;
         }
         if let Some(PlateAt { kernels, phases }) = &self.plate {
-            let transform = &self.waves.plate[i];
+            let transform = &self.loads.plate[i];
             let plate = match kernels {
-                Some(kernels) => Body::plate_stress(&kernels[i], transform, phases),
+                Some((kernels, part)) => Body::plate_stress(&kernels[*part][i], transform, phases),
                 None => {
-                    let kernel = self.body.plate_kernel(&self.waves.plate_waves[i], self.y);
+                    let kernel = self.body.plate_kernel(&self.loads.plate_waves[i], self.eta);
                     Body::plate_stress(&kernel, transform, phases)
                 }
             };
             amplitudes.iter_mut().zip(plate).for_each(|(a, p)| *a += p);
         }
         done
-    }
-
-    /// Subtracts the effect of an endless contact with the local pressure.
-    fn take_endless_contact(&self, i: usize, amplitudes: &mut [f64; 6]) {
-        let (k, z) = (self.waves.k[i], self.z);
-        let p: f64 = self.local.iter().map(|(j, w)| w * self.waves.contact[(i, *j)]).sum();
-        let e = (-k * z).exp() * p;
-        amplitudes[0] += (1.0 - k * z) * e;
-        amplitudes[1] += 2.0 * self.body.nu * e;
-        amplitudes[2] += (1.0 + k * z) * e;
-        amplitudes[4] += k * z * e;
     }
 }
 
@@ -560,11 +697,12 @@ fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTen
 }
 
 /// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
-/// gives those of the flat body at each of `zs` for a list of x. The slopes along x are difference
+/// gives those of the flat body at each of `zs` for a list of x, under the plane `contact`. The slopes along x are difference
 /// quotients, whose points share all sums.
 fn rounded(
     xs: &[f64],
     zs: &[f64],
+    contact: &LocalContact,
     flat: impl Fn(&[f64]) -> Vec<Vec<StressTensor>>,
 ) -> Vec<Vec<RoundStress>> {
     // Points at x = 0 and on the surface are not shifted along x.
@@ -585,7 +723,7 @@ fn rounded(
             } else {
                 StressTensor::default()
             };
-            RoundStress::new(x, z, own, &slope)
+            RoundStress::new(x, z, own, &slope, contact)
         };
         xs.iter().map(at).collect()
     })

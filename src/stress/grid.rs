@@ -1,6 +1,7 @@
 //! Stresses on a rectangular grid of points, for example for volume plots.
 
-use super::field::Field;
+use super::body_field::BodyField;
+use super::round::RoundStress;
 use crate::base::StressTensor;
 use rayon::prelude::*;
 
@@ -70,7 +71,7 @@ impl GridStress {
     }
 }
 
-/// Coordinates grouped by magnitude.
+/// Coordinates grouped by what is computed once for them: their magnitude where the field is even.
 struct Mirrored {
     /// The distinct magnitudes, in the order of their first appearance.
     distinct: Vec<f64>,
@@ -81,40 +82,45 @@ struct Mirrored {
 }
 
 impl Mirrored {
-    fn new(coordinates: &[f64]) -> Self {
+    /// Groups the coordinates; those of what is not `even` are each their own.
+    fn new(coordinates: &[f64], even: bool) -> Self {
         let mut indices = std::collections::HashMap::new();
         let (mut distinct, mut first) = (Vec::new(), Vec::new());
         let of = coordinates
             .iter()
             .enumerate()
             .map(|(i, &v)| {
-                let magnitude = v.abs();
+                let magnitude = if even { v.abs() } else { v };
                 let index = *indices.entry(magnitude.to_bits()).or_insert_with(|| {
                     distinct.push(magnitude);
                     first.push(i);
                     distinct.len() - 1
                 });
-                (index, v < 0.0)
+                (index, even && v < 0.0)
             })
             .collect();
         Self { distinct, of, first }
     }
 }
 
-/// Stresses of `field` on `grid`, in units of p0, of a body with C / R = `curvature` (none for a
-/// flat body), computed on all threads of the current pool.
+/// Stresses of `field` on `grid`, in units of p0, computed on all threads of the current pool.
 ///
-/// A line of points along x costs little more than one of its points, because [`Field::at`] shares
-/// the kernels over x; lines are computed in parallel. The contact is even in x and in y, so points
-/// that are exact mirror images of other points of the grid are copied. The memory is that of the
+/// A line of points along x costs little more than one of its points, because [`BodyField::at`] shares
+/// the kernels over x; lines are computed in parallel. The contact is even in x, and may be so in y: points
+/// that are exact mirror images of other points of the grid are copied. `shaped` says what becomes of the stress of a
+/// round body; none for a flat one. The memory is that of the
 /// result, 48 bytes per point, and one line for each thread.
-pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress {
+pub fn on_grid(
+    field: &BodyField,
+    grid: &Grid,
+    shaped: Option<&(dyn Fn(&RoundStress) -> StressTensor + Sync)>,
+) -> GridStress {
     let (points, nx) = (grid.len(), grid.x.len());
     let mut values = vec![0.0; 6 * points];
     if points == 0 {
         return GridStress { points, values };
     }
-    let (x, y) = (Mirrored::new(&grid.x), Mirrored::new(&grid.y));
+    let (x, y) = (Mirrored::new(&grid.x, true), Mirrored::new(&grid.y, field.is_symmetric()));
     let ny = grid.y.len();
     let mut parts = values.chunks_exact_mut(points);
     let [xx, yy, zz, xy, xz, yz] = std::array::from_fn(|_| {
@@ -128,12 +134,9 @@ pub fn on_grid(field: &Field, grid: &Grid, curvature: Option<f64>) -> GridStress
                 return;
             }
             let (y, z) = (y.distinct[magnitude], grid.z[iz]);
-            let stresses = match curvature {
+            let stresses = match shaped {
                 None => field.at(y, z, &x.distinct),
-                Some(curvature) => {
-                    let round = field.round_at(y, z, &x.distinct);
-                    round.iter().map(|s| s.at(curvature)).collect()
-                }
+                Some(shaped) => field.round_at(y, z, &x.distinct).iter().map(shaped).collect(),
             };
             let mirrored = |s: StressTensor, negative: bool, odd| match negative {
                 true => s.mirrored(odd),

@@ -1,13 +1,30 @@
 //! What a stress field needs to know of the pressure on its body.
 
+use super::round::LocalContact;
 use crate::base::{Panels, Wavenumbers};
 use nalgebra::DMatrix;
 use std::fmt::Debug;
 
-/// A pressure (p0) that is even in x and y, with a profile across the contact at each node of an axis along it.
+/// A pressure (p0) that is even in x, with a profile across the contact at each node of an axis along it.
 pub trait Load: Debug + Sync {
-    /// Axis along the contact, from its middle to its end.
+    /// Axis along the contact: all of it, or the half from its middle to its end.
     fn axis(&self) -> &Panels;
+
+    /// Whether the pressure is even in y, and the axis holds its half at y >= 0.
+    fn is_symmetric(&self) -> bool {
+        true
+    }
+
+    /// The contact's ends along y.
+    fn ends(&self) -> [f64; 2] {
+        let [from, to] = [self.axis().breaks()[0], self.axis().end()];
+        if self.is_symmetric() { [-to, to] } else { [from, to] }
+    }
+
+    /// The plane contact with the load at `y`; that of the mean load if it is much the same everywhere.
+    fn local_contact(&self, _y: f64) -> LocalContact {
+        LocalContact::HERTZ
+    }
 
     /// The pressure at (`x`, `y`).
     fn at(&self, x: f64, y: f64) -> f64;
@@ -27,10 +44,13 @@ pub trait Load: Debug + Sync {
         DMatrix::from_row_slice(wavenumbers.coarse().len(), n, &moments)
     }
 
-    /// The nodes whose values interpolate to `y` >= 0, with their weights; none outside the contact.
+    /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
     fn neighbours(&self, y: f64) -> Vec<(usize, f64)> {
-        let axis = self.axis();
-        let inside = y <= axis.end() * (1.0 + 1e-12);
-        if inside { axis.interpolation(y).collect() } else { Vec::new() }
+        let [from, to] = self.ends();
+        let rounding = 0.5e-12 * (to - from);
+        if !(from - rounding..=to + rounding).contains(&y) {
+            return Vec::new();
+        }
+        self.axis().interpolation(if self.is_symmetric() { y.abs() } else { y }).collect()
     }
 }

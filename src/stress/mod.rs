@@ -1,6 +1,7 @@
 //! Stresses at points, on standard curves and at critical points, and the form of results on them.
 
 mod answer;
+mod body_field;
 mod critical;
 pub mod curves;
 pub mod field;
@@ -13,11 +14,12 @@ mod waves;
 
 pub use crate::base::BodyKind;
 pub use answer::{Curves, PressureLine, StressCurve};
-pub use critical::{Critical, EDGE, away_from_edge};
-pub use curves::CurveSpec;
+pub use body_field::BodyField;
+pub use critical::{Critical, EDGE, away_from_edge, away_from_edges};
+pub use curves::{CurveSpec, Span};
 pub use field::{Field, Work};
 pub use grid::{Grid, GridStress};
 pub use load::Load;
-pub use pressure::Pressure;
+pub use pressure::{LineLoad, Pressure};
 pub use quantity::Quantity;
 pub use round::RoundStress;

@@ -1,25 +1,60 @@
 //! The contact pressure as a function of position.
 
 use super::load::Load;
+use super::round::LocalContact;
 use crate::base::Panels;
 use crate::kernels::strip;
 use nalgebra::DMatrix;
+use std::f64::consts::FRAC_PI_2;
 
 /// The contact pressure as a function of position.
 #[derive(Debug, Clone)]
 pub struct Pressure {
     axis: Panels,
+    /// Whether the axis holds one half of a contact that is symmetric in y.
+    symmetric: bool,
     half_widths: Vec<f64>,
     coefficients: Vec<Vec<f64>>,
 }
 
+/// The load per length at a place.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LineLoad {
+    /// The place (C).
+    pub y: f64,
+    /// Length that it stands for in the sum of the load (C).
+    pub weight: f64,
+    /// The load per length (C p0).
+    pub load: f64,
+    /// Half-width of the contact (C); zero without contact.
+    pub half_width: f64,
+}
+
 impl Pressure {
     /// The pressure from the half-widths and the coefficients of the modes at the nodes of `axis`;
-    /// missing modes of a node are zero.
-    pub fn new(axis: Panels, half_widths: Vec<f64>, mut coefficients: Vec<Vec<f64>>) -> Self {
+    /// missing modes of a node are zero. The axis of a `symmetric` pressure holds its half at y >= 0.
+    pub fn new(
+        axis: Panels,
+        symmetric: bool,
+        half_widths: Vec<f64>,
+        mut coefficients: Vec<Vec<f64>>,
+    ) -> Self {
         let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
-        Self { axis, half_widths, coefficients }
+        Self { axis, symmetric, half_widths, coefficients }
+    }
+
+    /// The same pressure in units of length and of pressure that are 1 / `factor` of the present ones.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let breaks = self.axis.breaks().iter().map(|y| factor * y).collect();
+        let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();
+        Self {
+            axis: Panels::new(breaks, self.axis.order()),
+            symmetric: self.symmetric,
+            half_widths: scale(&self.half_widths),
+            coefficients: self.coefficients.iter().map(scale).collect(),
+        }
     }
 
     /// Axis along the contact.
@@ -34,7 +69,7 @@ impl Pressure {
 
     /// Half-width and modes at `y`; none outside the contact.
     pub fn modes(&self, y: f64) -> Option<(f64, Vec<f64>)> {
-        let neighbours = self.neighbours(y.abs());
+        let neighbours = self.neighbours(y);
         if neighbours.is_empty() {
             return None;
         }
@@ -53,6 +88,17 @@ impl Pressure {
     pub fn at(&self, x: f64, y: f64) -> f64 {
         self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
     }
+
+    /// The load per length at every node.
+    pub fn line_loads(&self) -> Vec<LineLoad> {
+        let nodes = self.axis.nodes().iter().zip(self.axis.weights()).enumerate();
+        let at = |(j, (&y, &weight))| {
+            let (half_width, modes) = self.at_node(j);
+            let load = strip::cumulative(half_width, modes, half_width);
+            LineLoad { y, weight, load, half_width: if load > 0.0 { half_width } else { 0.0 } }
+        };
+        nodes.map(at).collect()
+    }
 }
 
 impl Load for Pressure {
@@ -62,6 +108,20 @@ impl Load for Pressure {
 
     fn at(&self, x: f64, y: f64) -> f64 {
         self.at(x, y)
+    }
+
+    fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    fn local_contact(&self, y: f64) -> LocalContact {
+        match self.modes(y) {
+            Some((half_width, modes)) if half_width > 0.0 => {
+                let load = strip::cumulative(half_width, &modes, half_width);
+                LocalContact { half_width, peak: load / (FRAC_PI_2 * half_width) }
+            }
+            _ => LocalContact { half_width: 0.0, peak: 0.0 },
+        }
     }
 
     fn transforms(&self, k: &[f64]) -> DMatrix<f64> {

@@ -14,10 +14,11 @@
 //! - xz: -(p ds / (pi R)) 4 u^3 z^3 / r^6,
 //!
 //! from the load's tilt u / R and from the drop u^2 / (2 R) of the surface. The uniform tension
-//! thus vanishes on the surface itself, and some C below it alone remains. These terms are the same
-//! all along the line, under the Hertz pressure: near an end they depend on the loads within about
-//! C of a point, where the variation of p is an effect of second order. No stress along y belongs
-//! to them; under plane strain this neglects some 0.1 C / R.
+//! thus vanishes on the surface itself, and some C below it alone remains. These terms are those of a
+//! plane contact. Along a straight, parallel line it is everywhere that of Hertz: near an end they
+//! depend on the loads within about C of a point, where the variation of p is an effect of second
+//! order. With a profile or a tilt it is the local one, [`LocalContact`]. No stress along y belongs to
+//! them; under plane strain this neglects some 0.1 C / R.
 //!
 //! The frame of the surface above the point is rotated by x / R, and a point at the vertical depth
 //! z lies x z / R farther out along the surface than x. Rotation and shift apply to the whole flat
@@ -49,6 +50,29 @@ static RULE: LazyLock<Rule> = LazyLock::new(|| {
 /// load, per C / R (p0).
 pub const DIAMETRAL_TENSION: f64 = 0.5;
 
+/// The plane contact near a place of the line.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LocalContact {
+    /// Its half-width (C).
+    pub half_width: f64,
+    /// Its largest pressure, of a semi-elliptic one with the same load (p0).
+    pub peak: f64,
+}
+
+impl LocalContact {
+    /// The Hertz contact of the mean load.
+    pub const HERTZ: LocalContact = LocalContact { half_width: 1.0, peak: 1.0 };
+
+    /// Contributions of the loads' tilt and of the surface's drop to xx, zz and xz at (`x`, `z`) (C).
+    fn tilted(&self, x: f64, z: f64) -> [f64; 3] {
+        let Self { half_width, peak } = *self;
+        if half_width <= 0.0 {
+            return [0.0; 3];
+        }
+        tilted(&RULE, x / half_width, z / half_width).map(|sum| half_width * peak * sum / PI)
+    }
+}
+
 /// A stress of a body whose surface may be round, in units of p0.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct RoundStress {
@@ -60,9 +84,15 @@ pub struct RoundStress {
 
 impl RoundStress {
     /// The stress at x and the depth `z` below the surface (C), where the flat body has the stress
-    /// `flat` with the derivative `slope` along x, per C.
-    pub fn new(x: f64, z: f64, flat: StressTensor, slope: &StressTensor) -> Self {
-        let [xx, zz, xz] = tilted(&RULE, x, z).map(|sum| sum / PI);
+    /// `flat` with the derivative `slope` along x, per C, under the pressure of `contact`.
+    pub fn new(
+        x: f64,
+        z: f64,
+        flat: StressTensor,
+        slope: &StressTensor,
+        contact: &LocalContact,
+    ) -> Self {
+        let [xx, zz, xz] = contact.tilted(x, z);
         let turned = StressTensor {
             xx: -2.0 * flat.xz,
             yy: 0.0,
@@ -85,6 +115,13 @@ impl RoundStress {
     /// The stress (p0) for C / R = `curvature`, positive for a convex body.
     pub fn at(&self, curvature: f64) -> StressTensor {
         self.flat + self.round * curvature
+    }
+
+    /// [`RoundStress::at`] without the diametral tension, which only a disc has that is squeezed between
+    /// two loads.
+    pub fn on_one_side(&self, curvature: f64) -> StressTensor {
+        let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
+        self.flat + (self.round - tension) * curvature
     }
 }
 
@@ -152,7 +189,8 @@ mod tests {
             for x in [0.0, 0.3, 0.7, 1.5, 2.5] {
                 for z in [0.2, 0.5, 1.0, 2.0, 4.0] {
                     let slope = (plane(x + 1e-4, z) - plane(x - 1e-4, z)) * 5e3;
-                    let got = RoundStress::new(x, z, plane(x, z), &slope).at(1.0 / radius);
+                    let got = RoundStress::new(x, z, plane(x, z), &slope, &LocalContact::HERTZ)
+                        .at(1.0 / radius);
                     for (g, e) in [got.xx, got.zz, got.xz].iter().zip(disc(radius, x, z)) {
                         worst = worst.max((g - e).abs());
                     }

@@ -2,7 +2,7 @@
 
 use crate::base::Panels;
 use crate::body::stencil::Stencil;
-use crate::body::{Body, Layer};
+use crate::body::{Body, Layer, Stack};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
 use crate::kernels::wave::{Places, SurfaceSpread, WAVES, add_surface_spread};
@@ -17,17 +17,24 @@ pub(super) struct Waves {
     pub k: Vec<f64>,
     /// Factors of their stresses: the quadrature's weights, unless the loads include them, over pi.
     pub weights: Vec<f64>,
+    /// Contact pressure at the contact's nodes, a row for each wavenumber.
+    pub contact: DMatrix<f64>,
+    /// Whether they are valid for the plane x = 0 only, where shears that are odd in x vanish.
+    pub central: bool,
+    /// The loads of each part of the pressure, in the order of [`Stack::parts`].
+    pub parts: Vec<PartLoads>,
+}
+
+/// The loads of one part of the pressure, even or odd about the body's middle.
+#[derive(Debug, Clone)]
+pub(super) struct PartLoads {
     /// Number of leading wavenumbers for which the end faces carry loads.
     pub ends: usize,
     /// The loads in blocks of [`WAVES`] wavenumbers.
     pub blocks: Vec<LoadBlock>,
-    /// Contact pressure at the contact's nodes, a row for each wavenumber.
-    pub contact: DMatrix<f64>,
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
-    /// Whether they are valid for the plane x = 0 only, where shears that are odd in x vanish.
-    pub central: bool,
 }
 
 /// The loads of some wavenumbers, in single precision, as the kernels' tables are.
@@ -73,19 +80,44 @@ fn block(first: usize, all: &[f64]) -> [f64; WAVES] {
 
 impl Waves {
     /// The loads at the wavenumbers `k` for the transforms `contact` of the contact pressure.
-    /// `shares` gives for each of them the first of the `layers` in its interpolation, and the
+    /// `shares` gives for each of them the first of the layers in its interpolation, and the
     /// shares. Without `weights` the quadrature is in `contact`, and the loads are valid for the
     /// plane x = 0.
     pub fn new<S: AsRef<[f64]>>(
-        body: &Body,
+        stack: &Stack,
         k: Vec<f64>,
         weights: Option<&[f64]>,
         contact: DMatrix<f64>,
-        layers: &[Layer],
         shares: impl Fn(usize) -> (usize, S),
     ) -> Self {
         let shares: Vec<_> = (0..k.len()).map(shares).collect();
-        let (surface, face) = nodal_loads(body, &contact, layers, &shares);
+        let parts = stack.parts().iter().map(|(body, layers)| {
+            let own = stack.fold.part(body.parity, &contact);
+            PartLoads::new(body, &k, &own, layers, &shares)
+        });
+        Self {
+            weights: match weights {
+                Some(weights) => weights.iter().map(|w| w / PI).collect(),
+                None => vec![1.0 / PI; k.len()],
+            },
+            central: weights.is_none(),
+            parts: parts.collect(),
+            k,
+            contact,
+        }
+    }
+}
+
+impl PartLoads {
+    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`].
+    fn new<S: AsRef<[f64]>>(
+        body: &Body,
+        k: &[f64],
+        contact: &DMatrix<f64>,
+        layers: &[Layer],
+        shares: &[(usize, S)],
+    ) -> Self {
+        let (surface, face) = nodal_loads(body, contact, layers, shares);
         // The layers with loads on their end faces come first, and so do the wavenumbers between
         // them.
         let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
@@ -99,24 +131,11 @@ impl Waves {
         let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
         let means = total / body.half;
         let blocks = (0..k.len()).step_by(WAVES).map(|first| LoadBlock {
-            surface: Loads::new(first, &k, &surface, &charges[0]),
+            surface: Loads::new(first, k, &surface, &charges[0]),
             face: Loads::new(first, &k[..ends], &face, &charges[1]),
             mean: block(first, means.as_slice()).map(|mean| mean as f32),
         });
-        let blocks = blocks.collect();
-        Self {
-            weights: match weights {
-                Some(weights) => weights.iter().map(|w| w / PI).collect(),
-                None => vec![1.0 / PI; k.len()],
-            },
-            central: weights.is_none(),
-            blocks,
-            k,
-            ends,
-            contact,
-            plate,
-            plate_waves,
-        }
+        Self { ends, blocks: blocks.collect(), plate, plate_waves }
     }
 }
 
@@ -145,7 +164,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
         };
         match &layer.surface {
             Some(matrix) => add(&mut surface, matrix),
-            None => surface.view_range_mut(..p.nrows(), waves.clone()).add_assign(&p),
+            None => surface.view_range_mut(body.contact(), waves.clone()).add_assign(&p),
         }
         if let Some(matrix) = &layer.face {
             add(&mut face, matrix);
@@ -301,7 +320,6 @@ fn upon(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Parity;
     use crate::body::{EdgeModel, Resolution, Shape};
 
     #[test]
@@ -315,23 +333,26 @@ mod tests {
 
     fn compare(ledge: f64, everywhere: bool) {
         let resolution = Resolution::for_tolerance(1e-2);
-        let body = Body::new(
-            Shape { contact: 5.0, half: 5.0 + ledge, nu: 0.3 },
+        let shape = Shape { half: 5.0 + ledge, nu: 0.3 };
+        let numbers = resolution.wavenumbers(shape.half).resolving(1.0);
+        let line = resolution.contact_axis(5.0);
+        let stack = Stack::new(
+            &line,
+            true,
+            (0.0, shape),
             EdgeModel::QuarterSpace.end(0.3, None),
-            Parity::Even,
-            &resolution,
+            (&resolution, numbers.coarse().nodes()),
         );
-        let numbers = resolution.wavenumbers(body.half).resolving(1.0);
-        let layers: Vec<Layer> = numbers.coarse().nodes().iter().map(|k| body.layer(*k)).collect();
+        let (body, layers) = &stack.parts()[0];
         let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.fine().weights());
-        let loads =
-            DMatrix::from_fn(k.len(), body.contact_len(), |i, j| 1.0 + ((3 * i + j) % 5) as f64);
-        let all = Waves::new(&body, k.clone(), Some(weights), loads.clone(), &layers, |i| {
+        let loads = DMatrix::from_fn(k.len(), line.len(), |i, j| 1.0 + ((3 * i + j) % 5) as f64);
+        let all = Waves::new(&stack, k.clone(), Some(weights), loads.clone(), |i| {
             numbers.interpolation(i)
         });
-        assert!(all.ends > 0);
-        assert_eq!(all.ends == k.len(), everywhere);
-        for i in all.ends..k.len() {
+        let ends = all.parts[0].ends;
+        assert!(ends > 0);
+        assert_eq!(ends == k.len(), everywhere);
+        for i in ends..k.len() {
             let (first, shares) = numbers.interpolation(i);
             assert!(layers[first..first + shares.len()].iter().all(|layer| layer.face.is_none()));
         }
@@ -339,23 +360,24 @@ mod tests {
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
             let influences = |waves: &Waves| {
-                let faces = Influence::of_faces(&body, waves, y, z, [body.half - y, body.half + y]);
-                [vec![Influence::of_surface(&body, waves, y, z)], faces.into()].concat()
+                let faces = Influence::of_faces(body, waves, y, z, [body.half - y, body.half + y]);
+                [vec![Influence::of_surface(body, waves, y, z)], faces.into()].concat()
             };
             let own = influences(&all);
             for (i, &k) in k.iter().enumerate() {
                 let one = Waves::new(
-                    &body,
+                    &stack,
                     vec![k],
                     Some(&weights[i..=i]),
                     loads.rows(i, 1).into_owned(),
-                    &layers,
                     |_| numbers.interpolation(i),
                 );
                 for (influence, alone) in own.iter().zip(influences(&one)) {
-                    let together = influence.stresses(&body, &all.blocks[i / WAVES], &mut scratch);
+                    let together =
+                        influence.stresses(body, &all.parts[0].blocks[i / WAVES], &mut scratch);
                     let (got, count) = together[i % WAVES];
-                    let (want, alone) = alone.stresses(&body, &one.blocks[0], &mut scratch)[0];
+                    let (want, alone) =
+                        alone.stresses(body, &one.parts[0].blocks[0], &mut scratch)[0];
                     let values = |s: WaveStress| [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
                     for (got, want) in values(got).into_iter().zip(values(want)) {
                         assert!((got - want).abs() < 1e-5 * (1.0 + want.abs()), "{i} at {y}, {z}");

@@ -2,7 +2,7 @@
 //! There a body's material is a table of its own; in case files and records it is not.
 
 use crate::base::Material;
-use crate::case::{Accuracy, Block, Case, Cells, Load, Roller};
+use crate::case::{Accuracy, Block, Case, Cells, Load, Pose, ProfileSpec, Roller};
 use serde::{Deserialize, Serialize};
 
 /// A case in `bench.json`.
@@ -17,6 +17,8 @@ pub(super) struct CaseForm {
     #[serde(flatten)]
     load: Load,
     #[serde(flatten)]
+    pose: Pose,
+    #[serde(flatten)]
     accuracy: Accuracy,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     cells: Option<Cells>,
@@ -29,6 +31,8 @@ pub struct RollerForm {
     radius_m: f64,
     length_m: f64,
     material: Material,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    profile: Option<ProfileSpec>,
 }
 
 /// A block, with its material as a table.
@@ -37,4 +41,8 @@ pub struct RollerForm {
 pub struct BlockForm {
     length_m: f64,
     material: Material,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    radius_m: Option<f64>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    profile: Option<ProfileSpec>,
 }

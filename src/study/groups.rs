@@ -28,19 +28,24 @@ mod tests {
 
     #[test]
     fn a_solution_serves_cases_that_differ_in_scale_or_by_rounding() {
-        let case = builtin_case("half-short").unwrap().unwrap();
+        let mut case = builtin_case("half-short").unwrap().unwrap();
+        case.block.radius_m = Some(-0.05);
         let key =
             |draft: &Draft| Scene::new(&draft.case().unwrap(), EdgeModel::QuarterSpace, None).key();
         let own = Draft::of(&case, Form::Factors);
-        for number in KEYS.iter().filter(|number| number.is_of(Form::Factors)) {
-            let Some(value) = number.get(&own) else { continue };
+        for number in KEYS.iter().filter(|number| number.fits(&own)) {
             let changed = |factor: f64| {
                 let mut draft = own.clone().named("other");
-                number.set(&mut draft, factor * value);
+                match number.get(&draft) {
+                    Some(0.0) | None => number.set(&mut draft, (factor - 1.0) * 1e-3),
+                    Some(value) => number.set(&mut draft, factor * value),
+                }
                 key(&draft)
             };
-            let is_scale = ["roller.radius_m", "dimensionless.W"].contains(&number.path);
-            assert_eq!(changed(1.01) == key(&own), is_scale, "{}", number.path);
+            let others =
+                ["roller.radius_m", "block.radius_m", "dimensionless.W", "cells.half_width_m"];
+            let shared = others.contains(&number.path);
+            assert_eq!(changed(1.01) == key(&own), shared, "{}", number.path);
             assert_eq!(changed(1.0 + 1e-15), key(&own), "{}", number.path);
         }
         let scene = |model, psi| Scene::new(&case, model, psi).key();

@@ -213,7 +213,7 @@ mod tests {
 
     #[test]
     fn similar_rows_are_one_problem_and_bad_ones_stand_alone() {
-        let sweep = sweep("[dimensionless]\nW = [1e-4, 1e-3]\nS_l = [5, 6]\nL_r = [1.0, 2.0]\n");
+        let sweep = sweep("[dimensionless]\nW = [1e-4, 1e-3]\nS_l = [5, 6]\nL_r = [1.0, 2e3]\n");
         let rows: Vec<Vec<usize>> =
             groups(&sweep, &SETTINGS, None).into_iter().map(|g| g.rows).collect();
         assert_eq!(rows, [vec![0, 4], vec![1], vec![2, 6], vec![3], vec![5], vec![7]]);

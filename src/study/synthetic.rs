@@ -80,6 +80,7 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
         summary: summary(case, method, p_centre, (p_centre.max(p_end), p_max_y)),
         curves: Curves { hertz: case.hertz(), pressure: lines, stress: stress_curves },
         cells: vec![PressureCell { x: 0.0, y: 0.0, dx: 2.0, dy: 2.0 * half, p: PI / 4.0 }],
+        line_loads: Vec::new(),
         points: Vec::new(),
     }
 }
@@ -95,9 +96,12 @@ fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> 
         hertz,
         load_n: case.load.force_n,
         approach_m: 0.7 * c_m * c_m / case.roller.radius_m,
+        tilt_rad: 0.0,
         p_centre_pa: p_centre * p0_pa,
         p_max_pa: p_max.0 * p0_pa,
         p_max_at_m: [0.0, p_max.1 * c_m],
+        centre_of_pressure_m: [0.0; 2],
+        contact_y_m: [-0.5, 0.5].map(|s| s * case.shorter_m()),
         converged: true,
         iterations: 12,
         load_error_rel: 1e-12,
@@ -109,6 +113,7 @@ fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> 
             wavenumbers: [20, 100],
             contact_nodes: 30,
             edge: None,
+            edge_neg: None,
             edge_residual: 1e-6,
             condition: 10.0,
             bodies_shared: false,

@@ -5,19 +5,14 @@ use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Scene, SceneBody, SolvedScene};
 use edgeline::stress::curves::standard_curves;
-use edgeline::stress::{BodyKind, Field, away_from_edge};
+use edgeline::stress::{BodyField, BodyKind, away_from_edge};
 use std::path::Path;
 
 /// A contact of equal materials: slenderness, length ratio, Poisson's ratio.
 pub fn scene(slenderness: f64, length_ratio: f64, nu: f64, model: EdgeModel) -> Scene {
-    let body = |half| SceneBody { half, nu, share: 0.5 };
-    Scene {
-        half_length: slenderness,
-        bodies: PerBody { block: body(slenderness / length_ratio), roller: body(slenderness) },
-        model,
-        psi: None,
-        tolerance: 1e-3,
-    }
+    let body = |half| SceneBody::straight(half, nu, 0.5);
+    let bodies = PerBody { block: body(slenderness / length_ratio), roller: body(slenderness) };
+    Scene::symmetric(bodies, model, 1e-3)
 }
 
 /// The larger one, or NaN if either is NaN.
@@ -50,7 +45,7 @@ pub fn curve_points(scene: &Scene, kind: BodyKind) -> Vec<(&'static str, [f64; 3
     points.filter(|(_, at)| away_from_edge(*at, scene.half_length, CORNER)).collect()
 }
 
-pub fn at(field: &Field, [x, y, z]: [f64; 3]) -> StressTensor {
+pub fn at(field: &BodyField, [x, y, z]: [f64; 3]) -> StressTensor {
     field.at(y, z, &[x])[0]
 }
 

@@ -1,61 +1,26 @@
-//! An eccentric load: even and odd parts of both bodies.
+//! A load beside the middle, a block beside the roller's middle, a roller longer than the block: even and
+//! odd parts of both bodies.
 
-use edgeline::base::{Panels, Parity};
-use edgeline::body::{Body, EdgeModel, Resolution, Shape};
-use edgeline::contact::{Compliance, ContactSettings, Problem, Straight, solve};
-use edgeline::kernels::strip;
-use nalgebra::DMatrix;
+use crate::common::{apart, scene, small};
+use edgeline::base::{PerBody, StressTensor};
+use edgeline::body::EdgeModel;
+use edgeline::solve::{Scene, SceneBody, SolvedScene, Tilt};
+use edgeline::stress::BodyKind;
 use std::f64::consts::PI;
 
-/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an
-/// independent calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
+/// S_l = 5 flush, nu 0.3, under a load `arm` (C) off the middle.
+fn eccentric(arm: f64, model: EdgeModel, tolerance: f64) -> SolvedScene {
+    let plain = scene(5.0, 1.0, 0.3, model);
+    SolvedScene::new(&Scene { tilt: Tilt::Free(arm), tolerance, ..plain }).unwrap()
+}
+
+/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an independent
+/// calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
 #[test]
 fn an_eccentric_load_has_the_pressures_of_an_independent_calculation() {
-    let half = 5.0;
     for tolerance in [5e-3, 1e-3] {
-        let resolution = Resolution::for_tolerance(tolerance);
-        let numbers = resolution.wavenumbers(half);
-        let shape = Shape { contact: half, half, nu: 0.3 };
-        let end = EdgeModel::QuarterSpace.end(0.3, None);
-        let parts = Parity::BOTH.map(|parity| {
-            let body = Body::new(shape, end, parity, &resolution);
-            numbers.coarse().nodes().iter().map(|&k| body.layer(k).compliance).collect::<Vec<_>>()
-        });
-        // Nodes from one end to the other, from those of one half.
-        let right = resolution.contact_axis(half);
-        let n = right.len();
-        let breaks =
-            right.breaks().iter().rev().map(|y| -y).chain(right.breaks()[1..].iter().copied());
-        let axis = Panels::new(breaks.collect(), right.order());
-        let matrices: Vec<DMatrix<f64>> = parts[0]
-            .iter()
-            .zip(&parts[1])
-            .map(|(even, odd)| {
-                DMatrix::from_fn(2 * n, 2 * n, |i, j| {
-                    let place = |i: usize| if i < n { (n - 1 - i, -1.0) } else { (i - n, 1.0) };
-                    let ((i, a), (j, b)) = (place(i), place(j));
-                    0.5 * (even[(i, j)] + a * b * odd[(i, j)])
-                })
-            })
-            .collect();
-        let load = PI * half;
-        let problem = Problem {
-            compliance: &Compliance { wavenumbers: &numbers, matrices: &matrices },
-            axis: &axis,
-            both_ends: true,
-            gap: &Straight,
-            load,
-            moment: Some(load * 0.08 * 2.0 * half),
-        };
-        let settings = ContactSettings {
-            modes: resolution.modes,
-            spacing: resolution.spacing,
-            tolerance: 1e-2 * tolerance,
-            max_iterations: 40,
-            soundness: 5.0 * tolerance,
-        };
-        let solution = solve(&problem, &settings).unwrap();
-        let wanted = [
+        let solved = eccentric(0.8, EdgeModel::QuarterSpace, tolerance);
+        for (y, want) in [
             (-4.7, 0.613),
             (-4.0, 0.757),
             (-2.0, 0.913),
@@ -63,14 +28,101 @@ fn an_eccentric_load_has_the_pressures_of_an_independent_calculation() {
             (2.0, 1.107),
             (4.0, 1.161),
             (4.7, 1.071),
-        ];
-        for (y, want) in wanted {
-            let at = |(j, w): (usize, f64)| {
-                w * strip::pressure(solution.half_widths[j], &solution.coefficients[j], 0.0)
-            };
-            let p: f64 = axis.interpolation(y).map(at).sum();
+        ] {
+            let p = solved.pressure.at(0.0, y);
             println!("{tolerance} {y}: {p:.4} {want}");
             assert!((p - want).abs() < 4e-3, "{tolerance}: p({y}) is {p}, not {want}");
         }
     }
+}
+
+/// Places in both bodies, off all planes of symmetry.
+const PLACES: [[f64; 3]; 7] = [
+    [0.0, 4.9, 0.4],
+    [0.7, 4.2, 0.3],
+    [1.3, -4.6, 0.9],
+    [0.4, -2.0, 1.7],
+    [0.0, 0.3, 0.0],
+    [0.9, -4.95, 0.0],
+    [2.1, 1.1, 3.0],
+];
+
+fn stress(solved: &SolvedScene, body: BodyKind, [x, y, z]: [f64; 3]) -> StressTensor {
+    solved.field(body).at(y, z, &[x])[0]
+}
+
+#[test]
+fn loads_on_either_side_are_mirror_images() {
+    for model in EdgeModel::ALL {
+        let [one, other] = [0.8, -0.8].map(|arm| eccentric(arm, model, 1e-2));
+        assert!((one.tilt(40.0) + other.tilt(40.0)).abs() < 1e-9 * one.tilt(40.0).abs());
+        assert!(one.tilt(40.0) > 0.0, "the side of the load is pressed deeper");
+        for body in BodyKind::ALL {
+            for [x, y, z] in PLACES {
+                let mirrored = stress(&other, body, [x, -y, z]).mirrored(StressTensor::ODD_IN_Y);
+                // Wavenumbers are summed in single precision.
+                let off = apart(&stress(&one, body, [x, y, z]), &mirrored);
+                small(&format!("{model} {x} {y} {z}"), off, 1e-9);
+            }
+        }
+    }
+}
+
+/// Both ways to the same contact: one half of it by the even parts alone, and all of it by even and odd
+/// ones.
+#[test]
+fn the_odd_part_of_what_is_symmetric_vanishes() {
+    for (length_ratio, model) in [
+        (1.0, EdgeModel::QuarterSpace),
+        (0.6, EdgeModel::QuarterSpace),
+        (0.6, EdgeModel::Guilbault),
+        (1.0, EdgeModel::HalfSpace),
+    ] {
+        let plain = Scene { tolerance: 5e-3, ..scene(5.0, length_ratio, 0.3, model) };
+        let whole = Scene { tilt: Tilt::Free(1e-9), ..plain.clone() };
+        let [plain, whole] = [plain, whole].map(|scene| SolvedScene::new(&scene).unwrap());
+        // Both are iterated to 5e-5.
+        for y in [0.0, 2.0, 4.0, 4.8, -3.0, -4.8] {
+            let [a, b] = [&plain, &whole].map(|solved| solved.pressure.at(0.2, y));
+            small(&format!("{model} {length_ratio}: p({y})"), (a - b).abs(), 1e-4);
+        }
+        for body in BodyKind::ALL {
+            for at in PLACES {
+                let off = apart(&stress(&plain, body, at), &stress(&whole, body, at));
+                small(&format!("{model} {length_ratio} {at:?}"), off, 2e-5);
+            }
+        }
+    }
+}
+
+/// A block that is moved, and with it the overlap, is the same contact as a roller that is moved.
+#[test]
+fn an_offset_is_relative() {
+    let block = SceneBody::straight(7.0, 0.3, 0.5);
+    let roller = SceneBody::straight(5.0, 0.3, 0.5);
+    let with = |block: SceneBody, roller: SceneBody, middle: f64| Scene {
+        half_length: 5.0,
+        middle,
+        load: 5.0 * PI,
+        tilt: Tilt::Free(middle),
+        tolerance: 5e-3,
+        ..Scene::symmetric(PerBody { block, roller }, EdgeModel::QuarterSpace, 5e-3)
+    };
+    let moved = |body: &SceneBody, by: f64| SceneBody { middle: by, ..body.clone() };
+    let one = with(moved(&block, 1.5), roller.clone(), 0.0);
+    let other = with(block.clone(), moved(&roller, -1.5), -1.5);
+    let [one, other] = [one, other].map(|scene| SolvedScene::new(&scene).unwrap());
+    for y in [-4.9, -4.0, 0.0, 3.0, 4.9] {
+        let [a, b] = [one.pressure.at(0.0, y), other.pressure.at(0.0, y - 1.5)];
+        small(&format!("p({y})"), (a - b).abs(), 1e-7);
+    }
+    for body in BodyKind::ALL {
+        for [x, y, z] in PLACES {
+            let off = apart(&stress(&one, body, [x, y, z]), &stress(&other, body, [x, y - 1.5, z]));
+            small(&format!("{x} {y} {z}"), off, 1e-6);
+        }
+    }
+    // The nearer face takes more: both ends are singular, the one with the longer block more so.
+    let [near, far] = [one.pressure.at(0.0, -4.9), one.pressure.at(0.0, 4.9)];
+    assert!(far > near, "{near} {far}");
 }

@@ -3,14 +3,14 @@
 
 use crate::common::{CORNER, scene};
 use edgeline::body::{EdgeModel, GAMMA, Resolution, transition};
-use edgeline::solve::edge::{self, EdgeStrength};
+use edgeline::solve::edge::{self, EdgeStrength, Side};
 use edgeline::solve::{Scene, SolvedScene};
 use edgeline::stress::curves::{CURVE_NAMES, standard_curves};
 use edgeline::stress::{BodyKind, away_from_edge};
 
 /// The strength of the end at a resolution.
 fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
-    edge::edge_strength(&SolvedScene::with_resolution(scene, resolution).unwrap())
+    edge::edge_strength(&SolvedScene::with_resolution(scene, resolution).unwrap(), Side::Positive)
 }
 
 #[test]

@@ -2,11 +2,11 @@
 //! of C, stresses in units of p0.
 
 use crate::common::{apart, at, half_of, near, small, solved, table, worse};
-use edgeline::base::{Material, Panels, Parity, StressTensor};
-use edgeline::body::{Body, EdgeModel, Resolution, Shape};
+use edgeline::base::{Material, Panels, StressTensor};
+use edgeline::body::{EdgeModel, Resolution, Shape, Stack};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
-use edgeline::stress::{BodyKind, Field, Load, Pressure};
+use edgeline::stress::{BodyField, BodyKind, Field, Load, Pressure};
 use proptest::prelude::RngCore;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::f64::consts::PI;
@@ -42,16 +42,21 @@ fn both_bodies_are_right_at_the_rollers_end_face() {
 /// along y.
 fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
     let resolution = Resolution::for_tolerance(1e-3);
-    let shape = Shape { contact: 3.0, half: 4.0, nu: 0.3 };
-    let body = Body::new(shape, EdgeModel::QuarterSpace.end(0.3, None), Parity::Even, &resolution);
     let wavenumbers = resolution.wavenumbers(4.0);
-    let layers: Vec<_> = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     let axis = resolution.contact_axis(3.0);
+    let stack = Stack::new(
+        &axis,
+        true,
+        (0.0, Shape { half: 4.0, nu: 0.3 }),
+        EdgeModel::QuarterSpace.end(0.3, None),
+        (&resolution, wavenumbers.coarse().nodes()),
+    );
     let amplitudes = axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect();
-    let pressure = Pressure::new(axis.clone(), vec![1.0; axis.len()], amplitudes);
+    let pressure = Pressure::new(axis.clone(), true, vec![1.0; axis.len()], amplitudes);
     let moments = pressure.moments(&wavenumbers);
     move |place| {
-        at(&Field::new(&body, &wavenumbers, &layers, &pressure, &moments, None, 1e-3), place)
+        let field = Field::new(&stack, &wavenumbers, &pressure, &moments, None, 1e-3);
+        at(&BodyField::new(field, 1.0), place)
     }
 }
 

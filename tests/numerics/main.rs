@@ -8,6 +8,7 @@ mod ends;
 mod fields;
 mod imports;
 mod layering;
+mod profiles;
 mod refinement;
 mod scenes;
 mod verification;

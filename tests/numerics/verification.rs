@@ -7,6 +7,7 @@ use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::case::Case;
 use edgeline::kernels::{hertz, love, strip};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
+use edgeline::stress::round::LocalContact;
 use edgeline::stress::{BodyKind, RoundStress};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
@@ -211,7 +212,7 @@ fn stresses_of_cells() {
                 if body == BodyKind::Roller {
                     let slope = (flat([x + 1e-3, y, z]) - flat([x - 1e-3, y, z])) * 500.0;
                     let curvature = hertz.c_m / case.roller.radius_m;
-                    want = RoundStress::new(x, z, want, &slope).at(curvature);
+                    want = RoundStress::new(x, z, want, &slope, &LocalContact::HERTZ).at(curvature);
                 }
                 small(&format!("{model} {} {x} {y} {z}", body.name()), apart(got, &want), 3e-3);
             }
@@ -232,13 +233,9 @@ fn compliance_is_reciprocal() {
         (5.5, EdgeModel::QuarterSpace),
         (10.0, EdgeModel::QuarterSpace),
     ] {
-        let body = Body::new(
-            Shape { contact: 5.0, half, nu: 0.3 },
-            model.end(0.3, None),
-            Parity::Even,
-            &resolution,
-        );
         let axis = resolution.contact_axis(5.0);
+        let (shape, end) = (Shape { half, nu: 0.3 }, model.end(0.3, None));
+        let body = Body::new(&axis, shape, end, Parity::Even, &resolution);
         let (nodes, weights) = (axis.nodes(), axis.weights());
         let shapes: [&dyn Fn(f64) -> f64; 4] =
             [&|_| 1.0, &|y| (y / 5.0).powi(8), &|y| (0.3 * PI * y).cos(), &|y| {
@@ -271,8 +268,8 @@ fn compliance_is_reciprocal() {
 fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
     let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
-        let shape = Shape { contact: slenderness, half, nu };
-        Body::new(shape, EdgeModel::QuarterSpace.end(nu, None), Parity::Even, resolution)
+        let (line, shape) = (resolution.contact_axis(slenderness), Shape { half, nu });
+        Body::new(&line, shape, EdgeModel::QuarterSpace.end(nu, None), Parity::Even, resolution)
             .layer(k)
             .condition
     };
@@ -329,9 +326,9 @@ fn compliance_is_positive_definite() {
 fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f64) -> f64 {
     let resolution = Resolution::for_tolerance(1e-2);
     let half = slenderness / length_ratio;
-    let shape = Shape { contact: slenderness, half, nu: 0.3 };
-    let body = Body::new(shape, model.end(0.3, Some(psi)), Parity::Even, &resolution);
+    let shape = Shape { half, nu: 0.3 };
     let axis = resolution.contact_axis(slenderness);
+    let body = Body::new(&axis, shape, model.end(0.3, Some(psi)), Parity::Even, &resolution);
     let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
     let wavenumbers = resolution.wavenumbers(half);
     let energies = wavenumbers.coarse().nodes().iter().map(|&k| {

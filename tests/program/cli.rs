@@ -62,7 +62,7 @@ fn bad_case_files_exit_with_two_and_leave_nothing() {
     for (from, to, wanted) in [
         ("poisson = 0.3", "poison = 0.3", "unknown key roller.poison; did you mean poisson?"),
         ("poisson = 0.3", "poisson = 0.5", "roller.poisson = 0.5"),
-        ("L_r = 1.0", "L_r = 1.2", "dimensionless.L_r = 1.2"),
+        ("L_r = 1.0", "L_r = 1.2e3", "dimensionless.L_r = 1.2e3"),
         ("radius_m = 10e-3", "radius_m = -1", "roller.radius_m = -1"),
         ("W = 5e-4", "W = nan", "dimensionless.W = nan"),
         ("[block]", "[block", "is not valid TOML"),
@@ -75,6 +75,69 @@ fn bad_case_files_exit_with_two_and_leave_nothing() {
         assert!(said.contains(&format!("bad.toml:{line}: ")), "{to}: {said}");
     }
     assert_eq!(files(folder.path()), ["bad.toml"]);
+}
+
+#[test]
+fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("back.csv"), "y_m,drop_m\n-6e-3,0\n6e-3,0\n5e-3,1e-6\n").unwrap();
+    std::fs::write(path.join("short.csv"), "y_m,drop_m\n-4e-3,0\n4e-3,0\n").unwrap();
+    let good = include_str!("../../examples/crowned-eccentric.toml");
+    let logarithmic = "kind = \"logarithmic\"\namplitude_m = 3e-6\nk = 0.98";
+    let table = |file: &str| format!("kind = \"table\"\nfile = \"{file}\"");
+    for (from, to, wanted) in [
+        ("k = 0.98", "k = 1.0", "roller.profile.k = 1.0 is not valid"),
+        ("k = 0.98", "", "a logarithmic profile needs k, which is missing"),
+        ("k = 0.98", "k = 0.98\nk1 = 2.0", "a logarithmic profile has no such number"),
+        ("\"logarithmic\"", "\"crowned\"", "there is no such profile; did you mean crown?"),
+        ("amplitude_m = 3e-6", "amplitude_m = 3e-2", "the profile drops by"),
+        ("eccentricity_m = 0.25e-3", "eccentricity_m = 6e-3", "the roller would fall over"),
+        ("[load]", "[pose]\noffset_m = 0.02\n[load]", "the bodies overlap along y by 0e0 m"),
+        ("[load]", "[pose]\ntilt_rad = 1e-3\n[load]", "a load with eccentricity_m finds its own"),
+        ("[load]", "[pose]\ntilt = 1e-3\n[load]", "unknown key pose.tilt; did you mean tilt_rad?"),
+        (logarithmic, &table("none.csv"), "none.csv"),
+        (logarithmic, &table("back.csv"), "back.csv:4: y = 5e-3 m does not lie beyond"),
+        (logarithmic, &table("short.csv"), "its points lie from y = -4e-3 to 4e-3 m"),
+        (
+            "length_m = 12e-3",
+            "length_m = 12e-3\nradius_m = -9e-3",
+            "does not fit into this raceway",
+        ),
+    ] {
+        assert!(good.contains(from), "{from}");
+        std::fs::write(path.join("bad.toml"), good.replacen(from, to, 1)).unwrap();
+        let said = refused(path, &["solve", "bad.toml", "--out", "o"]);
+        assert!(said.contains(wanted), "{to}: {said}");
+    }
+    std::fs::write(path.join("bad.toml"), good).unwrap();
+    let said = refused(path, &["solve", "bad.toml", "--engine", "cells", "--out", "o"]);
+    assert!(said.contains("with --engine line"), "{said}");
+    let said = refused(path, &["fem", "bad.toml", "--out", "o"]);
+    assert!(said.contains("finite elements take straight bodies"), "{said}");
+    assert_eq!(files(path), ["back.csv", "bad.toml", "short.csv"]);
+}
+
+#[test]
+fn a_roller_off_its_middle_has_both_ends_in_its_files() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = concat!(env!("CARGO_MANIFEST_DIR"), "/examples/crowned-eccentric.toml");
+    let output =
+        edgeline(folder.path(), &["solve", case, "--json", "--out", "o"]).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let number = |key: &str| summary[key].as_f64().unwrap();
+    assert!(number("tilt_rad") > 0.0 && number("load_error_rel") < 1e-9, "{summary}");
+    let centre = summary["centre_of_pressure_m"][1].as_f64().unwrap();
+    assert!((centre / 0.25e-3 - 1.0).abs() < 1e-9, "{centre}");
+    let ends = [0, 1].map(|i| summary["contact_y_m"][i].as_f64().unwrap());
+    assert!(-5e-3 < ends[0] && ends[0] < -4e-3 && 4.9e-3 < ends[1], "{ends:?}");
+    let curves = std::fs::read_to_string(folder.path().join("o/curves.csv")).unwrap();
+    for name in ["depth-end", "depth-end-neg", "depth-0.9-x1.4-neg"] {
+        assert!(curves.contains(&format!("roller,{name},")), "{name}");
+    }
+    let lines = rows(&folder.path().join("o/line_load.csv"));
+    assert!(lines.len() > 20);
 }
 
 #[test]
@@ -112,7 +175,8 @@ fn solve_writes_its_files() {
         let said = String::from_utf8(output.stdout).unwrap();
         assert!(said.contains(&format!("flush-short by {method}")), "{said}");
         let out = folder.path().join(out);
-        assert_eq!(files(&out), ["curves.csv", "points.csv", "pressure.csv", "summary.json"]);
+        let names = ["curves.csv", "line_load.csv", "points.csv", "pressure.csv", "summary.json"];
+        assert_eq!(files(&out), names);
 
         let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
         let summary: Value = serde_json::from_str(&text).unwrap();

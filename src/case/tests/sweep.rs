@@ -88,10 +88,10 @@ fn what_is_wrong_with_the_file_is_an_error() {
 
 #[test]
 fn what_is_wrong_with_a_row_belongs_to_the_row() {
-    let sweep = parse(&GRID.replace("[0.5, 1.0]", "[0.5, 1.5]")).unwrap();
+    let sweep = parse(&GRID.replace("[0.5, 1.0]", "[0.5, 1500]")).unwrap();
     assert!(sweep.case(0).is_ok());
     let said = sweep.case(1).unwrap_err().to_string();
-    assert!(said.starts_with("dimensionless.L_r = 1.5e0 is not valid: the roller"), "{said}");
+    assert!(said.starts_with("dimensionless.L_r = 1.5e3 is not valid: L_r"), "{said}");
 }
 
 #[test]

@@ -1,0 +1,158 @@
+//! The profiles of a case's bodies, as functions of y.
+
+use super::model::Case;
+use super::profile::{ProfileKind, ProfileSpec};
+use crate::base::{BodyKind, Error, HertzScales, Profile, Result};
+use std::f64::consts::PI;
+
+/// Ratio of length and diameter up to which the profile of ISO/TS 16281 curves from the middle.
+const SHORT: f64 = 2.5;
+
+/// Most of the diameter that a profile may drop at the body's end.
+const DEEPEST: f64 = 0.5;
+
+impl Case {
+    /// The profile of a body (m), if it has one.
+    ///
+    /// With the body's length L = 2 a, the roller's diameter D, the contact modulus E* and the design
+    /// force Q: Lundberg (1939) Q / (pi L E*) ln(1 / (1 - (2 y / L)^2)), the drop of both bodies
+    /// together; Johns and Gohar (Tribology International 14, 1981) with 1 - (1 - 0.3033 b / a) (2 y /
+    /// L)^2, b the Hertz half-width under Q; ISO/TS 16281:2008 0.00035 D ln(1 / (1 - (2 y / L)^2)) up to
+    /// L = 2.5 D, and 0.0005 D with the outer 1.25 D on either side curved beyond it; Fujiwara and
+    /// Kawase (NTN Technical Review 75, 2007) K1 A ln(1 / (1 - (1 - e^(-zm / (K1 A))) t^2)) on the outer
+    /// part K2 a of each half, with A = 2 Q / (pi L E'), E' = 2 E*.
+    pub fn profile(&self, body: BodyKind) -> Option<Profile> {
+        let spec = self.profile_spec(body)?;
+        let length = match body {
+            BodyKind::Block => self.block.length_m,
+            BodyKind::Roller => self.roller.length_m,
+        };
+        let half = 0.5 * length;
+        let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
+        let e_star = self.contact_modulus();
+        let force = number(spec.design_force_n);
+        let diameter = 2.0 * self.roller.radius_m;
+        // Q / (pi L E*).
+        let amplitude = force / (PI * length * e_star);
+        let whole =
+            |amplitude: f64, k: f64| Profile::Logarithm { amplitude, k, start: 0.0, span: half };
+        Some(match spec.kind {
+            ProfileKind::Crown => Profile::Arc { straight: 0.0, radius: number(spec.radius_m) },
+            ProfileKind::Relief => Profile::Arc {
+                straight: 0.5 * number(spec.straight_m),
+                radius: number(spec.radius_m),
+            },
+            ProfileKind::Logarithmic => whole(number(spec.amplitude_m), number(spec.k)),
+            ProfileKind::Lundberg => whole(amplitude, 1.0),
+            ProfileKind::JohnsGohar => {
+                let radius = self.equivalent_radius_m();
+                let b = HertzScales::new(e_star, radius, length, force).c_m;
+                whole(amplitude, (1.0 - 0.3033 * b / half).max(f64::MIN_POSITIVE))
+            }
+            ProfileKind::Iso16281 if length <= SHORT * diameter => whole(0.00035 * diameter, 1.0),
+            ProfileKind::Iso16281 => {
+                let span = 0.5 * SHORT * diameter;
+                let start = half - span;
+                Profile::Logarithm { amplitude: 0.0005 * diameter, k: 1.0, start, span }
+            }
+            ProfileKind::Fujiwara => {
+                let amplitude = number(spec.k1) * amplitude;
+                let span = number(spec.k2) * half;
+                let k = -(-number(spec.zm_m) / amplitude).exp_m1();
+                Profile::Logarithm { amplitude, k, start: half - span, span }
+            }
+            ProfileKind::Table => Profile::Table(spec.table.clone()?),
+        })
+    }
+
+    /// The profile of a body as the case gives it.
+    pub fn profile_spec(&self, body: BodyKind) -> Option<&ProfileSpec> {
+        match body {
+            BodyKind::Block => self.block.profile.as_ref(),
+            BodyKind::Roller => self.roller.profile.as_ref(),
+        }
+    }
+
+    /// Refuses profiles without the numbers of their kind, with others, or that no body can have.
+    pub(super) fn check_profiles(&self) -> Result<()> {
+        BodyKind::ALL.into_iter().try_for_each(|body| self.check_profile(body))
+    }
+
+    fn check_profile(&self, body: BodyKind) -> Result<()> {
+        let Some(spec) = self.profile_spec(body) else { return Ok(()) };
+        let place = format!("{}.profile", body.name());
+        let refuse = |key: &str, value: String, reason: String, remedy: String| {
+            Err(Error::Value { key: format!("{place}.{key}"), value, reason, remedy })
+        };
+        let (kind, wanted) = (spec.kind.name(), spec.kind.keys());
+        let takes = match wanted {
+            [] => "no number".to_string(),
+            keys => keys.join(", "),
+        };
+        for key in ProfileSpec::NUMBERS {
+            match spec.number(key) {
+                Some(value) if !wanted.contains(&key) => {
+                    let reason = format!("a {kind} profile has no such number");
+                    return refuse(key, format!("{value:e}"), reason, format!("it takes {takes}"));
+                }
+                None if wanted.contains(&key) => {
+                    let reason = format!("a {kind} profile needs {key}, which is missing");
+                    return refuse(
+                        "kind",
+                        format!("{kind:?}"),
+                        reason,
+                        format!("it takes {takes}"),
+                    );
+                }
+                _ => {}
+            }
+        }
+        let [from, to] = match body {
+            BodyKind::Block => [-0.5, 0.5].map(|s| s * self.block.length_m),
+            BodyKind::Roller => [-0.5, 0.5].map(|s| s * self.roller.length_m),
+        };
+        let half = to;
+        if let Some(straight) = spec.straight_m.filter(|s| *s >= 2.0 * half) {
+            let reason = "the straight part is as long as the body, so nothing is left to relieve";
+            let remedy = format!("it is less than the length, {:e} m", 2.0 * half);
+            return refuse("straight_m", format!("{straight:e}"), reason.into(), remedy);
+        }
+        match (spec.kind, &spec.table) {
+            (ProfileKind::Table, None) => {
+                let reason = "a table needs its file".to_string();
+                return refuse(
+                    "kind",
+                    "\"table\"".into(),
+                    reason,
+                    "add file = \"drop.csv\"".into(),
+                );
+            }
+            (ProfileKind::Table, Some(table)) => {
+                let [first, last] = table.range();
+                let rounding = 1e-9 * half;
+                if first > from + rounding || last < to - rounding {
+                    let file = spec.file.clone().unwrap_or_default();
+                    let reason = format!(
+                        "its points lie from y = {first:e} to {last:e} m and the body from {from:e} \
+                         to {to:e} m"
+                    );
+                    let remedy = "give drops up to both ends".to_string();
+                    return refuse("file", format!("{:?}", file.display()), reason, remedy);
+                }
+            }
+            _ => {}
+        }
+        let profile = self.profile(body).expect("the body has one");
+        // What has no limit at the end is judged just before it.
+        let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
+        if deepest >= DEEPEST * self.roller.radius_m {
+            let (radius, value) = (self.roller.radius_m, format!("{kind:?}"));
+            let reason = format!(
+                "the profile drops by {deepest:.3e} m at the body's end, which no small slope allows \
+                 (the roller's radius is {radius:e} m)"
+            );
+            return refuse("kind", value, reason, "check the units of the profile (m, N)".into());
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,500 @@
+//! A scene whose contact is solved.
+
+use super::lines;
+use super::motion::Motion;
+use super::scene::{Scene, SceneBody, Tilt};
+use crate::base::{Error, Panels, Result, Wavenumbers};
+use crate::body::{Resolution, Shape, Stack};
+use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Shaped, Slices};
+use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
+use nalgebra::DMatrix;
+use std::time::Instant;
+
+/// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
+/// scenes stay within 2 (docs/robustness.md); errors of the solver exceed it by far.
+const SOUNDNESS: f64 = 5.0;
+
+/// Largest condition number of a body's equations for which rounding is negligible: it costs this
+/// many units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
+/// (docs/robustness.md).
+const WORST_CONDITION: f64 = 1e7;
+
+/// Tolerance of the contact's iteration, in tolerances of the scene.
+const CONTACT_TOLERANCE: f64 = 1e-2;
+
+/// Tolerance (p0) at which the ends of a contact are sought that ends before its bodies do.
+const SEARCH: f64 = 1e-2;
+
+/// Most contacts that are solved until the ends are found, or the tilt that is held.
+const MOST_TRIALS: usize = 10;
+
+/// How closely an end is found, in half-lengths of the contact.
+const END_ERROR: f64 = 2e-3;
+
+/// How far beyond a first guess the axis reaches, in half-lengths of the contact.
+const MARGIN: f64 = 0.15;
+
+/// A half-width (C) from which a contact has a unit of its own.
+const WIDER: f64 = 1.4;
+
+/// Error of a tilt that is held, as the displacement of the line's end (C^2 / (2 R)).
+const TILT_ERROR: f64 = 1e-6;
+
+/// Run time of each stage (s).
+#[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Seconds {
+    /// Axes and compliance.
+    pub setup: f64,
+    /// Contact.
+    pub contact: f64,
+    /// Stresses.
+    pub stress: f64,
+    /// Total.
+    pub total: f64,
+}
+
+/// A solved scene, which gives pressures and stresses anywhere.
+#[derive(Debug)]
+pub struct SolvedScene {
+    /// The scene.
+    pub scene: Scene,
+    /// The unit of length, in C, that it is solved in: resolution and wavenumbers are in this unit.
+    pub unit: f64,
+    /// Its resolution.
+    pub resolution: Resolution,
+    /// Wavenumbers across the contact.
+    pub wavenumbers: Wavenumbers,
+    /// The contact pressure.
+    pub pressure: Pressure,
+    /// The solution of the contact; its approach and its tilt lack the reference (see
+    /// [`SolvedScene::approach`] and [`SolvedScene::tilt`]).
+    pub contact: ContactSolution,
+    /// Whether the contact ends before its bodies do, at either end.
+    pub open: [bool; 2],
+    /// Run times of set-up and contact.
+    pub seconds: Seconds,
+    /// The largest condition number of the bodies' equations, see [`crate::body::Layer::condition`].
+    pub condition: f64,
+    /// The scene, the contact and its pressure in the solution's own unit.
+    own: Own,
+    /// [`Pressure::moments`] of the own pressure.
+    moments: DMatrix<f64>,
+    bodies: Vec<Stack>,
+    compliances: Vec<DMatrix<f64>>,
+}
+
+/// What is solved, in its own unit of length.
+#[derive(Debug)]
+struct Own {
+    scene: Scene,
+    contact: ContactSolution,
+    pressure: Pressure,
+}
+
+impl SolvedScene {
+    /// Solves a scene at the resolution for its tolerance.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
+    /// violates a law of contact or the equations are ill-conditioned.
+    pub fn new(scene: &Scene) -> Result<Self> {
+        let end = scene.end(BodyKind::Block);
+        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
+        Self::with_resolution(scene, &resolution)
+    }
+
+    /// Solves a scene at a given resolution.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
+    /// violates a law of contact or the equations are ill-conditioned.
+    pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
+        let start = Instant::now();
+        let unit = scene.own_unit();
+        let (asked, scene) = (scene, &scene.scaled(1.0 / unit));
+        let gap = scene.gap();
+        let slices = scene.slices(&gap);
+        let mut line = Line::first(scene, &slices);
+        if scene.may_end() {
+            // The ends are found at low cost; on the way there no solution has to be sound.
+            let coarse =
+                Resolution::of(SEARCH, &scene.end(BodyKind::Block), scene.corner_exponent());
+            let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
+            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices: &slices };
+            line = search.settled(line)?.line;
+        }
+        let tolerance = scene.tolerance;
+        let soundness = SOUNDNESS * tolerance.max(Resolution::FINEST);
+        let accuracy = Accuracy { tolerance, soundness };
+        let trial = Trial { scene, resolution, accuracy, gap: &gap, slices: &slices };
+        let Settled { line, parts, contact, setup } = trial.settled(line)?;
+        let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
+        let pressure = Pressure::new(
+            axis,
+            scene.is_symmetric(),
+            contact.half_widths.clone(),
+            contact.coefficients.clone(),
+        );
+        let moments = pressure.moments(&wavenumbers);
+        let total = start.elapsed().as_secs_f64();
+        Ok(Self {
+            scene: asked.clone(),
+            unit,
+            resolution: *resolution,
+            wavenumbers,
+            pressure: pressure.scaled(unit),
+            contact: contact.scaled(unit),
+            own: Own { scene: scene.clone(), contact, pressure },
+            open: line.open,
+            seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
+            condition,
+            moments,
+            bodies,
+            compliances,
+        })
+    }
+
+    /// The body, shared by identical bodies.
+    fn body(&self, kind: BodyKind) -> &Stack {
+        match kind {
+            BodyKind::Block => &self.bodies[0],
+            BodyKind::Roller => &self.bodies[self.bodies.len() - 1],
+        }
+    }
+
+    /// Whether the contact iteration reached its tolerance.
+    pub fn converged(&self) -> bool {
+        self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
+    }
+
+    /// Whether both bodies share one computation.
+    pub fn bodies_shared(&self) -> bool {
+        self.bodies.len() == 1
+    }
+
+    /// The stress field of a body, without the contribution of the roller's round shape.
+    pub fn field(&self, kind: BodyKind) -> BodyField<'_> {
+        self.field_with(kind, self.body(kind).body().end.gamma, self.scene.tolerance)
+    }
+
+    /// Stresses on `curves` and at single `points` (C).
+    pub(super) fn stresses(
+        &self,
+        curves: &[CurveSpec],
+        points: &[(BodyKind, [f64; 3])],
+    ) -> lines::Stresses {
+        lines::stresses(self.bodies_shared(), |kind| self.field(kind), curves, points)
+    }
+
+    /// [`SolvedScene::field`] with a transition factor other than the edge model's, and with
+    /// contributions below `tolerance` (p0) neglected.
+    pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> BodyField<'_> {
+        let field = self.own_field(kind, gamma, tolerance);
+        BodyField::new(field.following_contact(self.scene.may_end()), self.unit)
+    }
+
+    /// The field of a body in the solution's own unit.
+    fn own_field(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
+        let (numbers, pressure) = (&self.wavenumbers, &self.own.pressure);
+        Field::new(self.body(kind), numbers, pressure, &self.moments, gamma, tolerance)
+    }
+
+    /// The contact's ends along y (C).
+    pub fn ends(&self) -> [f64; 2] {
+        let [from, to] = self.contact.ends;
+        if self.scene.is_symmetric() { [-to, to] } else { [from, to] }
+    }
+
+    /// The compliance of both bodies together.
+    fn compliance(&self) -> Compliance<'_> {
+        Compliance { wavenumbers: &self.wavenumbers, matrices: &self.compliances }
+    }
+
+    /// Gaps between the bodies (C^2 / (2 R)) at the nodes along the line: a row for each of
+    /// `places`, which are distances from x = 0 in half-widths of each node.
+    pub fn gaps(&self, places: &[f64]) -> Vec<Vec<f64>> {
+        let (compliance, gap) = (self.compliance(), self.own.scene.gap());
+        let axis = self.own.pressure.axis();
+        let problem = problem(&self.own.scene, &compliance, axis, &gap, self.open);
+        let mut gaps = contact::gaps(&problem, &self.own.contact, places);
+        gaps.iter_mut().flatten().for_each(|gap| *gap *= self.unit * self.unit);
+        gaps
+    }
+
+    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
+    pub fn approach(&self, depth: f64) -> f64 {
+        let own = &self.own.contact;
+        let below = contact::reference(&self.compliance(), |k| own.transform(k), depth / self.unit);
+        (own.approach - below) * self.unit * self.unit
+    }
+
+    /// Tilt in units of C / (2 R) of lines `depth` (C) below the surface.
+    pub fn tilt(&self, depth: f64) -> f64 {
+        if self.scene.is_symmetric() {
+            return 0.0;
+        }
+        let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
+        let [block, roller] = &fields;
+        let own = &self.own;
+        let ends = own.pressure.ends();
+        Motion::new(&own.scene, [block, roller], ends, depth / self.unit).tilt * self.unit
+    }
+}
+
+impl Scene {
+    /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line
+    /// contact is left as it is where the contact is not much wider.
+    fn own_unit(&self) -> f64 {
+        if !self.may_end() {
+            return 1.0;
+        }
+        let widest = self.slices(&self.gap()).widest();
+        if widest > WIDER { widest } else { 1.0 }
+    }
+
+    /// A first guess of the contact.
+    fn slices(&self, gap: &Shaped) -> Slices {
+        let (moment, tilt) = match self.tilt {
+            Tilt::Held(tilt) => (None, tilt),
+            Tilt::Free(arm) => (Some(self.load * arm), 0.0),
+        };
+        Slices::new(gap, self.overlap(), self.load, moment, tilt)
+    }
+}
+
+/// The part of the overlap that the contact's axis covers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Line {
+    ends: [f64; 2],
+    /// Whether the contact may end before the axis does.
+    open: [bool; 2],
+}
+
+impl Line {
+    /// A first guess.
+    fn first(scene: &Scene, slices: &Slices) -> Self {
+        Self::reaching(scene, slices.ends, MARGIN)
+    }
+
+    /// An axis up to `ends`, and at open ends a `margin` beyond them, in half-lengths.
+    fn reaching(scene: &Scene, ends: [f64; 2], margin: f64) -> Self {
+        let overlap = scene.overlap();
+        let longest = scene.half_length;
+        let [from, to] = ends.map(|end| end.clamp(overlap[0], overlap[1]));
+        let beyond = margin * 0.5 * (to - from);
+        let wanted = [from - beyond, to + beyond];
+        // What all but reaches the end of the bodies ends there.
+        let near = |side: usize| (wanted[side] - overlap[side]).abs() <= END_ERROR * longest;
+        let past = [wanted[0] <= overlap[0] || near(0), wanted[1] >= overlap[1] || near(1)];
+        Self {
+            ends: [0, 1].map(|side| if past[side] { overlap[side] } else { wanted[side] }),
+            open: past.map(|past| !past),
+        }
+    }
+
+    /// Half of the line's length.
+    fn half(&self) -> f64 {
+        0.5 * (self.ends[1] - self.ends[0])
+    }
+}
+
+/// Bodies on an axis.
+struct Parts {
+    axis: Panels,
+    wavenumbers: Wavenumbers,
+    bodies: Vec<Stack>,
+    compliances: Vec<DMatrix<f64>>,
+    condition: f64,
+}
+
+/// A contact whose ends are found.
+struct Settled {
+    line: Line,
+    parts: Parts,
+    contact: ContactSolution,
+    /// Time spent on the bodies (s).
+    setup: f64,
+}
+
+/// How accurate a contact is to be (p0), and how far it may violate the laws of contact.
+struct Accuracy {
+    tolerance: f64,
+    soundness: f64,
+}
+
+/// What contacts are solved with.
+struct Trial<'a> {
+    scene: &'a Scene,
+    resolution: &'a Resolution,
+    accuracy: Accuracy,
+    gap: &'a Shaped,
+    slices: &'a Slices,
+}
+
+impl Trial<'_> {
+    /// The contact from a first guess of its `line`.
+    fn settled(&self, mut line: Line) -> Result<Settled> {
+        let mut setup = 0.0;
+        for trial in 1.. {
+            let start = Instant::now();
+            let parts = self.parts(&line)?;
+            setup += start.elapsed().as_secs_f64();
+            let contact = self.contact(&parts, &line)?;
+            let found = self.found(&line, &contact);
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= END_ERROR * line.half();
+            let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
+            if same || trial == MOST_TRIALS {
+                return Ok(Settled { line, parts, contact, setup });
+            }
+            line = found;
+        }
+        unreachable!("the trials end")
+    }
+
+    /// The line that ends where the contact was found to end.
+    fn found(&self, line: &Line, contact: &ContactSolution) -> Line {
+        if !self.scene.may_end() {
+            return *line;
+        }
+        let [mut from, to] = contact.ends;
+        // An end that was not found lies farther out.
+        let most = 0.2 * line.half();
+        let limited = |found: f64, at: f64| found.clamp(at - most, at + most);
+        let to = limited(to, line.ends[1]);
+        from = if self.scene.is_symmetric() { -to } else { limited(from, line.ends[0]) };
+        Line::reaching(self.scene, [from, to], 0.0)
+    }
+
+    /// The bodies on a line.
+    fn parts(&self, line: &Line) -> Result<Parts> {
+        let (scene, resolution) = (self.scene, self.resolution);
+        let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
+        let wavenumbers = resolution.wavenumbers(longest);
+        let coarse = wavenumbers.coarse().nodes();
+        let symmetric = scene.is_symmetric();
+        let axis = match symmetric {
+            true => resolution.contact_axis(line.ends[1]),
+            false => resolution.line_axis(line.ends),
+        };
+        let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
+        // Bodies with the same ends and Poisson's ratio share one computation.
+        let alike =
+            block.half == roller.half && block.middle == roller.middle && block.nu == roller.nu;
+        let distinct = if alike { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
+        let stack = |&kind: &BodyKind| {
+            let SceneBody { half, middle, nu, .. } = scene.bodies[kind];
+            let place = (middle, Shape { half, nu });
+            Stack::new(&axis, symmetric, place, scene.end(kind), (resolution, coarse))
+        };
+        let bodies: Vec<Stack> = distinct.iter().map(stack).collect();
+        let condition = checked_condition(&bodies)?;
+        let compliances = (0..coarse.len()).map(|i| {
+            let mut total = DMatrix::zeros(axis.len(), axis.len());
+            bodies[0].add_compliance(i, block.share, &mut total);
+            bodies[bodies.len() - 1].add_compliance(i, roller.share, &mut total);
+            total
+        });
+        let compliances = compliances.collect();
+        Ok(Parts { axis, wavenumbers, bodies, compliances, condition })
+    }
+
+    /// The contact on a line.
+    fn contact(&self, parts: &Parts, line: &Line) -> Result<ContactSolution> {
+        let settings = ContactSettings {
+            modes: self.resolution.modes,
+            spacing: self.resolution.spacing,
+            tolerance: CONTACT_TOLERANCE * self.accuracy.tolerance,
+            max_iterations: 40,
+            soundness: self.accuracy.soundness,
+        };
+        let scene = self.scene;
+        let matrices = &parts.compliances;
+        let compliance = Compliance { wavenumbers: &parts.wavenumbers, matrices };
+        let problem = problem(scene, &compliance, &parts.axis, self.gap, line.open);
+        let guess = scene.may_end().then_some(self.slices);
+        let problem = Problem { guess, ..problem };
+        let Tilt::Held(wanted) = scene.tilt else { return contact::solve(&problem, &settings) };
+        let mut tilt = wanted;
+        let mut last: Option<[f64; 2]> = None;
+        for _ in 0..MOST_TRIALS {
+            let solution = contact::solve(&Problem { tilt, ..problem }, &settings)?;
+            if scene.depth == 0.0 {
+                return Ok(solution);
+            }
+            // Between the surfaces the tilt is another one than at the depth where it is held.
+            let off = self.tilt(parts, &solution) - wanted;
+            if off.abs() * scene.half_length <= TILT_ERROR {
+                return Ok(solution);
+            }
+            let next = match last {
+                Some([before, was]) if was != off => tilt - off * (tilt - before) / (off - was),
+                _ => tilt - off,
+            };
+            last = Some([tilt, off]);
+            tilt = next;
+        }
+        Err(Error::NotConverged {
+            iterations: MOST_TRIALS,
+            residual: last.map_or(f64::INFINITY, |[_, off]| off.abs()),
+            remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
+        })
+    }
+}
+
+impl Trial<'_> {
+    /// The tilt at the depth where it is held.
+    fn tilt(&self, parts: &Parts, contact: &ContactSolution) -> f64 {
+        let scene = self.scene;
+        let (widths, modes) = (contact.half_widths.clone(), contact.coefficients.clone());
+        let pressure = Pressure::new(parts.axis.clone(), scene.is_symmetric(), widths, modes);
+        let moments = pressure.moments(&parts.wavenumbers);
+        let [block, roller] =
+            [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
+                Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
+            });
+        Motion::new(scene, [&block, &roller], pressure.ends(), scene.depth).tilt
+    }
+}
+
+/// The largest condition number of the bodies' equations, refused if rounding would not be
+/// negligible.
+fn checked_condition(bodies: &[Stack]) -> Result<f64> {
+    let condition = bodies.iter().map(Stack::condition).fold(1.0, f64::max);
+    if condition <= WORST_CONDITION {
+        return Ok(condition);
+    }
+    Err(Error::Unsound {
+        law: "the condition number of the end faces' equations",
+        value: condition,
+        limit: WORST_CONDITION,
+        remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
+    })
+}
+
+/// The contact of a scene on an `axis`, which holds one half of it if it is symmetric.
+fn problem<'a>(
+    scene: &Scene,
+    compliance: &'a Compliance<'a>,
+    axis: &'a Panels,
+    gap: &'a Shaped,
+    open: [bool; 2],
+) -> Problem<'a> {
+    let symmetric = scene.is_symmetric();
+    let (moment, tilt) = match scene.tilt {
+        Tilt::Held(tilt) => (None, tilt),
+        Tilt::Free(arm) => (Some(scene.load * arm), 0.0),
+    };
+    Problem {
+        compliance,
+        axis,
+        both_ends: !symmetric,
+        gap,
+        load: if symmetric { 0.5 * scene.load } else { scene.load },
+        moment,
+        tilt,
+        open: [open[0] && !symmetric, open[1]],
+        recedes: [scene.may_end() && !symmetric, scene.may_end()],
+        guess: None,
+    }
+}

@@ -1,0 +1,170 @@
+//! Rollers with profiles: Hertz's point contact, and what a table can do.
+
+use crate::common::small;
+use edgeline::base::Material;
+use edgeline::base::profile::Table;
+use edgeline::body::EdgeModel;
+use edgeline::case::{Case, Factors, ProfileKind, ProfileSpec};
+use edgeline::solve::{Options, SolvedCase};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Complete elliptic integrals K and E of the modulus `e`, by the arithmetic-geometric mean (Abramowitz
+/// and Stegun 1964, section 17.6).
+fn elliptic(e: f64) -> [f64; 2] {
+    let (mut a, mut b, mut c) = (1.0, (1.0 - e * e).sqrt(), e);
+    let (mut sum, mut power) = (0.5 * c * c, 0.5);
+    while c > 1e-16 {
+        (a, b, c) = (0.5 * (a + b), (a * b).sqrt(), 0.5 * (a - b));
+        power *= 2.0;
+        sum += power * c * c;
+    }
+    let k = 0.5 * PI / a;
+    [k, k * (1.0 - sum)]
+}
+
+/// Ratio of the radii of curvature, along the long axis to along the short one, of a contact with this
+/// ratio of axes (Johnson, Contact Mechanics, 1985, Eq. 4.28).
+fn radii_of(axes: f64) -> f64 {
+    let [k, e] = elliptic((1.0 - axes.powi(-2)).sqrt());
+    (axes * axes * e - k) / (k - e)
+}
+
+/// Largest pressure and both half-axes, the short one first, of the contact with this ratio of axes and
+/// the radius of curvature `long_m` along the long axis (Johnson 1985, Eqs. 4.25 and 4.26).
+fn ellipse(axes: f64, long_m: f64, e_star_pa: f64, force_n: f64) -> [f64; 3] {
+    let square = 1.0 - axes.powi(-2);
+    let [k, e] = elliptic(square.sqrt());
+    let short =
+        3.0 * force_n * (k - e) * 2.0 * long_m / (2.0 * PI * axes.powi(3) * square * e_star_pa);
+    let short = short.cbrt();
+    let long = axes * short;
+    [1.5 * force_n / (PI * short * long), short, long]
+}
+
+/// A crown of `ratio` roller radii on a long roller, so that the contact ends far from the ends of the
+/// bodies: a roller of 20 mm radius and 30 mm length under `force_n`.
+fn crowned(ratio: f64, force_n: f64, tolerance: f64) -> Case {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load: 1e-5, slenderness: 20.0, length_ratio: 1.0 };
+    let mut case = Case::from_factors("crowned", 0.02, steel, steel, factors);
+    (case.roller.length_m, case.block.length_m, case.load.force_n) = (0.03, 0.03, force_n);
+    let mut crown = ProfileSpec::new(ProfileKind::Crown);
+    crown.radius_m = Some(ratio * case.roller.radius_m);
+    case.roller.profile = Some(crown);
+    case.with_tolerance(tolerance)
+}
+
+/// Hertz's elliptic point contact (Johnson, Contact Mechanics, 1985, section 4.2).
+#[test]
+fn a_strong_crown_makes_an_elliptic_contact() {
+    for (axes, force_n) in [(3.0, 3000.0), (10.0, 3000.0)] {
+        let ratio = radii_of(axes);
+        for tolerance in [5e-3, 1e-3] {
+            let case = crowned(ratio, force_n, tolerance);
+            let long_m = ratio * case.roller.radius_m;
+            let [p_max, short, long] = ellipse(axes, long_m, case.contact_modulus(), force_n);
+            let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+            let hertz = solved.hertz();
+            let summary = solved.solution().summary;
+            let [from, to] = summary.contact_y_m;
+            let lines = solved.solution().line_loads;
+            let widest = lines.iter().map(|l| l.half_width).fold(0.0, f64::max) * hertz.c_m;
+            println!(
+                "axes {axes} at {tolerance}: p {:.5}, a {:.5}, b {:.5} of Hertz's; b = {:.2} C",
+                summary.p_centre_pa / p_max,
+                widest / short,
+                to / long,
+                to / hertz.c_m
+            );
+            assert_eq!(from, -to);
+            small("p_max", (summary.p_centre_pa / p_max - 1.0).abs(), 3e-3);
+            small("short half-axis", (widest / short - 1.0).abs(), 3e-3);
+            small("long half-axis", (to / long - 1.0).abs(), 3e-3);
+        }
+    }
+}
+
+/// A straight and a crowned roller, flush with a block, under loads in and beside the middle, for the
+/// program's whole way.
+fn case(profile: Option<ProfileSpec>, eccentricity_m: Option<f64>) -> Case {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load: 5e-4, slenderness: 5.0, length_ratio: 0.8 };
+    let mut case = Case::from_factors("case", 0.01, steel, steel, factors);
+    case.roller.profile = profile;
+    case.load.eccentricity_m = eccentricity_m;
+    case.check().unwrap();
+    case.with_tolerance(5e-3)
+}
+
+/// The drops of a logarithmic profile, with a line through the middle added.
+fn table(case: &Case, slope: f64) -> ProfileSpec {
+    let half = 0.5 * case.roller.length_m;
+    let places = (-200..=200).map(|i| half * f64::from(i) / 200.0);
+    let drop = |y: f64| -2e-6 * (1.0 - 0.95 * (y / half).powi(2)).ln() + slope * y;
+    let (y, drops): (Vec<f64>, Vec<f64>) = places.map(|y| (y, drop(y))).unzip();
+    let mut spec = ProfileSpec::new(ProfileKind::Table);
+    spec.file = Some("drops.csv".into());
+    spec.table = Some(Arc::new(Table::new(y, drops)));
+    spec
+}
+
+#[test]
+fn a_line_added_to_a_profile_changes_the_tilt_and_nothing_else() {
+    let eccentricity = 2e-4;
+    let plain = case(None, Some(eccentricity));
+    let options = Options::new(EdgeModel::QuarterSpace);
+    let [one, other] = [0.0, 3e-4].map(|slope| {
+        let case = case(Some(table(&plain, slope)), Some(eccentricity));
+        SolvedCase::new(&case, &options).unwrap().solution()
+    });
+    let turned = other.summary.tilt_rad - one.summary.tilt_rad;
+    // Where the drop is least, a monotone curve through the points is flat: another one with another line.
+    small("tilt", (turned / 3e-4 - 1.0).abs(), 1e-3);
+    let [one_line, other_line] = [&one, &other].map(|s| &s.curves.pressure[0]);
+    let half = 0.5 * plain.roller.length_m / one.curves.hertz.c_m;
+    for ((a, b), at) in one_line.p.iter().zip(&other_line.p).zip(&one_line.at) {
+        // At its singular end the pressure is that of the last nodes.
+        if half - at[1].abs() >= 0.1 {
+            small(&format!("pressure at {:.2}", at[1]), (a - b).abs(), 1e-4);
+        }
+    }
+    let moment: f64 = one.line_loads.iter().map(|l| l.y * l.weight * l.load).sum();
+    let force: f64 = one.line_loads.iter().map(|l| l.weight * l.load).sum();
+    let c_m = one.curves.hertz.c_m;
+    small("moment", (moment / force * c_m / eccentricity - 1.0).abs(), 1e-9);
+    small(
+        "load",
+        (force * c_m * c_m * one.curves.hertz.p0_pa / plain.load.force_n - 1.0).abs(),
+        1e-9,
+    );
+}
+
+/// The contact may end before the roller at one end, both or none.
+#[test]
+fn a_contact_ends_where_the_pressure_does() {
+    let crown = |radius_m: f64| {
+        let mut spec = ProfileSpec::new(ProfileKind::Crown);
+        spec.radius_m = Some(radius_m);
+        spec
+    };
+    let half = 0.5 * case(None, None).roller.length_m;
+    for (radius_m, eccentricity_m, open) in [
+        (10.0, None, [false, false]),
+        (0.05, None, [true, true]),
+        (0.05, Some(3e-4), [true, true]),
+        (0.3, Some(4e-4), [true, false]),
+        (0.3, Some(-4e-4), [false, true]),
+    ] {
+        let case = case(Some(crown(radius_m)), eccentricity_m);
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+        let solution = solved.solution();
+        let [from, to] = solution.summary.contact_y_m;
+        println!("{radius_m} {eccentricity_m:?}: {:.4} {:.4}", from / half, to / half);
+        assert_eq!([from > -half * (1.0 - 1e-9), to < half * (1.0 - 1e-9)], open, "{radius_m}");
+        for (y, open) in [(from, open[0]), (to, open[1])] {
+            let inside = solved.pressure(0.0, 0.999 * y / solved.hertz().c_m);
+            assert_eq!(inside < 0.15, open, "p = {inside} near {y} of {radius_m}");
+        }
+    }
+}
