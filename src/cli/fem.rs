@@ -5,7 +5,7 @@ use super::output::{Exit, print, print_json, say};
 use super::progress::Progress;
 use crate::base::Result;
 use crate::case::Case;
-use crate::fem::{Driver, MeshResult};
+use crate::fem::{Driver, MeshResult, check_shape};
 use crate::host::prepare_folder;
 use clap::{Args, ValueHint};
 use serde_json::json;
@@ -36,6 +36,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
+    check_shape(&case)?;
     prepare_folder(&arguments.out)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
     let interpreter = driver.interpreter();

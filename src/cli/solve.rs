@@ -9,7 +9,9 @@ use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, solution};
-use crate::solve::{CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, solve_on_cells};
+use crate::solve::{
+    CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells, solve_on_cells,
+};
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -145,6 +147,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
+    check_cells(case)?;
     let _lock = Lock::claim(&arguments.out)?;
     let bar = progress_bar();
     // In tenths of a decade of the residual.

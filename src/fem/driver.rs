@@ -164,7 +164,7 @@ impl Driver {
     /// takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
-        refuse_what_is_not_straight(case)?;
+        check_shape(case)?;
         prepare_folder(folder)?;
         // The mark of the processes must not depend on how the folder is named.
         let folder = &folder.canonicalize().map_err(|source| Error::Io {
@@ -368,8 +368,11 @@ fn read(path: &Path) -> Result<String> {
     )
 }
 
-/// Refuses bodies whose shape the request cannot say.
-fn refuse_what_is_not_straight(case: &Case) -> Result<()> {
+/// Refuses bodies whose shape finite elements do not take.
+///
+/// # Errors
+/// [`Error::Value`] with the key of the case.
+pub fn check_shape(case: &Case) -> Result<()> {
     let refuse = |key: &str, value: String| {
         Err(Error::Value {
             key: key.into(),

@@ -10,7 +10,7 @@ mod sum;
 mod tests;
 pub mod tools;
 
-pub use driver::{Driver, FemSettings, LinearSolver};
+pub use driver::{Driver, FemSettings, LinearSolver, check_shape};
 pub use reference::{ErrorEstimate, FemResults};
 pub use result::{
     FemSummary, LINE_NAMES, MeshResult, MeshSummary, ResultTexts, check_points, wanted_curves,

@@ -8,6 +8,7 @@ use super::solved::{Solution, most_stressed, wanted_curves};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, Columns, Grid};
 use crate::stress::curves::across_contact;
@@ -79,6 +80,24 @@ impl Default for CellOptions {
     }
 }
 
+/// Refuses a case that cells do not take.
+///
+/// # Errors
+/// [`Error::Value`] with what to do.
+pub fn check_cells(case: &Case) -> Result<()> {
+    let scene = Scene::new(case, EdgeModel::HalfSpace, None);
+    if scene.is_symmetric() && case.block.radius_m.is_none() {
+        return Ok(());
+    }
+    let reason = "cells take bodies with their middles at one place, parallel, on a flat block";
+    Err(Error::Value {
+        key: "--engine".into(),
+        value: "cells".into(),
+        reason: reason.into(),
+        remedy: "solve this case with --engine line".into(),
+    })
+}
+
 /// Solves `case` on cells; tells `progress` of the iteration's steps and its residual.
 ///
 /// # Errors
@@ -92,15 +111,7 @@ pub fn solve_on_cells(
 ) -> Result<CellSolution> {
     options.check(case)?;
     let scene = Scene::new(case, options.method, options.psi);
-    if !scene.is_symmetric() || case.block.radius_m.is_some() {
-        return Err(Error::Value {
-            key: "--engine".into(),
-            value: "cells".into(),
-            reason: "cells take bodies with their middles at one place, parallel, on a flat block"
-                .into(),
-            remedy: "solve this case with --engine line".into(),
-        });
-    }
+    check_cells(case)?;
     let start = Instant::now();
     let half_width = case.cells.map(|cells| cells.half_width_m / case.hertz().c_m);
     let first = grid(&scene, cells.counts, half_width.unwrap_or(FIRST_WIDTH))?;

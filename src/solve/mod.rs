@@ -20,7 +20,9 @@ mod summary;
 #[cfg(test)]
 mod tests;
 
-pub use cell_case::{CellDetails, CellOptions, CellSolution, solve_on_cells, stress_on_cells};
+pub use cell_case::{
+    CellDetails, CellOptions, CellSolution, check_cells, solve_on_cells, stress_on_cells,
+};
 pub use cells::PressureCell;
 pub use extent::{Extent, Outside};
 pub use grid::MOST_GRID_POINTS;

@@ -23,13 +23,14 @@ pub fn groups(keys: impl IntoIterator<Item = Option<SceneKey>>) -> Vec<Vec<usize
 mod tests {
     use super::*;
     use crate::body::EdgeModel;
-    use crate::case::{Draft, Form, KEYS, builtin_case};
+    use crate::case::{Cells, Draft, Form, KEYS, builtin_case};
     use crate::solve::Scene;
 
     #[test]
     fn a_solution_serves_cases_that_differ_in_scale_or_by_rounding() {
         let mut case = builtin_case("half-short").unwrap().unwrap();
         case.block.radius_m = Some(-0.05);
+        case.cells = Some(Cells { half_width_m: 1e-3 });
         let key =
             |draft: &Draft| Scene::new(&draft.case().unwrap(), EdgeModel::QuarterSpace, None).key();
         let own = Draft::of(&case, Form::Factors);
