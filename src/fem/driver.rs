@@ -10,7 +10,7 @@ use super::request::Request;
 use super::result::{MeshResult, MeshSummary, ResultTexts};
 use super::sum::sha256;
 use super::tools::{self, Interpreter};
-use crate::base::{BodyKind, Error, Result};
+use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{
     Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there, write_set,
@@ -160,7 +160,7 @@ impl Driver {
     /// failure all files that help to find the cause are kept.
     ///
     /// # Errors
-    /// [`Error::Value`] about bodies that are not straight, [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
+    /// [`Error::Value`] about a raceway, [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
     /// takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
@@ -373,22 +373,13 @@ fn read(path: &Path) -> Result<String> {
 /// # Errors
 /// [`Error::Value`] with the key of the case.
 pub fn check_shape(case: &Case) -> Result<()> {
-    let refuse = |key: &str, value: String| {
-        Err(Error::Value {
-            key: key.into(),
-            value,
-            reason: "finite elements take straight bodies on a flat block".into(),
-            remedy: "remove it, or solve the case with `edgeline solve`".into(),
-        })
-    };
-    for body in BodyKind::ALL {
-        if let Some(profile) = case.profile_spec(body) {
-            let key = format!("{}.profile.kind", body.name());
-            return refuse(&key, format!("{:?}", profile.kind.name()));
-        }
-    }
     match case.block.radius_m {
-        Some(radius_m) => refuse("block.radius_m", format!("{radius_m:e}")),
         None => Ok(()),
+        Some(radius_m) => Err(Error::Value {
+            key: "block.radius_m".into(),
+            value: format!("{radius_m:e}"),
+            reason: "finite elements take a flat block only".into(),
+            remedy: "remove it, or solve the case with `edgeline solve`".into(),
+        }),
     }
 }

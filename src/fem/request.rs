@@ -6,6 +6,7 @@ use crate::case::{Accuracy, Block, Case, Cells, Load, Pose, Roller};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
+use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 /// The form of a case in requests and records. It leaves out the accuracy and the cells, which are
@@ -30,8 +31,7 @@ pub(super) struct Problem {
 #[derive(Serialize)]
 pub(super) struct Request<'a> {
     schema: u32,
-    #[serde(with = "Problem")]
-    case: Case,
+    case: Value,
     mesh: Mesh,
     solver: Solver,
     gmsh: &'a Path,
@@ -59,13 +59,42 @@ struct WantedCurve {
     points_m: Vec<[f64; 3]>,
 }
 
+/// Points of a profile in a request.
+const PROFILE_POINTS: u32 = 401;
+
+/// The case as the program takes it: the form of a record, with profiles as the drops of points.
+fn case_of(case: &Case) -> Value {
+    #[derive(Serialize)]
+    struct Form(#[serde(with = "Problem")] Case);
+    let mut value = serde_json::to_value(Form(case.clone())).expect("plain data");
+    for body in BodyKind::ALL {
+        let Some(profile) = case.profile(body) else { continue };
+        let [from, to] = case.ends_m(body);
+        let half = 0.5 * (to - from);
+        let point = |i: u32| {
+            // Closer towards the ends, where profiles are steep.
+            let t = 2.0 * f64::from(i) / f64::from(PROFILE_POINTS - 1) - 1.0;
+            let y = half * (FRAC_PI_2 * t).sin();
+            // What has no limit at the end is cut just before it.
+            [y, profile.drop(y.clamp(-CUT * half, CUT * half))]
+        };
+        let own = value[body.name()].as_object_mut().expect("a body is a table");
+        own.remove("profile");
+        own.insert("profile_m".into(), json!((0..PROFILE_POINTS).map(point).collect::<Vec<_>>()));
+    }
+    value
+}
+
+/// Part of a half-length up to which a profile is taken as it is.
+const CUT: f64 = 1.0 - 1e-6;
+
 impl<'a> Request<'a> {
     /// Asks for the standard curves and pressure lines of `case` on a mesh of relative size `size`,
     /// with the linear solver called `linear`.
     pub fn new(case: &Case, size: f64, linear: &'static str, gmsh: &'a Path) -> Self {
         Self {
             schema: 1,
-            case: case.clone(),
+            case: case_of(case),
             mesh: Mesh { size },
             solver: Solver { linear, tolerance: 1e-8, max_iterations: 200 },
             gmsh,

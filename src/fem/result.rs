@@ -94,7 +94,7 @@ pub struct MeshResult {
     /// The summary of its run.
     pub summary: FemSummary,
     /// Contact pressure along y and along x, and stresses on the standard curves of both bodies, in
-    /// the order of [`standard_curves`], the block first.
+    /// the order of [`curves_on`], the block first.
     pub curves: Curves,
 }
 

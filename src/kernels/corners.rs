@@ -38,7 +38,7 @@ impl CornerRow {
     }
 }
 
-/// Sums over corners, each of one function, in the order of [`row_sums`].
+/// Sums over corners, each of one function, in the order of `row_sums`.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct CornerSums([f64; 8]);
 

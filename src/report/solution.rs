@@ -35,10 +35,10 @@ pub fn write<D: Serialize>(
     write_set(folder, &files)
 }
 
-/// As [`write`], into a folder that is locked meanwhile, and made if it is not there.
+/// As [`write()`], into a folder that is locked meanwhile, and made if it is not there.
 ///
 /// # Errors
-/// As [`write`]; [`crate::base::Error::Busy`] when another run has the folder.
+/// As [`write()`]; [`crate::base::Error::Busy`] when another run has the folder.
 pub fn write_locked<D: Serialize>(
     solution: &Solution<D>,
     options: &Options,

@@ -30,7 +30,7 @@ pub trait Cells: Sized {
     fn read(cells: &[&str]) -> Option<Self>;
 }
 
-/// A row of a table. [`columns!`] implements it.
+/// A row of a table. The macro `columns!` implements it.
 pub trait Row: Sized {
     /// The names of the columns that each field takes. Some depend on the range of the errors.
     fn columns(range: &Range) -> Vec<Vec<String>>;

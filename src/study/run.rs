@@ -66,7 +66,7 @@ pub struct Timed {
     /// Median seconds of all stages of FEM, and spread.
     pub seconds: (f64, f64),
     /// FEM's error on that mesh (p0): the largest RMS of one curve (see
-    /// [`super::bench::Accuracy::worst_rms`]), where it is known.
+    /// [`super::bench::Deviation::worst_rms`]), where it is known.
     pub error: Option<f64>,
     /// The models' tolerance.
     pub tolerance: f64,

@@ -113,8 +113,10 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
     std::fs::write(path.join("bad.toml"), good).unwrap();
     let said = refused(path, &["solve", "bad.toml", "--engine", "cells", "--out", "o"]);
     assert!(said.contains("with --engine line"), "{said}");
+    let raceway = good.replacen("length_m = 12e-3", "length_m = 12e-3\nradius_m = -0.05", 1);
+    std::fs::write(path.join("bad.toml"), raceway).unwrap();
     let said = refused(path, &["fem", "bad.toml", "--out", "o"]);
-    assert!(said.contains("finite elements take straight bodies"), "{said}");
+    assert!(said.contains("finite elements take a flat block only"), "{said}");
     assert_eq!(files(path), ["back.csv", "bad.toml", "short.csv"]);
 }
 
