@@ -4,7 +4,7 @@ use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::Scene;
-use crate::stress::curves::{CURVE_NAMES, Span, across_contact, curves_on};
+use crate::stress::curves::{CURVE_NAMES, END_CURVES, Span, across_contact, curves_on};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -246,6 +246,7 @@ pub(super) fn parse_curves(
     let names = StressTensor::NAMES.map(|name| format!("{name}_pa"));
     stress_columns.extend(names.iter().map(String::as_str));
     let table = Csv::parse(text, path, &stress_columns)?;
+    let names_of_curves = [&CURVE_NAMES[..], &END_CURVES.map(|[_, other]| other)].concat();
     let mut curves: Vec<(f64, StressCurve)> = Vec::new();
     for row in table.rows() {
         let row = row?;
@@ -253,7 +254,7 @@ pub(super) fn parse_curves(
             .into_iter()
             .find(|body| body.name() == row.text(0))
             .ok_or_else(|| row.nonsense(format!("there is no body '{}'", row.text(0))))?;
-        let name = row.one_of(1, &CURVE_NAMES)?;
+        let name = row.one_of(1, &names_of_curves)?;
         let at = [row.number(2)?, row.number(3)?, row.number(4)?].map(|v| v / hertz.c_m);
         let mut components = [0.0; 6];
         for (i, component) in components.iter_mut().enumerate() {
