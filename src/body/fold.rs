@@ -63,6 +63,9 @@ impl Fold {
 
     /// One part of functions on the line, in columns over the line's nodes, at the axis's nodes.
     pub fn part(&self, parity: Parity, values: &DMatrix<f64>) -> DMatrix<f64> {
+        if self.symmetric {
+            return values.clone();
+        }
         DMatrix::from_fn(values.nrows(), self.axis.len(), |row, node| {
             self.shares(parity, node).map(|(j, w)| w * values[(row, j)]).sum()
         })
@@ -71,10 +74,9 @@ impl Fold {
     /// The nodes of the line, with weights, that make one part at a `node` of the axis.
     fn shares(&self, parity: Parity, node: usize) -> impl Iterator<Item = (usize, f64)> {
         let [own, other] = &self.sides[node];
-        let (first, second) = if self.symmetric { (1.0, 0.0) } else { (0.5, 0.5 * parity.sign()) };
-        let other = if self.symmetric { &[][..] } else { other };
-        let own = own.iter().map(move |(j, w)| (*j, first * w));
-        own.chain(other.iter().map(move |(j, w)| (*j, second * w)))
+        let sign = parity.sign();
+        let own = own.iter().map(|(j, w)| (*j, 0.5 * w));
+        own.chain(other.iter().map(move |(j, w)| (*j, 0.5 * sign * w)))
     }
 
     /// Adds `factor` times the response of one part to `total`, a matrix over the nodes of the line:
@@ -86,6 +88,10 @@ impl Fold {
         factor: f64,
         total: &mut DMatrix<f64>,
     ) {
+        if self.symmetric {
+            total.zip_apply(response, |sum, own| *sum += factor * own);
+            return;
+        }
         // From the line to the axis.
         let mut spread = DMatrix::zeros(response.nrows(), self.places.len());
         for node in 0..self.axis.len() {
