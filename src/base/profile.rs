@@ -88,16 +88,6 @@ impl Profile {
         }
     }
 
-    /// |y| where the profile is not smooth, apart from the ends.
-    pub fn kinks(&self) -> Vec<f64> {
-        match self {
-            Self::Arc { straight: place, .. } | Self::Logarithm { start: place, .. } => {
-                if *place > 0.0 { vec![*place] } else { Vec::new() }
-            }
-            Self::Table(_) => Vec::new(),
-        }
-    }
-
     /// Whether both sides of the middle are alike.
     pub fn is_even(&self) -> bool {
         match self {

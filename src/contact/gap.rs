@@ -27,13 +27,6 @@ pub struct Shaped {
     pub steepness: f64,
 }
 
-impl Shaped {
-    /// The gap at x = 0.
-    pub fn along(&self, y: f64) -> f64 {
-        self.at(0.0, y)
-    }
-}
-
 impl Gap for Shaped {
     fn at(&self, x: f64, y: f64) -> f64 {
         let drops = self.profiles.iter().map(|(middle, profile)| profile.drop(y - middle));

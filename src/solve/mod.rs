@@ -9,13 +9,13 @@ mod grid;
 mod group;
 mod key_results;
 mod lines;
-mod motion;
 mod on_cells;
 mod options;
 mod scene;
 mod solved;
 mod solved_scene;
 mod summary;
+mod tilt;
 
 #[cfg(test)]
 mod tests;

@@ -1,8 +1,8 @@
 //! A scene whose contact is solved.
 
 use super::lines;
-use super::motion::Motion;
 use super::scene::{Scene, SceneBody, Tilt};
+use super::tilt;
 use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Shaped, Slices};
@@ -114,20 +114,22 @@ impl SolvedScene {
         let unit = scene.own_unit();
         let (asked, scene) = (scene, &scene.scaled(1.0 / unit));
         let gap = scene.gap();
-        let slices = scene.slices(&gap);
-        let mut line = Line::first(scene, &slices);
+        // A contact that cannot end before its bodies do needs no guess.
+        let slices = scene.may_end().then(|| scene.slices(&gap));
+        let slices = slices.as_ref();
+        let mut line = Line::first(scene, slices);
         if scene.may_end() {
             // The ends are found at low cost; on the way there no solution has to be sound.
             let coarse =
                 Resolution::of(SEARCH, &scene.end(BodyKind::Block), scene.corner_exponent());
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
-            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices: &slices };
+            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices };
             line = search.settled(line)?.line;
         }
         let tolerance = scene.tolerance;
         let soundness = SOUNDNESS * tolerance.max(Resolution::FINEST);
         let accuracy = Accuracy { tolerance, soundness };
-        let trial = Trial { scene, resolution, accuracy, gap: &gap, slices: &slices };
+        let trial = Trial { scene, resolution, accuracy, gap: &gap, slices };
         let Settled { line, parts, contact, setup } = trial.settled(line)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let pressure = Pressure::new(
@@ -238,7 +240,7 @@ impl SolvedScene {
         let [block, roller] = &fields;
         let own = &self.own;
         let ends = own.pressure.ends();
-        Motion::new(&own.scene, [block, roller], ends, depth / self.unit).tilt * self.unit
+        tilt::tilt(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
     }
 }
 
@@ -253,12 +255,17 @@ impl Scene {
         if widest > WIDER { widest } else { 1.0 }
     }
 
-    /// A first guess of the contact.
-    fn slices(&self, gap: &Shaped) -> Slices {
-        let (moment, tilt) = match self.tilt {
+    /// The load's moment if the tilt is free, and the tilt that is held otherwise.
+    fn moment_and_tilt(&self) -> (Option<f64>, f64) {
+        match self.tilt {
             Tilt::Held(tilt) => (None, tilt),
             Tilt::Free(arm) => (Some(self.load * arm), 0.0),
-        };
+        }
+    }
+
+    /// A first guess of the contact.
+    fn slices(&self, gap: &Shaped) -> Slices {
+        let (moment, tilt) = self.moment_and_tilt();
         Slices::new(gap, self.overlap(), self.load, moment, tilt)
     }
 }
@@ -273,8 +280,8 @@ struct Line {
 
 impl Line {
     /// A first guess.
-    fn first(scene: &Scene, slices: &Slices) -> Self {
-        Self::reaching(scene, slices.ends, MARGIN)
+    fn first(scene: &Scene, slices: Option<&Slices>) -> Self {
+        Self::reaching(scene, slices.map_or(scene.overlap(), |slices| slices.ends), MARGIN)
     }
 
     /// An axis up to `ends`, and at open ends a `margin` beyond them, in half-lengths.
@@ -329,7 +336,8 @@ struct Trial<'a> {
     resolution: &'a Resolution,
     accuracy: Accuracy,
     gap: &'a Shaped,
-    slices: &'a Slices,
+    /// A first guess; none where the contact cannot end before the bodies do.
+    slices: Option<&'a Slices>,
 }
 
 impl Trial<'_> {
@@ -412,8 +420,7 @@ impl Trial<'_> {
         let matrices = &parts.compliances;
         let compliance = Compliance { wavenumbers: &parts.wavenumbers, matrices };
         let problem = problem(scene, &compliance, &parts.axis, self.gap, line.open);
-        let guess = scene.may_end().then_some(self.slices);
-        let problem = Problem { guess, ..problem };
+        let problem = Problem { guess: self.slices, ..problem };
         let Tilt::Held(wanted) = scene.tilt else { return contact::solve(&problem, &settings) };
         let mut tilt = wanted;
         let mut last: Option<[f64; 2]> = None;
@@ -440,9 +447,7 @@ impl Trial<'_> {
             remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
         })
     }
-}
 
-impl Trial<'_> {
     /// The tilt at the depth where it is held.
     fn tilt(&self, parts: &Parts, contact: &ContactSolution) -> f64 {
         let scene = self.scene;
@@ -453,7 +458,7 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        Motion::new(scene, [&block, &roller], pressure.ends(), scene.depth).tilt
+        tilt::tilt(scene, [&block, &roller], pressure.ends(), scene.depth)
     }
 }
 
@@ -481,10 +486,7 @@ fn problem<'a>(
     open: [bool; 2],
 ) -> Problem<'a> {
     let symmetric = scene.is_symmetric();
-    let (moment, tilt) = match scene.tilt {
-        Tilt::Held(tilt) => (None, tilt),
-        Tilt::Free(arm) => (Some(scene.load * arm), 0.0),
-    };
+    let (moment, tilt) = scene.moment_and_tilt();
     Problem {
         compliance,
         axis,

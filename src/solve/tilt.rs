@@ -1,0 +1,53 @@
+//! The tilt of the bodies, of lines at a depth below their surfaces.
+
+use super::scene::Scene;
+use crate::base::{BodyKind, Panels};
+use crate::contact::Gap;
+use crate::stress::Field;
+
+/// Places along the contact.
+const PLACES: usize = 6;
+
+/// End of the first panel of the depths (C), and their nodes.
+const FIRST: f64 = 0.25;
+const ORDER: usize = 4;
+
+/// The tilt of the lines x = 0 at `depth` below both surfaces, in units of C / (2 R), by least squares over
+/// the contact from `ends` to end, from the stress fields of the block and of the roller.
+///
+/// Where the bodies touch they have closed the gap. What the line approaches beyond that is the
+/// shortening of both bodies above it, the integral of the strain (sigma_zz - nu (sigma_xx +
+/// sigma_yy)) / E. No reference far away is needed, on which the tilt would depend.
+pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f64) -> f64 {
+    let gap = scene.gap();
+    let along = Panels::new(ends.to_vec(), PLACES);
+    let mut breaks = vec![0.0];
+    let mut next = FIRST;
+    while 1.5 * next < depth {
+        breaks.push(next);
+        next *= 2.0;
+    }
+    breaks.push(depth);
+    let down = Panels::new(breaks, ORDER);
+    let closed = |y: f64| -> f64 {
+        let bodies = BodyKind::ALL.into_iter().zip(fields);
+        let shortened = bodies.map(|(kind, field)| {
+            let body = &scene.bodies[kind];
+            let column = field.down(&[0.0], y, down.nodes());
+            let strains = column.iter().zip(down.weights()).map(|(row, weight)| {
+                let s = row[0];
+                weight * (body.nu * (s.xx + s.yy) - s.zz)
+            });
+            // 1 / E in units of 1 / E*.
+            strains.sum::<f64>() * body.share / (1.0 - body.nu * body.nu)
+        });
+        gap.at(0.0, y) + shortened.sum::<f64>()
+    };
+    let values: Vec<f64> = along.nodes().iter().map(|y| closed(*y)).collect();
+    let middle = 0.5 * (ends[0] + ends[1]);
+    let sum = |of: &dyn Fn(f64, f64) -> f64| -> f64 {
+        let all = along.nodes().iter().zip(along.weights()).zip(&values);
+        all.map(|((y, w), value)| w * of(y - middle, *value)).sum()
+    };
+    sum(&|u, value| u * value) / sum(&|u, _| u * u)
+}
