@@ -21,9 +21,10 @@ use std::path::PathBuf;
 
 /// Solves one case with the semi-analytical method.
 ///
-/// Writes summary.json, pressure.csv (the contact pressure, one row per cell), curves.csv (stresses
-/// on the standard curves of both bodies) and, with --points, points.csv into the output folder.
-/// Takes well under a second; with --field, a few seconds at most.
+/// Writes summary.json, pressure.csv (the contact pressure, one row per cell), line_load.csv (load
+/// per length and half-width along the contact), curves.csv (stresses on the standard curves of both
+/// bodies) and, with --points, points.csv into the output folder. Takes well under a second; with
+/// --field, or for a scene that is not symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
 /// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums.

@@ -57,6 +57,14 @@ impl Source {
         }
     }
 
+    /// The name for readers.
+    pub fn title(&self) -> &str {
+        match self {
+            Source::Model(method) => method.name(),
+            Source::Engine(engine) => engine.title(),
+        }
+    }
+
     /// The engine, if this is a reference and no model.
     pub fn engine(&self) -> Option<&Engine> {
         match self {

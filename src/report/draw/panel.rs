@@ -62,7 +62,7 @@ pub fn look(source: &Source) -> Look {
             look("c-quarter-space", [0x00, 0x72, 0xb2], None, Marker::Circle)
         }
         Source::Engine(engine) if *engine == Engine::published() => {
-            look("c-cells", [0x7a, 0x5c, 0x00], dash(1.0, 2.0), Marker::Diamond)
+            look("c-guilbault-cells", [0x7a, 0x5c, 0x00], dash(1.0, 2.0), Marker::Diamond)
         }
         Source::Engine(engine) => {
             let is_first = *engine == Engine::fenicsx();

@@ -8,7 +8,8 @@
   const controls = { case: byId("case"), body: byId("body"), curve: byId("curve"), quantity: byId("quantity"),
     units: byId("units"), show: byId("show") };
   const SVG = "http://www.w3.org/2000/svg";
-  const DASH = { "half-space": "2 4", mirror: "6 4", guilbault: "11 5", "quarter-space": "", fem: "" };
+  const DASH = { "half-space": "2 4", mirror: "6 4", guilbault: "11 5", "quarter-space": "", "guilbault-cells": "1 3",
+    fem: "" };
   const hiddenSources = new Set();
   let view = null; // visible range of the running coordinate, null for all of it
   let cursor = null; // index of the point that is read out
@@ -32,6 +33,7 @@
       case "mirror": return element("path", { ...at, d: `M${x - 4} ${y - 4}l8 8m0 -8l-8 8` });
       case "guilbault": return element("rect", { ...at, x: x - 3.5, y: y - 3.5, width: 7, height: 7 });
       case "quarter-space": return element("circle", { ...at, cx: x, cy: y, r: 4.5 });
+      case "guilbault-cells": return element("path", { ...at, d: `M${x} ${y - 5}l5 5l-5 5l-5 -5z` });
       default: return element("circle", { class: "mark", fill: colour("fem"), cx: x, cy: y, r: 2.8 });
     }
   }

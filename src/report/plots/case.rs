@@ -99,13 +99,11 @@ impl<'a> CasePlots<'a> {
     fn series(&self, curve: Curve, axis: Axis) -> Vec<Series> {
         let series = |source: &Source| {
             let points = self.points(curve, source);
-            let (name, own_errors) = match source {
-                Source::Model(method) => (method.name().to_string(), None),
-                Source::Engine(engine) => (
-                    format!("{} (band: its own error)", engine.title()),
-                    self.own_errors(curve, source, points.len()),
-                ),
+            let (whose, own_errors) = match source.is_engine() {
+                true => (" (band: its own error)", self.own_errors(curve, source, points.len())),
+                false => ("", None),
             };
+            let name = format!("{}{whose}", source.title());
             let half = self.case.slenderness;
             let beyond = points.iter().map(|(at, _)| !away_from_edge(*at, half, self.excluded()));
             (!points.is_empty()).then(|| Series {

@@ -3,7 +3,6 @@
 use crate::report::draw::{Figure, Panel, Series, look};
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::StudyRow;
-use crate::study::Source;
 use crate::study::response::Response;
 
 /// Run time against error: each model and reference in each case.
@@ -21,10 +20,8 @@ pub(super) fn figure(files: &StudyFiles) -> Figure {
                     let error = if source.is_engine() { own(row) } else { row.response(of_model) };
                     Some((row.seconds?, error?))
                 };
-                let name = match source {
-                    Source::Model(method) => method.name().to_string(),
-                    Source::Engine(engine) => format!("{} (its own error)", engine.title()),
-                };
+                let whose = if source.is_engine() { " (its own error)" } else { "" };
+                let name = format!("{}{whose}", source.title());
                 Series::marks(&name, look(source), rows.filter_map(point).collect())
             })
             .collect(),
