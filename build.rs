@@ -2,6 +2,7 @@
 //! Python sources of the finite-element model, so that the lists are always complete. Evaluates the
 //! closed forms for the tables of stresses, which would take longer than a solve.
 
+use kernels::line_load::{WaveStress, exact_along};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -27,18 +28,20 @@ fn main() {
 
 /// Writes the lists of recorded results and of the Python sources.
 fn embed_files(root: &Path, out: &Path) {
-    println!("cargo::rerun-if-changed=results/reference");
-    let mut records = String::from("&[");
-    for folder in children(&root.join("results/reference")) {
-        if folder.join("record.json").is_file() {
-            let files =
-                ["record.json", "curves.csv", "pressure.csv"].map(|f| include(&folder.join(f)));
-            let name = folder.file_name().expect("a child has a name");
-            write!(records, "({name:?}, [{}]),", files.join(", ")).expect("a string grows");
+    for (from, to) in [("reference", "records.rs"), ("calculix", "records_calculix.rs")] {
+        println!("cargo::rerun-if-changed=results/{from}");
+        let mut records = String::from("&[");
+        for folder in children(&root.join("results").join(from)) {
+            if folder.join("record.json").is_file() {
+                let files =
+                    ["record.json", "curves.csv", "pressure.csv"].map(|f| include(&folder.join(f)));
+                let name = folder.file_name().expect("a child has a name");
+                write!(records, "({name:?}, [{}]),", files.join(", ")).expect("a string grows");
+            }
         }
+        records.push(']');
+        fs::write(out.join(to), records).expect("OUT_DIR can be written");
     }
-    records.push(']');
-    fs::write(out.join("records.rs"), records).expect("OUT_DIR can be written");
 
     // Cargo watches the files, not their folder, which also contains the interpreter's cache. A new
     // file is found nevertheless, because another one must change to import it.
@@ -60,10 +63,20 @@ fn tabulate(out: &Path) {
         println!("cargo::rerun-if-changed=src/kernels/{file}.rs");
     }
     println!("cargo::rerun-if-changed=build.rs");
+    for (name, load) in [("wave", kernels::line_load::exact as Load), ("along", exact_along)] {
+        tabulate_load(out, name, load);
+    }
+}
+
+/// The stresses of a line load of a wavenumber, in a material of some Poisson's ratio, at an offset and a depth.
+type Load = fn(f64, f64, f64, f64) -> WaveStress;
+
+/// Writes the tables of the stresses of a `load`.
+fn tabulate_load(out: &Path, name: &str, load: Load) {
     let stresses = |(u, v): (f64, f64)| {
         let rho = u.hypot(v);
         let [zero, one] = [0.0, 1.0].map(|nu| {
-            let s = kernels::line_load::exact(1.0, nu, u, v);
+            let s = load(1.0, nu, u, v);
             [s.xx, s.ww, s.dd, s.wd, s.xw, s.xd].map(|s| rho * s)
         });
         (zero, std::array::from_fn::<f64, 6, _>(|c| one[c] - zero[c]))
@@ -72,12 +85,12 @@ fn tabulate(out: &Path) {
     for (zero, more) in kernels::patches::STRESS.places().map(stresses) {
         bytes.extend(zero.iter().chain(&more).flat_map(|s| (*s as f32).to_le_bytes()));
     }
-    fs::write(out.join("wave_stress.f32"), &bytes).expect("OUT_DIR can be written");
+    fs::write(out.join(format!("{name}_stress.f32")), &bytes).expect("OUT_DIR can be written");
     bytes.clear();
     for (zero, more) in kernels::patches::WW.places().map(stresses) {
         bytes.extend([zero[1], more[1]].iter().flat_map(|s| s.to_le_bytes()));
     }
-    fs::write(out.join("wave_ww.f64"), &bytes).expect("OUT_DIR can be written");
+    fs::write(out.join(format!("{name}_ww.f64")), &bytes).expect("OUT_DIR can be written");
 }
 
 /// The names in a folder, sorted; none if there is no folder.

@@ -9,7 +9,7 @@ use edgeline::base::{Material, Parity};
 use edgeline::body::{Body, EdgeModel, Layer, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::contact::{self, Compliance, ContactSettings, Problem, Straight};
-use edgeline::kernels::wave::{Places, WAVES, WaveTable};
+use edgeline::kernels::wave::{Direction, Places, WAVES, Wanted, WaveTable};
 use edgeline::kernels::{deflection, line_load, love};
 use edgeline::solve::{Options, Scene, SolvedScene, solve};
 use edgeline::stress::grid::on_grid;
@@ -37,12 +37,12 @@ fn case(slenderness: f64, length_ratio: f64) -> Case {
 }
 
 fn kernels(c: &mut Criterion) {
-    let table = WaveTable::new(NU);
+    let table = WaveTable::new(Direction::Into, NU);
     let mut group = c.benchmark_group("kernels");
     for n in [16usize, 256, 4096] {
         // Distances from a hundredth to ten half-widths, as in a field.
         let places: Vec<f64> = (0..n).map(|i| 0.01 * 1000f64.powf(i as f64 / n as f64)).collect();
-        let (seen, loads) = (Places::new(places.clone(), 0.5, true), vec![[1.0; WAVES]; n]);
+        let (seen, loads) = (Places::new(places.clone(), 0.5, false), vec![[1.0; WAVES]; n]);
         group.throughput(Throughput::Elements(n as u64));
         group.bench_with_input(BenchmarkId::new("love_rectangle", n), &places, |b, places| {
             b.iter(|| {
@@ -66,10 +66,14 @@ fn kernels(c: &mut Criterion) {
         });
         group.throughput(Throughput::Elements((n * WAVES) as u64));
         group.bench_with_input(BenchmarkId::new("line_load_table_sum", n), &seen, |b, seen| {
-            b.iter(|| table.sum(&[1.3; WAVES], black_box(seen), f64::INFINITY, &loads));
+            b.iter(|| {
+                table.sum(&[1.3; WAVES], black_box(seen), f64::INFINITY, &loads, Wanted::PLAIN)
+            });
         });
     }
-    group.bench_function("line_load_table_build", |b| b.iter(|| WaveTable::new(black_box(NU))));
+    group.bench_function("line_load_table_build", |b| {
+        b.iter(|| WaveTable::new(Direction::Into, black_box(NU)))
+    });
     group.finish();
 }
 
@@ -78,7 +82,8 @@ fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let block = &scene.bodies.block;
     let shape = Shape { half: block.half, nu: block.nu };
     let line = resolution.contact_axis(scene.half_length);
-    let body = Body::new(&line, shape, scene.end(BodyKind::Block), Parity::Even, resolution);
+    let body =
+        Body::new(&line, shape, scene.end(BodyKind::Block), (Parity::Even, false), resolution);
     let wavenumbers = resolution.wavenumbers(block.half);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)
@@ -171,7 +176,7 @@ fn complete(c: &mut Criterion) {
         });
         c.bench_function(&format!("complete/cold/{name}"), |b| {
             b.iter(|| {
-                black_box(WaveTable::new(black_box(NU)));
+                black_box(WaveTable::new(Direction::Into, black_box(NU)));
                 solve(&case, &options).expect("it converges")
             });
         });

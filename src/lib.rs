@@ -53,6 +53,7 @@
 //! | [`body`] | a finite body's compliance per wavenumber, one file per edge model |
 //! | [`contact`] | load-controlled contact of two bodies |
 //! | [`stress`] | stresses at points, standard curves, critical points |
+//! | [`fatigue`] | measures of fatigue on histories of stresses |
 //! | `host` | complete files, locked folders, memory, child processes |
 //! | [`cells`] | contact and stresses on uniform cells of constant pressure, the published method |
 //! | [`case`](mod@case) | case and study files, their validation and expansion |
@@ -60,6 +61,7 @@
 //! | [`fem`] | the driver of gmsh and FEniCSx, and the reader of recorded curves |
 //! | [`study`] | pairing of curves, errors, factorial effects, timing, gates |
 //! | [`report`] | one file per form of output |
+//! | [`explore`] | the page in the browser on which a case is changed, and its server |
 //! | [`cli`] | one file per subcommand |
 
 // The one exception is `host/system.rs`, which gives the reason.
@@ -74,6 +76,8 @@ pub mod body;
 pub mod contact;
 
 pub mod stress;
+
+pub mod fatigue;
 
 mod host;
 
@@ -91,6 +95,9 @@ pub mod study;
 
 #[cfg(feature = "cli")]
 pub mod report;
+
+#[cfg(feature = "cli")]
+pub mod explore;
 
 #[cfg(feature = "cli")]
 pub mod cli;

@@ -42,6 +42,7 @@ need python3-pytest /usr/bin/python3 -c 'import pytest'
 # The reference BLAS makes the finite elements several times slower.
 need libopenblas0-serial test -e /usr/lib/"$(uname -m)"-linux-gnu/openblas-serial/libblas.so.3
 need openmpi-bin command -v mpirun
+need calculix-ccx command -v ccx
 need gcc command -v cc
 need python3-venv /usr/bin/python3 -c 'import ensurepip'
 # The page is tested in a real browser.
@@ -116,6 +117,9 @@ cargo test --profile fast -- --include-ignored
 
 step "the Python package"
 bash tests/python.sh
+
+step "the site of the documentation"
+bash tests/site.sh
 
 step "done"
 printf '%s\n' "${seconds[@]}"

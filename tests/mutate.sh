@@ -27,7 +27,7 @@ mutants=(
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0 * i.weight, ..*i }) @@ .map(|i| Image { weight: i.weight, ..*i }) @@ $solver"
     "src/contact/solver.rs @@ None => (problem.load / load, 0.0), @@ None => (0.8 * problem.load / load, 0.0), @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
-    "src/kernels/strip.rs @@ [fi + hr, fi - hr, -hi] @@ [fi + hr, fi + hr, -hi] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
+    "src/kernels/strip.rs @@ [f + g, f - g, -h] @@ [f + g, f + g, -h] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )

@@ -12,7 +12,7 @@ from pathlib import Path
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from .lifetime import follow_driver  # noqa: E402
-from .request import FemError, read_request  # noqa: E402
+from .request import ENGINES, FemError, read_request  # noqa: E402
 
 
 def _log(text):
@@ -28,17 +28,37 @@ def _mesh(arguments):
              f"{data['quality_min']:.2f}, {summary['seconds'][body]:.1f} s")
 
 
+def _deck(arguments):
+    from .deck import FILES, write_deck
+
+    bodies, _ = write_deck(read_request(arguments.request), arguments.folder)
+    _log(f"wrote {', '.join(FILES)}: {sum(len(body.cells) for body in bodies.values())} elements, "
+         f"{3 * sum(len(body.points) for body in bodies.values())} unknowns")
+
+
 def _solve(arguments):
+    request = read_request(arguments.request)
+    summary = _by_calculix(request, arguments) if request.engine == "calculix" else _by_fenicsx(request, arguments)
+    if summary is not None:
+        _log(f"done: {summary['unknowns']} unknowns, {summary['seconds']['total']:.1f} s, "
+             f"{summary['peak_memory_mib'] / 1024:.2f} GiB")
+
+
+def _by_calculix(request, arguments):
+    from .calculix import solve_case
+
+    return solve_case(request, arguments.folder, _log)
+
+
+def _by_fenicsx(request, arguments):
+    """The summary on rank 0, nothing on the others."""
     from mpi4py import MPI
 
     from .model import solve_case
 
     comm = MPI.COMM_WORLD
-    summary = solve_case(read_request(arguments.request), arguments.folder, comm,
-                         _log if comm.rank == 0 else lambda text: None)
-    if comm.rank == 0:
-        _log(f"done: {summary['unknowns']} unknowns, {summary['seconds']['total']:.1f} s, "
-             f"{summary['peak_memory_mib'] / 1024:.2f} GiB")
+    summary = solve_case(request, arguments.folder, comm, _log if comm.rank == 0 else lambda text: None)
+    return summary if comm.rank == 0 else None
 
 
 def _probe(arguments):
@@ -61,13 +81,13 @@ def _cases(arguments):
 def _record(arguments):
     from .record import Run, read_cases, record
 
-    cases = read_cases(arguments.folder / "cases.toml")
+    listed = arguments.list or arguments.folder / "cases.toml"
+    cases = read_cases(listed)
     names = arguments.cases or list(cases)
     unknown = [name for name in names if name not in cases]
     if unknown:
-        raise FemError(f"there is no case '{unknown[0]}' in {arguments.folder / 'cases.toml'}; "
-                       f"known are {', '.join(cases)}")
-    run = Run(arguments.linear, arguments.ranks, arguments.launcher)
+        raise FemError(f"there is no case '{unknown[0]}' in {listed}; known are {', '.join(cases)}")
+    run = Run(arguments.linear, arguments.ranks, arguments.engine, arguments.launcher)
     # Coarse meshes of all cases come first, so that an early stop leaves a result for
     # every case.
     for size in sorted(arguments.sizes, reverse=True):
@@ -85,6 +105,7 @@ def main():
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     for name, run, what in (
         ("mesh", _mesh, "write .geo files and run gmsh on them"),
+        ("deck", _deck, "write the input deck for CalculiX and Abaqus from the meshes"),
         ("solve", _solve, "solve the contact and write curves.csv, pressure.csv and fem.json"),
     ):
         command = commands.add_parser(name, help=what)
@@ -94,6 +115,8 @@ def main():
     command = commands.add_parser("record", help="add meshes of cases to the recorded reference curves")
     command.add_argument("folder", type=Path, help="folder with cases.toml, one subfolder a case")
     command.add_argument("--cases", nargs="+", help="names of cases; all of cases.toml if left out")
+    command.add_argument("--list", type=Path, help="file of the cases (default: cases.toml of the folder)")
+    command.add_argument("--engine", choices=ENGINES, default=ENGINES[0], help="code (default: %(default)s)")
     command.add_argument("--sizes", nargs="+", type=float, default=[2.0, 1.4, 1.0],
                          help="mesh sizes, 1 is the production mesh (default: 2 1.4 1)")
     command.add_argument("--linear", choices=("direct", "iterative"), default="direct",

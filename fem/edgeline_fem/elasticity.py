@@ -187,11 +187,20 @@ class Body:
         normal to the unloaded surface z = h(x), and its sinking is that of the surface at fixed x,
         u_z - h'(x) u_x. The two are conjugate, so that the compliance is symmetric.
         """
+        first, answer = self._solve(forces, lambda own: (-self._tilt * own, own))
+        return self._gathered(self._contact, answer[first + 2] - self._tilt * answer[first])
+
+    def drag(self, forces):
+        """Load the body with nodal ``forces`` along its surface, towards +x; they are the x components."""
+        self._solve(forces, lambda own: (own, self._tilt * own))
+
+    def _solve(self, forces, components):
+        """Solve for nodal loads, the x and z ``components`` of ``forces``; returns the contact nodes' first rows of
+        the answer, and the answer."""
         rows, numbers, _ = self._contact
         first = 3 * rows
         self._load.set(0.0)
-        self._load.array[first] = -self._tilt * forces[numbers]
-        self._load.array[first + 2] = forces[numbers]
+        self._load.array[first], self._load.array[first + 2] = components(forces[numbers])
         self._solver.solve(self._load, self._answer)
         if self._solver.getConvergedReason() < 0:
             raise FemError(
@@ -200,11 +209,15 @@ class Body:
             )
         self.iterations += self._solver.getIterationNumber()
         self.solves += 1
-        answer = self._answer.array
-        return self._gathered(self._contact, answer[first + 2] - self._tilt * answer[first])
+        return first, self._answer.array
 
-    def keep(self):
-        """Make the last solve the body's state; returns the force that its supports carry along z."""
+    def forget_solver(self):
+        """Free the memory of the factored stiffness; the state stays."""
+        self._solver.destroy()
+        self.matrix.destroy()
+
+    def keep(self, component=2):
+        """Make the last solve the body's state; returns the force that its supports carry along ``component``."""
         self.displacement.x.array[: 3 * self._owned] = self._answer.array
         self.displacement.x.scatter_forward()
         test = ufl.TestFunction(self.space)
@@ -212,7 +225,7 @@ class Body:
         inner = compat.assemble_vector(
             ufl.inner(self._stress(self.displacement), self._strain(test)) * volume
         )
-        held = np.fromiter(self._held[2], dtype=np.int64, count=len(self._held[2]))
+        held = np.fromiter(self._held[component], dtype=np.int64, count=len(self._held[component]))
         return self.comm.allreduce(-float(inner.array[held].sum()))
 
     def stress_field(self, **options):

@@ -14,13 +14,12 @@ import json
 import math
 import os
 import resource
-import subprocess
 import time
 from pathlib import Path
 
 import numpy as np
 
-from .lifetime import die_with_parent
+from .programs import run_program
 from .request import FemError
 from .scene import BODIES, Scene
 
@@ -392,31 +391,6 @@ def write_atomically(path, text):
     os.replace(temporary, path)
 
 
-# Limit of gmsh's output (bytes); only a faulty run prints more.
-MAX_OUTPUT = 1 << 20
-
-
-def _run(command):
-    """Run a program to its end: its exit code and what it printed.
-
-    Raises :class:`FemError` if it cannot be run, or prints more than ``MAX_OUTPUT``, which ends it.
-    """
-    try:
-        # It ends with this process; its output may be arbitrary bytes.
-        with subprocess.Popen(
-            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-            preexec_fn=die_with_parent,
-        ) as process:
-            said = process.stdout.read(MAX_OUTPUT + 1)
-            if len(said) > MAX_OUTPUT:
-                process.kill()
-                raise FemError(f"'{command[0]}' printed more than {MAX_OUTPUT >> 20} MiB and was stopped; "
-                               "see what it is, or name another gmsh program")
-    except OSError as error:
-        raise FemError(f"gmsh program '{command[0]}' cannot be run: {error.strerror}") from error
-    return process.returncode, said.decode(errors="replace")
-
-
 def run_gmsh(program, geo, msh, vtk):
     """Mesh ``geo`` into ``msh`` (and ``msh`` with suffix .vtk) by the gmsh program, one thread."""
     part = Path(f"{msh}.part")
@@ -427,7 +401,7 @@ def run_gmsh(program, geo, msh, vtk):
         # Files of an earlier gmsh run must not be taken for those of this one.
         output.unlink(missing_ok=True)
         command = [program, "-3", "-nt", "1", "-v", "2", "-format", kind, "-o", str(output), str(geo)]
-        code, said = _run(command)
+        code, said = run_program(command, "gmsh")
         complaints = "\n".join(said.strip().splitlines()[-10:])
         if code != 0 or not output.exists() or "Error" in said:
             raise FemError(f"gmsh failed on {geo} (exit code {code}): {complaints}")
@@ -442,7 +416,7 @@ def processor_seconds():
 
 def gmsh_version(program):
     """The version that the gmsh program prints; :class:`FemError` if it cannot be run."""
-    code, said = _run([program, "--version"])
+    code, said = run_program([program, "--version"], "gmsh")
     if code != 0 or not said.strip():
         raise FemError(f"gmsh program '{program}' does not tell its version (exit code {code}): {said}")
     return said.strip().splitlines()[-1]

@@ -1,11 +1,7 @@
 """The two-body model of one case: solve the contact, recover stresses, write the results."""
 
-import csv
 import dataclasses
-import io
 import json
-import os
-import platform
 import resource
 import time
 from pathlib import Path
@@ -18,15 +14,12 @@ from .contact import (
 )
 from .elasticity import Body, load_mesh
 from .meshing import processor_seconds, write_atomically
-from .recovery import invariants
 from .request import FemError
+from .results import CURVE_HEADER, blas, curve_table, machine_versions, table
 from .sampling import Sampler
 from .scene import BODIES, Scene, surface_depth, surface_slope
 
-CURVE_HEADER = ("body", "curve", "x_m", "y_m", "z_m",
-                *(f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")), "von_mises_pa", "tau_max_pa")
 PRESSURE_HEADER = ("line", "x_m", "y_m", "p_pa", "p_lumped_pa", "p_stress_pa")
-
 
 
 def boundary_conditions(scene):
@@ -42,36 +35,19 @@ def boundary_conditions(scene):
         "traction",
         "contact": "frictionless; nodal gaps along z, at fixed x, are never negative, nodal forces are normal to "
         f"the unloaded surfaces and never pull, the sum of their z components is the load{tilt}",
+        **({} if not scene.friction else {
+            "sliding": "a second solve of each body under tractions of friction times the nodal forces, along the "
+            "surface; x = 0: plane of antisymmetry (u_y = u_z = 0); bottom and mid-plane: u_x = u_z = 0",
+        }),
     }
 
 
-def processor():
-    """The processor's name as the system states it."""
-    try:
-        for line in Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    except OSError:
-        pass
-    return platform.processor() or platform.machine()
-
-
-def blas():
-    """File name of the BLAS library that this process has loaded."""
-    try:
-        maps = Path("/proc/self/maps").read_text(encoding="utf-8")
-    except OSError:
-        return "unknown"
-    names = {os.path.realpath(line.split()[-1]) for line in maps.splitlines() if "blas" in line}
-    kept = sorted({"/".join(Path(name).parts[-2:]) for name in names if "libblas" in name})
-    return kept[0] if kept else "unknown"
-
-
-def build_bodies(comm, folder, request, y_contact, plane_strain=False):
+def build_bodies(comm, folder, request, y_contact, plane_strain=False, sliding=False):
     """Both bodies as ``{"block": Body, "roller": Body}`` from the meshes in ``folder``.
 
     ``y_contact``: the meshes' element boundaries along the overlap. ``plane_strain`` also holds the end faces
-    along y. Returns the bodies and the seconds spent reading.
+    along y. ``sliding``: x = 0 is the plane of antisymmetry of what friction does, and the supports hold along x as well. Returns the
+    bodies and the seconds spent reading.
     """
     case, scene = request.case, Scene.of(request.case)
     scales = case.scales()
@@ -86,11 +62,14 @@ def build_bodies(comm, folder, request, y_contact, plane_strain=False):
         def on(axis, value, tolerance=1e-7 * supports[name]):
             return lambda x: np.abs(x[axis] - value) < tolerance
 
-        fixed = [(0, on(0, 0.0)), (2, on(2, supports[name]))]
+        support = on(2, supports[name])
+        fixed = [(0, on(0, 0.0)), (2, support)]
+        if sliding:
+            fixed = [(1, on(0, 0.0)), (2, on(0, 0.0)), (0, support), (2, support)]
         pinned = []
         if scene.symmetric:
             fixed.insert(1, (1, on(1, 0.0)))
-        else:
+        elif not sliding:
             middle = y_contact[len(y_contact) // 2]
             pinned.append((1, lambda x: on(0, 0.0)(x) & on(1, middle)(x) & on(2, supports[name])(x)))
         if plane_strain:
@@ -127,6 +106,20 @@ class Pressed:
     solution: ContactSolution
     tilt: float
     reaction_error: float
+
+
+def drag_bodies(bodies, grid, scene, forces):
+    """Leave ``bodies``, built for sliding, in their state under the scene's friction and the nodal ``forces``.
+
+    Tractions are those of pressures, along the surface: towards +x on the block, towards -x on the roller. Returns
+    the relative error of the supports' reactions, the larger of both bodies.
+    """
+    _number_contact(bodies, grid, scene.radius)
+    errors = []
+    for name, towards in (("block", 1.0), ("roller", -1.0)):
+        bodies[name].drag(towards * scene.friction * forces)
+        errors.append(abs(towards * bodies[name].keep(0) / (scene.friction * scene.load) - 1.0))
+    return max(errors)
 
 
 def _number_contact(bodies, grid, radius):
@@ -210,33 +203,12 @@ def _hold(press, scene, tolerance):
 
 def peak_memory(comm):
     """Largest resident memory so far, summed over the ranks (MiB)."""
-    kib = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-    return comm.allreduce(kib) / 1024.0
+    return comm.allreduce(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss) / 1024.0
 
 
 def versions():
     """Versions of everything that a result depends on, and the processor."""
-    return {**compat.versions(), "blas": blas(), "python": platform.python_version(),
-            "processor": processor()}
-
-
-def _table(header, rows):
-    """CSV text of ``rows``: (names, numbers)."""
-    text = io.StringIO()
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(header)
-    writer.writerows([*names, *(f"{v:.9g}" for v in numbers)] for names, numbers in rows)
-    return text.getvalue()
-
-
-def _curves(request, sampler):
-    """The text of curves.csv."""
-    scales, rows = request.case.scales(), []
-    for curve in request.curves:
-        stress = sampler.stress(curve.body, np.array(curve.points_m) / scales.c_m)
-        values = np.hstack([stress, np.stack(invariants(stress), axis=1)]) * scales.p0_pa
-        rows += [((curve.body, curve.name), point + list(row)) for point, row in zip(curve.points_m, values)]
-    return _table(CURVE_HEADER, rows)
+    return {**compat.versions(), "blas": blas(), **machine_versions()}
 
 
 def _pressures(request, sampler):
@@ -245,7 +217,7 @@ def _pressures(request, sampler):
     for line, points in request.pressure_points_m.items():
         values = sampler.pressures(np.array(points) / scales.c_m) * scales.p0_pa
         rows += [((line,), point + list(row)) for point, row in zip(points, values)]
-    return _table(PRESSURE_HEADER, rows)
+    return table(PRESSURE_HEADER, rows)
 
 
 def _contact_summary(scene, bodies, grid, pressed, sampler, scales):
@@ -303,12 +275,25 @@ def solve_case(request, folder, comm, log):
     pressed = press_bodies(bodies, grid, scene, request.solver, log, axes["z_block"])
     seconds["contact"] = time.perf_counter() - mark
 
+    dragged = None
+    if scene.friction:
+        mark = time.perf_counter()
+        for body in bodies.values():
+            body.forget_solver()
+        dragged, _ = build_bodies(comm, folder, request, axes["y_contact"], sliding=True)
+        error = drag_bodies(dragged, grid, scene, pressed.solution.forces)
+        pressed = dataclasses.replace(pressed, reaction_error=max(pressed.reaction_error, error))
+        for body in dragged.values():
+            body.forget_solver()
+        seconds["drag"] = time.perf_counter() - mark
+        log(f"tractions along x solved in {seconds['drag']:.1f} s")
+
     mark = time.perf_counter()
-    sampler = Sampler(scene, bodies, grid, pressed.solution.forces)
+    sampler = Sampler(scene, bodies, grid, pressed.solution.forces, dragged)
     seconds["recover"] = time.perf_counter() - mark
 
     mark = time.perf_counter()
-    tables = {"curves.csv": _curves(request, sampler), "pressure.csv": _pressures(request, sampler)}
+    tables = {"curves.csv": table(CURVE_HEADER, curve_table(request, sampler)), "pressure.csv": _pressures(request, sampler)}
     seconds["sample"] = time.perf_counter() - mark
     seconds["total"] = time.perf_counter() - began + seconds["mesh"]
 

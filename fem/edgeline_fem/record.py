@@ -33,7 +33,7 @@ COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma
 def read_cases(path):
     """Cases of a TOML file with one ``[name]`` table each, as ``{name: Case}``.
 
-    A table has ``W``, ``S_l``, ``L_r`` and the tables ``roller`` (radius_m, young_pa, poisson) and
+    A table has ``W``, ``S_l``, ``L_r``, ``friction`` where the bodies slide, and the tables ``roller`` (radius_m, young_pa, poisson) and
     ``block`` (young_pa, poisson). Raises :class:`FemError` that names the case and the key.
     """
     try:
@@ -44,11 +44,12 @@ def read_cases(path):
     for name, table in data.items():
         try:
             roller, block = table["roller"], table["block"]
-            cases[name] = Case.from_dimensionless(
+            case = Case.from_dimensionless(
                 name, table["W"], table["S_l"], table["L_r"], roller["radius_m"],
                 Material(roller["young_pa"], roller["poisson"]),
                 Material(block["young_pa"], block["poisson"]),
             )
+            cases[name] = dataclasses.replace(case, friction=table.get("friction", 0.0))
         except KeyError as error:
             raise FemError(f"{path}: case {name} has no {error}") from error
     return cases
@@ -65,7 +66,7 @@ def standard_request(case, size, **overrides):
     curves = [
         Curve(body, name, metres(points))
         for body, own in (("block", case.block_half_length()), ("roller", case.roller_half_length()))
-        for name, points in standard_curves(length, own).items()
+        for name, points in standard_curves(length, own, case.friction > 0.0).items()
     ]
     lines = {name: metres(points) for name, points in pressure_lines(length).items()}
     return Request(case, MeshOptions(size=size, **overrides), SolverOptions(), curves, lines)
@@ -203,7 +204,7 @@ def observed_orders(folder, half_length_m, c_m, p0_pa):
 
 @dataclasses.dataclass(frozen=True)
 class Run:
-    """How stages are run: the linear solver, and for the solve stage the ranks and what starts them.
+    """How stages are run: the code, its linear solver, and for the solve stage the ranks and what starts them.
 
     ``launcher`` is the command before the interpreter's when there is more than one rank, with
     ``{ranks}`` for their number.
@@ -211,6 +212,7 @@ class Run:
 
     linear: str = "direct"
     ranks: int = 1
+    engine: str = "fenicsx"
     launcher: str = "mpirun -n {ranks}"
 
     def command(self, stage):
@@ -303,7 +305,7 @@ def _record(case, size, target, log, run, overrides):
     _commit(target)
     path = target / "record.json"
     request = standard_request(case, size, **overrides)
-    request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear))
+    request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear), engine=run.engine)
     data = None
     if path.exists():
         check_record(target)
@@ -340,10 +342,12 @@ def _record(case, size, target, log, run, overrides):
     for key in ("schema", "case", "hertz"):
         summary.pop(key)
     command = f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}"
-    if run != Run():
+    if run.engine != Run.engine:
+        command += f" --engine {run.engine} --list results/reference/cases.toml"
+    if (run.linear, run.ranks) != (Run.linear, Run.ranks):
         command += f" --linear {run.linear} --ranks {run.ranks}"
     data["meshes"][f"{size:g}"] = {
-        "date": began.isoformat(timespec="seconds"), "command": f"{command} results/reference", **summary,
+        "date": began.isoformat(timespec="seconds"), "command": f"{command} results/{target.parent.name}", **summary,
     }
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
     new = target / NEW

@@ -33,6 +33,10 @@ def _terms(t):
     return np.prod([powers[:, axis, _POWERS[:, axis]] for axis in range(3)], axis=0)
 
 
+# Components of xx, yy, zz, xy, xz, yz that change sign with x: of what pressure does, and of what friction does.
+ODD_WHEN_PRESSED, ODD_WHEN_SLIDING = (3, 4), (0, 1, 2, 5)
+
+
 def _mirror(axis, flipped, points, stress, corners):
     """Elements joined by the images in the plane ``axis`` = 0 of those that touch it."""
     touching = np.abs(corners[:, :, axis]).min(axis=1) < 1e-9
@@ -66,12 +70,14 @@ class StressField:
 
     ``points`` (m, 8, 3) and ``stress`` (m, 8, 6: xx, yy, zz, xy, xz, yz) are those of m elements, and
     ``corners`` (m, 8, 3) their vertices; all of the body's elements must be there, in any order. x = 0 is a
-    plane of symmetry, and so is y = 0 if the field is ``even``. ``frame`` maps points (..., 3) to
+    plane of symmetry, of antisymmetry if the stress is that of a ``sliding`` body, and y = 0 is one of symmetry if
+    the field is ``even``. ``frame`` maps points (..., 3) to
     coordinates in which elements are boxes; stresses stay in the axes x, y, z.
     """
 
-    def __init__(self, points, stress, corners, frame=lambda points: points, even=True):
-        points, stress, corners = _mirror(0, (3, 4), points, stress, corners)
+    def __init__(self, points, stress, corners, frame=lambda points: points, even=True, sliding=False):
+        flipped = ODD_WHEN_SLIDING if sliding else ODD_WHEN_PRESSED
+        points, stress, corners = _mirror(0, flipped, points, stress, corners)
         if even:
             points, stress, corners = _mirror(1, (3, 5), points, stress, corners)
         # A fixed order makes results independent of the distribution of elements over ranks.
@@ -186,7 +192,12 @@ def hertz_stress(points, half_width, peak, poisson, radius):
     scale = -peak / half_width
     along, normal = scale * (m * (1.0 + share) - 2.0 * depth), scale * m * (1.0 - share)
     shear = scale * n * (m**2 - depth**2) / np.maximum(root, 1e-300)
-    zero = np.zeros_like(x)
+    return _turned(along, normal, shear, sine, cosine, poisson)
+
+
+def _turned(along, normal, shear, sine, cosine, poisson):
+    """Stresses (n, 6) in plane strain from those along and across a surface that rises by ``sine``."""
+    zero = np.zeros_like(along)
     return np.stack([
         along * cosine**2 - 2.0 * shear * sine * cosine + normal * sine**2,
         poisson * (along + normal),
@@ -197,7 +208,31 @@ def hertz_stress(points, half_width, peak, poisson, radius):
     ], axis=1)
 
 
-def enforce_tractions(points, stress, poisson, ends, radius, pressure, even=True):
+def hertz_traction_stress(points, half_width, peak, poisson, radius):
+    """As :func:`hertz_stress`, under the same as a traction along the surface, towards +x.
+
+    With F the potential of the pressure, pi sigma_xx = -2 Re F + Im(z F'), pi sigma_zz = -Im(z F') and
+    pi sigma_xz = Im F + Re(z F') (Johnson, Contact Mechanics, 1985, section 7.1).
+    """
+    x, _, z = np.asarray(points, dtype=float).T
+    if np.isinf(radius):
+        sine, depth = np.zeros_like(x), z
+    else:
+        distance = np.hypot(x, radius - z)
+        sine, depth = x / distance, radius - distance
+        x = radius * sine
+    depth = np.maximum(depth, 0.0) / half_width
+    # Just below the surface, to be on the branch that belongs to the body.
+    place = x / half_width + 1j * np.maximum(depth, 1e-12)
+    root = np.sqrt(place - 1.0) * np.sqrt(place + 1.0)
+    potential = place - root
+    slope = -depth * potential / root
+    along, normal = -2.0 * potential.real + slope.imag, -slope.imag
+    shear = potential.imag + slope.real
+    return _turned(*(peak * part for part in (along, normal, shear)), sine, np.sqrt(1.0 - sine**2), poisson)
+
+
+def enforce_tractions(points, stress, poisson, ends, radius, pressure, even=True, sliding=None):
     """Enforce known tractions on ``stress`` (n, 6) at ``points`` (n, 3), in place.
 
     On a face the tractions are known, and the strains within the face are well resolved. So the normal and
@@ -207,12 +242,15 @@ def enforce_tractions(points, stress, poisson, ends, radius, pressure, even=True
 
     ``points`` have z as depth below the body's surface; ``poisson``; ``ends``: y of its free end
     faces; ``radius``: of its surface (infinite for the block); ``pressure`` (n,): contact pressure, normal to the
-    surface, at the points' x and y; ``even``: whether y = 0 is a plane of symmetry. Returns the
+    surface, at the points' x and y; ``even``: whether y = 0 is a plane of symmetry. ``sliding`` (n,), if the stress is
+    that of a sliding body, antisymmetric about x = 0: the traction along the surface, towards +x. Returns the
     largest errors of normal traction met on the end faces and on the surface.
     """
     xx, yy, zz, xy, xz, yz = stress.T
-    for shear, axis in ((xy, 0), (xz, 0), *(((xy, 1), (yz, 1)) if even else ())):
-        shear[np.abs(points[:, axis]) < 1e-9] = 0.0
+    odd = ODD_WHEN_PRESSED if sliding is None else ODD_WHEN_SLIDING
+    across = [(stress[:, component], 0) for component in odd]
+    for part, axis in (*across, *(((xy, 1), (yz, 1)) if even else ())):
+        part[np.abs(points[:, axis]) < 1e-9] = 0.0
     share = poisson / (1.0 - poisson)
     at_end = np.abs(points[:, 1, None] - np.array(ends)).min(axis=1) < 1e-7 * np.abs(ends).max()
     on_surface = np.abs(points[:, 2]) < 1e-9
@@ -235,9 +273,11 @@ def enforce_tractions(points, stress, poisson, ends, radius, pressure, even=True
     surface_error = np.abs(change[~edge]).max(initial=0.0)
     tt = tt + np.where(edge, poisson * (change - yy[on]), share * change)
     yy[on] = np.where(edge, 0.0, yy[on] + share * change)
-    xx[on] = tt * c**2 + normal * s**2
-    zz[on] = tt * s**2 + normal * c**2
-    xz[on] = (tt - normal) * s * c
+    # Outward the surface's normal is -n.
+    tn = np.zeros_like(tt) if sliding is None else -sliding[on]
+    xx[on] = tt * c**2 - 2.0 * tn * s * c + normal * s**2
+    zz[on] = tt * s**2 + 2.0 * tn * s * c + normal * c**2
+    xz[on] = (tt - normal) * s * c + tn * (c**2 - s**2)
     xy[on], yz[on] = along * c, along * s
     return float(end_error), float(surface_error)
 

@@ -8,6 +8,8 @@ from pathlib import Path
 import numpy as np
 
 SCHEMA = 1
+# The codes that solve a request.
+ENGINES = ("fenicsx", "calculix")
 
 
 class FemError(Exception):
@@ -47,7 +49,8 @@ class Case:
     A profile is a table of (y, drop): how far the generatrix lies below the straight one, over y from the body's
     own middle, straight between its points. ``eccentricity_m`` is y of the force's line of action from the
     roller's middle; the tilt is then what that asks for. Without it the bodies are held at ``tilt_rad``, or parallel.
-    ``offset_m`` is y of the block's middle from the roller's.
+    ``offset_m`` is y of the block's middle from the roller's. ``friction``: the traction on the block along +x, and on
+    the roller along -x, in pressures.
     """
 
     name: str
@@ -62,6 +65,7 @@ class Case:
     eccentricity_m: float | None = None
     tilt_rad: float | None = None
     offset_m: float = 0.0
+    friction: float = 0.0
 
     def scales(self):
         """The case's :class:`Scales`, from the mean load of the shorter body."""
@@ -102,7 +106,7 @@ class Case:
             return values if profile is None else {**values, "profile_m": [list(point) for point in profile]}
 
         position = {"eccentricity_m": self.eccentricity_m, "tilt_rad": self.tilt_rad,
-                    "offset_m": self.offset_m or None}
+                    "offset_m": self.offset_m or None, "friction": self.friction or None}
         return {
             "name": self.name,
             "roller": body(self.roller_profile_m, radius_m=self.radius_m, length_m=self.roller_length_m,
@@ -205,6 +209,8 @@ class Request:
     curves: list
     pressure_points_m: dict
     gmsh: str = "gmsh"
+    engine: str = "fenicsx"
+    ccx: str = "ccx"
 
     def to_json(self):
         """The request as the JSON object that :func:`read_request` accepts."""
@@ -216,6 +222,7 @@ class Request:
             "curves": [{"body": c.body, "curve": c.name, "points_m": c.points_m} for c in self.curves],
             "pressure_points_m": self.pressure_points_m,
             "gmsh": self.gmsh,
+            **({} if self.engine == "fenicsx" else {"engine": self.engine, "ccx": self.ccx}),
         }
 
 
@@ -309,7 +316,8 @@ def _points(points, width, where):
 
 def _case(case, where):
     """A :class:`Case` from its JSON object."""
-    _only(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m"}, where)
+    _only(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m", "friction"},
+          where)
     roller, block = _table(case, "roller", where), _table(case, "block", where)
     _only(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m"}, f"{where}.roller")
     _only(block, {"length_m", "young_pa", "poisson", "profile_m"}, f"{where}.block")
@@ -328,7 +336,10 @@ def _case(case, where):
         eccentricity_m=_number(case, "eccentricity_m", where),
         tilt_rad=_number(case, "tilt_rad", where),
         offset_m=_number(case, "offset_m", where) or 0.0,
+        friction=_number(case, "friction", where) or 0.0,
     )
+    if not 0.0 <= parsed.friction <= 1.0:
+        raise FemError(f"{where}: 'friction' must lie in [0, 1], not {parsed.friction:g}")
     if parsed.eccentricity_m is not None and parsed.tilt_rad is not None:
         raise FemError(f"{where}: 'eccentricity_m' and 'tilt_rad' exclude each other: leave one out")
     apart = abs(parsed.offset_m) - 0.5 * sum(lengths)
@@ -345,7 +356,7 @@ def parse_request(data, where="request"):
     """
     if not isinstance(data, dict):
         raise FemError(f"{where}: must be a JSON object")
-    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh"}, where)
+    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx"}, where)
     if data.get("schema") != SCHEMA:
         raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
 
@@ -375,12 +386,17 @@ def parse_request(data, where="request"):
     lines = {
         name: _points(points, 2, f"{where}: pressure_points_m.{name}") for name, points in lines.items()
     }
-    gmsh = data.get("gmsh", "gmsh")
-    if not isinstance(gmsh, str) or not gmsh:
-        raise FemError(f"{where}: 'gmsh' must be the name or path of the gmsh program")
+    programs = {}
+    for key, name in (("gmsh", "gmsh"), ("ccx", "CalculiX")):
+        programs[key] = data.get(key, key)
+        if not isinstance(programs[key], str) or not programs[key]:
+            raise FemError(f"{where}: '{key}' must be the name or path of the {name} program")
+    engine = data.get("engine", "fenicsx")
+    if engine not in ENGINES:
+        raise FemError(f"{where}: 'engine' must be one of {', '.join(ENGINES)}, not {engine!r}")
     mesh = _options(MeshOptions, _table(data, "mesh", where) if "mesh" in data else {},
                     f"{where}: mesh")
-    return Request(parsed, mesh, solver, curves, lines, gmsh)
+    return Request(parsed, mesh, solver, curves, lines, engine=engine, **programs)
 
 
 def read_request(path):

@@ -4,7 +4,9 @@ import functools
 
 import numpy as np
 
-from .recovery import around_the_arc, enforce_tractions, hertz_stress
+from .recovery import (
+    ODD_WHEN_PRESSED, ODD_WHEN_SLIDING, around_the_arc, enforce_tractions, hertz_stress, hertz_traction_stress,
+)
 from .scene import surface_depth
 
 # Nearer than this to the corner of a body that the other one goes on beyond (units of C), stresses belong to
@@ -26,14 +28,20 @@ def near_singularity(points, scene):
     return near
 
 
+# Direction of the traction on each body of a scene that slides.
+_SLIDES = {"block": 1.0, "roller": -1.0}
+
+
 class Sampler:
     """Samples of a ``scene`` whose ``bodies`` are in their final state under nodal ``forces`` on ``grid``.
+
+    ``dragged``: the bodies under the tractions of the scene's friction, if it has any.
 
     ``face_errors``: for each body, the largest errors of normal traction met so far on its end faces and its
     surface, before the known ones were put in.
     """
 
-    def __init__(self, scene, bodies, grid, forces):
+    def __init__(self, scene, bodies, grid, forces, dragged=None):
         self._scene, self._grid = scene, grid
         self._poisson = {name: body.poisson for name, body in bodies.items()}
         self._radii = {"block": np.inf, "roller": scene.radius}
@@ -42,9 +50,13 @@ class Sampler:
         self._fields = {
             name: body.stress_field(even=scene.symmetric, **frames[name]) for name, body in bodies.items()
         }
+        self._dragged = {
+            name: body.stress_field(even=scene.symmetric, sliding=True, **frames[name])
+            for name, body in (dragged or {}).items()
+        }
         self.face_errors = {name: {"end": 0.0, "surface": 0.0} for name in bodies}
 
-    def _steep_parts(self, name, y):
+    def _steep_parts(self, name, y, steep=hertz_stress, factor=1.0):
         """What :meth:`StressField.sample` takes as ``known`` for points of a body at ``y`` (n,).
 
         Under the contact line it is the Hertz field that falls to 0 across the contact as the pressure does:
@@ -61,7 +73,8 @@ class Sampler:
             if found is None:
                 return None
             half_width, peak = found
-            return lambda p: hertz_stress(p, half_width, share * peak, self._poisson[name], self._radii[name])
+            peak *= share * factor
+            return lambda p: steep(p, half_width, peak, self._poisson[name], self._radii[name])
 
         def part(y):
             for end in scene.ends:
@@ -79,16 +92,30 @@ class Sampler:
 
     def stress(self, name, points):
         """Stress (n, 6) at ``points`` (n, 3: x, y, depth below the surface at that x) of a body."""
+        behind = points[:, 0] < 0.0
+        points = points.copy()
+        points[:, 0] = np.abs(points[:, 0])
         inside = points.copy()
         inside[:, 2] += surface_depth(name, points[:, 0], self._scene.radius)
-        steep = self._steep_parts(name, points[:, 1])
-        stress = self._fields[name].sample(inside, near_singularity(points, self._scene), steep)
-        errors = enforce_tractions(
-            points, stress, self._poisson[name], self._scene.free_ends(name), self._radii[name],
-            self._grid.sample(self._pressure, points[:, :2]), self._scene.symmetric,
-        )
+        singular = near_singularity(points, self._scene)
+        pressure = self._grid.sample(self._pressure, points[:, :2])
+        known = self._poisson[name], self._scene.free_ends(name), self._radii[name]
         met = self.face_errors[name]
-        met["end"], met["surface"] = max(met["end"], errors[0]), max(met["surface"], errors[1])
+
+        def enforced(stress, pressure, odd, sliding=None):
+            errors = enforce_tractions(points, stress, *known, pressure, self._scene.symmetric, sliding)
+            met["end"], met["surface"] = max(met["end"], errors[0]), max(met["surface"], errors[1])
+            signs = np.ones_like(stress)
+            signs[np.ix_(behind, odd)] = -1.0
+            return signs * stress
+
+        steep = self._steep_parts(name, points[:, 1])
+        stress = enforced(self._fields[name].sample(inside, singular, steep), pressure, ODD_WHEN_PRESSED)
+        if name in self._dragged:
+            factor = _SLIDES[name] * self._scene.friction
+            steep = self._steep_parts(name, points[:, 1], hertz_traction_stress, factor)
+            found = self._dragged[name].sample(inside, singular, steep)
+            stress += enforced(found, 0.0 * pressure, ODD_WHEN_SLIDING, factor * pressure)
         return stress
 
     def pressure(self, points):
@@ -97,7 +124,11 @@ class Sampler:
 
     def pressures(self, points):
         """The same, from lumped forces and from the block's stress besides: (n, 3)."""
+        lumped = self._grid.sample(self._lumped, points)
+        return np.stack([self.pressure(points), lumped, self.raised_pressure(points)], axis=1)
+
+    def raised_pressure(self, points):
+        """Contact pressure at ``points`` (n, 2) from the block's stress, (n,)."""
         surface = np.column_stack([points, np.zeros(len(points))])
         steep = self._steep_parts("block", points[:, 1])
-        raised = -self._fields["block"].sample(surface, near_singularity(surface, self._scene), steep)[:, 2]
-        return np.stack([self.pressure(points), self._grid.sample(self._lumped, points), raised], axis=1)
+        return -self._fields["block"].sample(surface, near_singularity(surface, self._scene), steep)[:, 2]

@@ -46,7 +46,7 @@ class Scene:
     whether y = 0 is a plane of symmetry where the model begins; ``load``: the part of the force that the
     model carries; ``moment``: the same of its moment about x, positive where the side of larger y is pressed
     deeper (``None``: the tilt is held); ``tilt``: the held one, with the same sign, that of the lines x = 0 one
-    roller radius below both surfaces.
+    roller radius below both surfaces; ``friction``: traction along x, in pressures.
     """
 
     radius: float
@@ -57,6 +57,7 @@ class Scene:
     load: float
     moment: float | None
     tilt: float
+    friction: float
     _profiles: dict
 
     @staticmethod
@@ -90,7 +91,7 @@ class Scene:
             if table is not None
         }
         return Scene(scales.radius, spans, tuple(ends), start, symmetric, load, moment,
-                     case.tilt_rad or 0.0, profiles)
+                     case.tilt_rad or 0.0, case.friction, profiles)
 
     @property
     def stop(self):

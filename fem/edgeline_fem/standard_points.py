@@ -72,12 +72,18 @@ def depths():
             + [3.5, 4.0, 5.0])
 
 
-def standard_curves(half_length, body_half_length):
+def behind(name):
+    """Name of the curve at -x of the one called ``name`` off the plane x = 0."""
+    return f"{name}-xneg"
+
+
+def standard_curves(half_length, body_half_length, slides=False):
     """Curves of one body as ``{name: [(x, y, z), ...]}`` in the order of the running coordinate.
 
     ``half_length`` is half the contact's length, ``body_half_length`` (not less) that of the body; a
     longer body's curves along y continue beyond the contact's end for up to 3 C. z is the depth below the body's
-    surface at the point's x.
+    surface at the point's x. Of bodies that slide on each other the curve across the contact goes over both signs of x,
+    and those off the plane x = 0 stand at both.
     """
     y = contact_line(half_length)
     ledge = body_half_length - half_length
@@ -85,6 +91,8 @@ def standard_curves(half_length, body_half_length):
         reach = min(ledge, _OUTWARD)
         y += [half_length + s for s in _NEAR if 0.0 < s < reach * (1.0 - _SAME)] + [half_length + reach]
     x = across_contact() + [1.75, 2.0, 2.5, 3.0]
+    if slides:
+        x = [-v for v in reversed(x[1:])] + x
 
     def along_y(depth):
         return [(0.0, v, depth) for v in y]
@@ -94,7 +102,13 @@ def standard_curves(half_length, body_half_length):
 
     points = (along_y(0.0), [(v, 0.0, 0.0) for v in x], *along_z(0.0), along_y(0.5), along_y(0.78),
               *(curve for across in _OFF_PLANE for curve in along_z(across)))
-    return dict(zip(CURVES, points))
+    curves = dict(zip(CURVES, points))
+    if slides:
+        curves |= {
+            behind(name): [(-x, y, z) for x, y, z in curve]
+            for name, curve in curves.items() if curve[0][0] > 0.0
+        }
+    return curves
 
 
 def pressure_lines(half_length):

@@ -61,6 +61,9 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
+    /// A calculation that was stopped because nobody waits for it any more.
+    #[error("the calculation was stopped: nobody waits for it any more")]
+    Stopped,
     /// A solution that violates a law of contact or elasticity.
     #[error("the solution is not sound: {law} is {value:.1e}, more than {limit:.1e}; {remedy}")]
     Unsound {

@@ -13,6 +13,7 @@ mod parity;
 pub mod profile;
 mod quadrature;
 mod scales;
+pub mod stop;
 mod tensor;
 mod wavenumbers;
 

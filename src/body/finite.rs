@@ -12,7 +12,7 @@ use crate::base::{Panels, Parity, StressTensor, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
-use crate::kernels::wave::{WaveTable, WwPlaces};
+use crate::kernels::wave::{Direction, WaveTable, WwPlaces};
 use nalgebra::{DMatrix, DMatrixView};
 use std::f64::consts::PI;
 use std::ops::Range;
@@ -36,6 +36,8 @@ pub struct Body {
     pub face: Sources,
     /// Stresses of line loads in this body's material.
     pub kernel: Arc<WaveTable>,
+    /// The same of loads along x; none without a traction along x.
+    pub along: Option<Arc<WaveTable>>,
     /// Images of the surface axis for the displacement, including itself and its mirror image in y
     /// = 0.
     images: Vec<Image>,
@@ -69,9 +71,26 @@ pub struct Layer {
     pub surface: Option<DMatrix<f64>>,
     /// q at the face nodes per contact pressure; none if the effect of the end is negligible.
     pub face: Option<DMatrix<f64>>,
+    /// The same two under a traction along x at the contact nodes instead of the pressure; none without
+    /// such a traction, and without an effect of the end.
+    pub traction: Option<TractionLayer>,
     /// Condition number of the system solved for `surface`, in the column-sum norm over the
     /// contact's columns; 1 without a system, infinite if it could not be solved.
     pub condition: f64,
+}
+
+/// The loads of a body at one wavenumber under a traction along x, in the phase in which the stress across
+/// the contact varies: sin(k x) where the traction is cos(k x).
+///
+/// The half-space under the traction S and its images leaves T_sy S on the end faces, compressive as all
+/// here. With P on z = 0 and q on the faces, P + T_yz q = 0 and T_zy P + T_sy S + q = 0: the system of the
+/// pressure under T_yz T_sy S.
+#[derive(Debug, Clone)]
+pub struct TractionLayer {
+    /// P at the surface nodes.
+    pub surface: DMatrix<f64>,
+    /// q at the face nodes.
+    pub face: DMatrix<f64>,
 }
 
 /// The length and the material of a body.
@@ -115,12 +134,12 @@ fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<
 
 impl Body {
     /// A body of this `shape` with end faces `end`, under loads of one `parity` on `contact`, an axis
-    /// on one side of the body's middle.
+    /// on one side of the body's middle; where it `slides`, the contact may carry a traction along x.
     pub fn new(
         contact: &Panels,
         shape: Shape,
         end: End,
-        parity: Parity,
+        (parity, slides): (Parity, bool),
         resolution: &Resolution,
     ) -> Self {
         let Shape { half, nu } = shape;
@@ -149,7 +168,8 @@ impl Body {
             to_face: Vec::new(),
             strips_to_face: Vec::new(),
             from_faces: Vec::new(),
-            kernel: WaveTable::shared(nu),
+            kernel: WaveTable::shared(Direction::Into, nu),
+            along: slides.then(|| WaveTable::shared(Direction::Along, nu)),
             reach: resolution.reach,
             ledge,
             cosines: DMatrix::zeros(0, 0),
@@ -333,26 +353,40 @@ impl Body {
         // An end face beyond the reach of this wavenumber carries no load.
         if !self.end.freed || self.ledge > self.reach(k) {
             let compliance = displacement.columns_range(self.contact()).into_owned();
-            return Layer { compliance, surface: None, face: None, condition: 1.0 };
+            return Layer { compliance, surface: None, face: None, traction: None, condition: 1.0 };
         }
-        let to_face = self.surface_matrix(k);
+        let to_face = self.surface_matrix(k, &self.kernel);
         let from_face = self.faces_matrix(k, to_face.nrows());
-        let system = DMatrix::identity(n, n) - from_face * &to_face;
+        let system = DMatrix::identity(n, n) - &from_face * &to_face;
         let norm = column_sum(&system);
-        let start = self.contact.start;
-        let unit = |i: usize, j: usize| f64::from(u8::from(i == start + j));
-        let contact_columns = || DMatrix::from_fn(n, self.contact.len(), unit);
-        let (surface, condition) = match linear::solve(system, contact_columns()) {
-            Some(surface) => {
-                let condition = norm * column_sum(&surface);
-                (surface, condition)
-            }
-            None => (contact_columns(), f64::INFINITY),
+        let (start, columns) = (self.contact.start, self.contact.len());
+        // The traction's effect on the faces, and the loads that it is like.
+        let dragged = self.along.as_ref().map(|along| {
+            let own = self.surface_matrix(k, along).columns_range(self.contact()).into_owned();
+            (&from_face * &own, own)
+        });
+        let more = if dragged.is_some() { columns } else { 0 };
+        let loads = || {
+            DMatrix::from_fn(n, columns + more, |i, j| match &dragged {
+                Some((loads, _)) if j >= columns => loads[(i, j - columns)],
+                _ => f64::from(u8::from(i == start + j)),
+            })
         };
+        let (mut surface, solved) = match linear::solve(system, loads()) {
+            Some(surface) => (surface, true),
+            None => (loads(), false),
+        };
+        let traction = dragged.map(|(_, own)| {
+            let surface = surface.columns_range(columns..).into_owned();
+            TractionLayer { face: -(&to_face * &surface + own), surface }
+        });
+        surface.resize_horizontally_mut(columns, 0.0);
+        let condition = if solved { norm * column_sum(&surface) } else { f64::INFINITY };
         Layer {
             compliance: displacement * &surface,
             face: Some(-(to_face * &surface)),
             surface: Some(surface),
+            traction,
             condition,
         }
     }
@@ -367,14 +401,16 @@ impl Body {
         }
     }
 
-    /// Compressive stress across the loaded line of a unit load at each of `places`, into `values`.
-    fn press(&self, k: f64, places: &WwPlaces, values: &mut Vec<f64>) {
-        self.kernel.ww(k, places, self.reach(k), values);
+    /// Compressive stress across the loaded line of a unit load of `kernel` at each of `places`, into
+    /// `values`.
+    fn press(&self, kernel: &WaveTable, k: f64, places: &WwPlaces, values: &mut Vec<f64>) {
+        kernel.ww(k, places, self.reach(k), values);
         values.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// T_zy: compressive stress yy on the end face per P.
-    fn surface_matrix(&self, k: f64) -> DMatrix<f64> {
+    /// Compressive stress yy on the end face per load of `kernel` on the surface: T_zy per P, T_sy per
+    /// traction along x.
+    fn surface_matrix(&self, k: f64, kernel: &WaveTable) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
         let mut values = Vec::new();
         let faces = self.to_face.iter().zip(&self.strips_to_face).take(self.face_len(k));
@@ -384,9 +420,9 @@ impl Body {
                 if k * z > self.reach {
                     return;
                 }
-                self.press(k, places, &mut values);
+                self.press(kernel, k, places, &mut values);
                 stencil.add_row(&values, charges, nodes);
-                self.press(k, strips, &mut values);
+                self.press(kernel, k, strips, &mut values);
                 // The strip behind y = 0 and its mirror image in the face.
                 let strip: f64 = values.iter().zip(&self.strips).map(|(v, (_, w))| v * w).sum();
                 self.add_mean(2.0 * strip, nodes);
@@ -407,7 +443,7 @@ impl Body {
                     stencils.iter().zip([self.half - y, self.half + y])
                 {
                     if k * depth < self.reach {
-                        self.press(k, places, &mut values);
+                        self.press(&self.kernel, k, places, &mut values);
                         stencil.add_row(&values, charges, nodes);
                     }
                 }

@@ -17,7 +17,7 @@ pub mod stencil;
 pub use axes::Resolution;
 pub use corner::corner_exponent;
 pub use end::End;
-pub use finite::{Body, Layer, Shape};
+pub use finite::{Body, Layer, Shape, TractionLayer};
 pub use fold::Fold;
 pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;

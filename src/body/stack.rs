@@ -21,17 +21,18 @@ pub struct Stack {
 
 impl Stack {
     /// A body of this `shape` whose middle is at `middle`, with end faces `end`, under loads on `line`;
-    /// a `symmetric` line begins at the middle and is one half of the contact.
+    /// a `symmetric` line begins at the middle and is one half of the contact; where it `slides`, the line
+    /// may carry a traction along x.
     pub fn new(
         line: &Panels,
-        symmetric: bool,
+        (symmetric, slides): (bool, bool),
         (middle, shape): (f64, Shape),
         end: End,
         (resolution, wavenumbers): (&Resolution, &[f64]),
     ) -> Self {
         let fold = Fold::new(line, middle, symmetric);
         let part = |&parity: &Parity| {
-            let body = Body::new(fold.axis(), shape, end, parity, resolution);
+            let body = Body::new(fold.axis(), shape, end, (parity, slides), resolution);
             let layers = wavenumbers.par_iter().map(|&k| body.layer(k)).collect();
             (body, layers)
         };

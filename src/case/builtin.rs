@@ -5,10 +5,13 @@ use crate::base::{Error, Result};
 use std::path::Path;
 
 /// Name and text of every case file in `cases/`.
-pub const BUILTIN_CASES: [(&str, &str); 6] = [
+pub const BUILTIN_CASES: [(&str, &str); 9] = [
     ("flush-short", include_str!("../../cases/flush-short.toml")),
     ("half-short", include_str!("../../cases/half-short.toml")),
     ("long-contact", include_str!("../../cases/long-contact.toml")),
+    ("sliding-flush", include_str!("../../cases/sliding-flush.toml")),
+    ("sliding-half", include_str!("../../cases/sliding-half.toml")),
+    ("sliding-steel-aluminium", include_str!("../../cases/sliding-steel-aluminium.toml")),
     ("validation-nu025", include_str!("../../cases/validation-nu025.toml")),
     ("validation-nu040", include_str!("../../cases/validation-nu040.toml")),
     ("validation-steel-aluminium", include_str!("../../cases/validation-steel-aluminium.toml")),

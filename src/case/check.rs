@@ -2,7 +2,7 @@
 
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
-use super::model::{Case, Factors};
+use super::model::{Case, Factors, Fatigue};
 use crate::base::{BodyKind, Error, Result};
 
 /// Largest number of letters of a name.
@@ -30,7 +30,27 @@ impl Case {
         self.check_raceway()?;
         self.check_factors()?;
         self.check_pose()?;
+        self.check_fatigue()?;
         self.check_profiles()
+    }
+
+    /// Refuses numbers of a measure of fatigue that lack others of the same measure.
+    fn check_fatigue(&self) -> Result<()> {
+        let Fatigue { dang_van_alpha, dang_van_beta_pa, fatemi_socie_k, yield_pa, .. } =
+            self.fatigue;
+        let alone = [
+            ("dang_van_beta_pa", dang_van_beta_pa, "dang_van_alpha", dang_van_alpha),
+            ("fatemi_socie_k", fatemi_socie_k, "yield_pa", yield_pa),
+            ("yield_pa", yield_pa, "fatemi_socie_k", fatemi_socie_k),
+        ];
+        for (own, value, other, wanted) in alone {
+            if let (Some(value), None) = (value, wanted) {
+                let reason = format!("the measure also needs {other}");
+                let remedy = format!("give {other}, or leave out {own}");
+                return Err(key(&format!("fatigue.{own}")).refuse(value, reason, &remedy));
+            }
+        }
+        Ok(())
     }
 
     /// A roller fits into a concave raceway only if its radius is smaller.

@@ -221,6 +221,9 @@ const FORCES: (f64, f64) = (1e-12, 1e15);
 /// Legal range of tilts (rad): beyond, the slope is not small.
 const TILTS: (f64, f64) = (-0.1, 0.1);
 
+/// Legal range of residual stresses (Pa).
+const RESIDUALS: (f64, f64) = (-MODULI.1, MODULI.1);
+
 const ECCENTRICITY: &str = "y of the load's line of action from the roller's middle in metres";
 
 const ALWAYS: Presence = Presence::Always;
@@ -270,7 +273,7 @@ macro_rules! profile_key {
 
 /// All numbers of a case, in the order of its file. The keys of a table stand side by side.
 #[rustfmt::skip]
-pub static KEYS: [Key; 34] = [
+pub static KEYS: [Key; 41] = [
     key!("roller.radius_m", "radius_m", "the roller's radius in metres", LENGTHS, "10e-3", ALWAYS,
         case.roller.radius_m),
     key!("roller.length_m", "roller_length_m", "the roller's length in metres", LENGTHS, "10e-3",
@@ -323,6 +326,20 @@ pub static KEYS: [Key; 34] = [
         some .pose.tilt_rad),
     key!("pose.offset_m", "offset_m", "y of the block's middle from the roller's in metres", PLACES,
         "0.0", OPTIONAL, case.pose.offset_m),
+    key!("sliding.friction", "friction", "the friction, traction over pressure,", (0.0, 1.0), "0.1",
+        OPTIONAL, case.sliding.friction),
+    key!("fatigue.dang_van_alpha", "dang_van_alpha", "Dang Van's factor alpha", (0.0, 10.0), "0.3",
+        OPTIONAL, some .fatigue.dang_van_alpha),
+    key!("fatigue.dang_van_beta_pa", "dang_van_beta_pa", "Dang Van's limit beta in pascals", MODULI,
+        "360e6", OPTIONAL, some .fatigue.dang_van_beta_pa),
+    key!("fatigue.fatemi_socie_k", "fatemi_socie_k", "Fatemi and Socie's k", (0.0, 10.0), "0.6",
+        OPTIONAL, some .fatigue.fatemi_socie_k),
+    key!("fatigue.yield_pa", "yield_pa", "the yield stress in pascals", MODULI, "1.8e9", OPTIONAL,
+        some .fatigue.yield_pa),
+    key!("fatigue.residual_xx_pa", "residual_xx_pa", "the residual stress sigma_xx in pascals",
+        RESIDUALS, "-200e6", OPTIONAL, some .fatigue.residual_xx_pa),
+    key!("fatigue.residual_yy_pa", "residual_yy_pa", "the residual stress sigma_yy in pascals",
+        RESIDUALS, "-200e6", OPTIONAL, some .fatigue.residual_yy_pa),
     key!("accuracy.tolerance", "tolerance", "the tolerance, a fraction of p0,", (1e-5, 1e-1), "1e-3",
         OPTIONAL, case.accuracy.tolerance),
     key!("cells.half_width_m", "cells_half_width_m", "the half-width of the cells in metres", LENGTHS,

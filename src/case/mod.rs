@@ -28,7 +28,7 @@ mod tests;
 pub use builtin::{BUILTIN_CASES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
-pub use model::{Accuracy, Block, Case, Cells, Factors, Load, Pose, Roller};
+pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
 pub use profile::{ProfileKind, ProfileSpec};
 #[cfg(feature = "cli")]
 pub use {

@@ -72,6 +72,51 @@ impl Pose {
     }
 }
 
+/// The sliding of the bodies on each other, across the contact.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Sliding {
+    /// Traction along x in pressures: that on the block along +x, that on the roller along -x.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub friction: f64,
+}
+
+impl Sliding {
+    /// Whether there is none.
+    fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
+/// What measures of fatigue need to know; no part of the contact. A measure without its numbers is not computed.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+pub struct Fatigue {
+    /// Dang Van's factor of the hydrostatic stress.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dang_van_alpha: Option<f64>,
+    /// Dang Van's limit (Pa).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub dang_van_beta_pa: Option<f64>,
+    /// Fatemi and Socie's k.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub fatemi_socie_k: Option<f64>,
+    /// Yield stress (Pa).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub yield_pa: Option<f64>,
+    /// Residual stress across the contact (Pa).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_xx_pa: Option<f64>,
+    /// Residual stress along the contact (Pa).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub residual_yy_pa: Option<f64>,
+}
+
+impl Fatigue {
+    /// Whether nothing is given.
+    pub fn is_none(&self) -> bool {
+        *self == Self::default()
+    }
+}
+
 /// The accuracy of the solution; not a part of the problem.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
@@ -108,6 +153,12 @@ pub struct Case {
     /// How the bodies stand to each other.
     #[serde(default, skip_serializing_if = "Pose::is_plain")]
     pub pose: Pose,
+    /// How they slide on each other.
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub sliding: Sliding,
+    /// What measures of fatigue need to know.
+    #[serde(default, skip_serializing_if = "Fatigue::is_none")]
+    pub fatigue: Fatigue,
     /// The accuracy.
     pub accuracy: Accuracy,
     /// The cells, where the case says anything of them.
@@ -162,6 +213,8 @@ impl Case {
             block: Block { length_m: f64::NAN, material: block, radius_m: None, profile: None },
             load: Load { force_n: f64::NAN, eccentricity_m: None },
             pose: Pose::default(),
+            sliding: Sliding::default(),
+            fatigue: Fatigue::default(),
             accuracy: Accuracy::default(),
             cells: None,
         };
@@ -212,6 +265,13 @@ impl Case {
         [middle - half, middle + half]
     }
 
+    /// Where both bodies are: y of its ends (C).
+    pub fn overlap(&self) -> [f64; 2] {
+        let c_m = self.hertz().c_m;
+        let [block, roller] = BodyKind::ALL.map(|body| self.ends_m(body));
+        [block[0].max(roller[0]) / c_m, block[1].min(roller[1]) / c_m]
+    }
+
     /// The Hertz line-contact scales.
     pub fn hertz(&self) -> HertzScales {
         let (e_star, radius_m) = (self.contact_modulus(), self.equivalent_radius_m());
@@ -235,10 +295,10 @@ impl Case {
         alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
     }
 
-    /// The case file but for the name and for how the case is to be solved.
+    /// The case file but for the name, for what is made of the stresses, and for how the case is to be solved.
     fn problem(&self) -> Table {
         let mut table = Table::try_from(self).expect(PLAIN);
-        table.retain(|key, _| !["name", "accuracy", "cells"].contains(&key));
+        table.retain(|key, _| !["name", "fatigue", "accuracy", "cells"].contains(&key));
         table
     }
 

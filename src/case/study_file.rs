@@ -68,7 +68,10 @@ impl Study {
                 root.error("is a case file, not a study file", "run `edgeline solve` on it")
             );
         }
-        root.only(&["name", "centre", "cases", "roller", "block", "pose", "factors", "accuracy"])?;
+        root.only(&[
+            "name", "centre", "cases", "roller", "block", "pose", "sliding", "fatigue", "factors",
+            "accuracy",
+        ])?;
         let base = read_base(&root, path)?;
         let study_name = name(&root)?;
         check_name(study_name).map_err(|e| root.place(e))?;

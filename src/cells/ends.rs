@@ -83,7 +83,7 @@ impl FreeEnds {
         let pairs = distinct.iter().map(|&FreeBody { half, nu, share }| {
             let (place, coarse) = ((0.0, Shape { half, nu }), wavenumbers.coarse().nodes());
             let [stack, mirrored] = [FREED, MIRRORED]
-                .map(|end| Stack::new(&axis, true, place, end, (&resolution, coarse)));
+                .map(|end| Stack::new(&axis, (true, false), place, end, (&resolution, coarse)));
             for (i, sum) in sums.iter_mut().enumerate() {
                 stack.add_compliance(i, share, sum);
                 mirrored.add_compliance(i, -share, sum);

@@ -5,7 +5,7 @@ use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::builtin_case;
-use crate::fem::{FemResults, tools};
+use crate::fem::{Code, FemResults, tools};
 use crate::solve::{Options, solve};
 use clap::Args;
 use serde::Serialize;
@@ -58,6 +58,7 @@ struct FemFindings {
     interpreter: Option<String>,
     interpreters: Vec<Interpreter>,
     mpirun: Option<String>,
+    ccx: Option<String>,
     blas: Option<String>,
 }
 
@@ -93,7 +94,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         return Err(Error::Missing {
             tool: tool.into(),
             searched: "see the findings above".into(),
-            remedy: tools::INSTALL.into(),
+            remedy: Code::Fenicsx.install().into(),
         });
     }
     Ok(Exit::Done)
@@ -106,7 +107,7 @@ fn fem_findings(arguments: &Arguments) -> FemFindings {
     let mut interpreters = Vec::new();
     let mut chosen: Option<PathBuf> = None;
     for (path, source) in tools::candidates(arguments.python.as_deref()) {
-        let imports = tools::imports(&path);
+        let imports = tools::imports(&path, Code::Fenicsx);
         if imports.is_some() && chosen.is_none() {
             chosen = Some(path.clone());
         }
@@ -118,6 +119,7 @@ fn fem_findings(arguments: &Arguments) -> FemFindings {
         interpreter: chosen.as_ref().map(|path| path.display().to_string()),
         interpreters,
         mpirun,
+        ccx: tools::ccx_version(Path::new("ccx")),
         blas: chosen.as_deref().and_then(tools::blas),
     }
 }
@@ -149,6 +151,10 @@ fn text(findings: &Findings) -> String {
         lines.push(format!("interpreter {path} ({source}): {imports}{mark}"));
     }
     lines.push(format!("mpirun: {}", or(&fem.mpirun, "not found (needed for --ranks only)")));
+    lines.push(format!(
+        "CalculiX: {}",
+        or(&fem.ccx, "not found (needed for --engine calculix only)")
+    ));
     lines.push(format!("BLAS: {}", or(&fem.blas, "not known")));
     if fem.blas.as_deref().is_some_and(tools::is_slow_blas) {
         lines.push(
@@ -160,7 +166,7 @@ fn text(findings: &Findings) -> String {
     if fem.ready {
         lines.push("finite elements: ready".into());
     } else {
-        lines.push(format!("finite elements: not ready; {}", tools::INSTALL));
+        lines.push(format!("finite elements: not ready; {}", Code::Fenicsx.install()));
     }
     lines.join("\n") + "\n"
 }

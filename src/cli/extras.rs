@@ -1,6 +1,7 @@
 //! `edgeline extras`: what shells, manuals and editors take of the program.
 
 use super::output::{Exit, print};
+use super::reference::markdown;
 use crate::base::Result;
 use crate::case::case_schema;
 use crate::host::{Lock, write_set};
@@ -12,11 +13,11 @@ use clap_mangen::Man;
 use schemars::JsonSchema;
 use std::path::PathBuf;
 
-/// Writes shell completions, manual pages and JSON Schemas.
+/// Writes shell completions, manual pages, JSON Schemas and the reference.
 ///
-/// Writes the completions for bash, fish and zsh, a manual page for each command, and the schemas of case
-/// files (case.schema.json) and of summary.json (summary.schema.json) into the output folder. Takes
-/// less than a second.
+/// Writes the completions for bash, fish and zsh, a manual page for each command, the schemas of case
+/// files (case.schema.json) and of summary.json (summary.schema.json), and every key, option, file and
+/// column as Markdown (reference.md) into the output folder. Takes less than a second.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Folder for the files; made if it is not there
@@ -58,6 +59,8 @@ pub(super) fn run(arguments: Arguments, mut program: Command) -> Result<Exit> {
         files.push((format!("{title}.1"), text));
     }
     let summary = schemars::schema_for!(Summary<EngineDetails>);
+    let described = serde_json::to_value(&summary).expect("a schema is JSON");
+    files.push(("reference.md".into(), markdown(&program, &described)?.into_bytes()));
     files.push(("summary.schema.json".into(), pretty(&summary).into_bytes()));
     files.push(("case.schema.json".into(), pretty(&case_schema()).into_bytes()));
     let _lock = Lock::claim(&arguments.out)?;

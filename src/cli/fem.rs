@@ -5,17 +5,17 @@ use super::output::{Exit, print, print_json, say};
 use super::progress::Progress;
 use crate::base::Result;
 use crate::case::Case;
-use crate::fem::{Driver, MeshResult, check_shape};
+use crate::fem::{Driver, MeshResult};
 use crate::host::prepare_folder;
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx, as child processes.
+/// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx or CalculiX, as child processes.
 ///
 /// Writes curves.csv and pressure.csv (at the points of the semi-analytical solution), fem.json,
 /// mesh.json and the log of each stage into the output folder. Takes a few seconds at --size 2 and
-/// a minute at --size 1. The next run continues a run that was stopped; a finished run is not
+/// a minute at --size 1; with --engine calculix one to two minutes at --size 2. The next run continues a run that was stopped; a finished run is not
 /// repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
@@ -36,15 +36,17 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
-    check_shape(&case)?;
+    let code = arguments.fem.engine();
+    code.check(&case)?;
     prepare_folder(&arguments.out)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
     let interpreter = driver.interpreter();
     say(&format!(
-        "using {} ({}), dolfinx {}",
+        "using {} ({}), {} {}",
         interpreter.path.display(),
         interpreter.source,
-        interpreter.versions.get("dolfinx").map_or("unknown", String::as_str),
+        code.modules()[0],
+        interpreter.versions.get(code.modules()[0]).map_or("unknown", String::as_str),
     ));
     let progress = Progress::new();
     let result = driver.run(&case, &arguments.out, &|text| progress.say(&case.name, text));
@@ -53,6 +55,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if arguments.json {
         print_json(&json!({
             "case": case.name,
+            "engine": arguments.fem.engine().name(),
             "size": result.size,
             "hertz": case.hertz(),
             "summary": result.summary,
@@ -67,11 +70,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 fn text(case: &Case, result: &MeshResult, arguments: &Arguments) -> String {
     let (summary, p0) = (&result.summary, case.hertz().p0_pa);
     format!(
-        "{} by finite elements: size {}, {} unknowns, {} process(es)\n  \
+        "{} by {}: size {}, {} unknowns, {} process(es)\n  \
          pressure {:.4} p0 at the centre, {:.4} p0 at most\n  \
          load met to {:.0e}, equilibrium to {:.0e}, {:.1} s, {:.2} GiB\n\
          wrote curves.csv, pressure.csv, mesh.json, fem.json into {}\n",
         case.name,
+        arguments.fem.engine().title(),
         result.size,
         summary.unknowns,
         summary.ranks,

@@ -1,6 +1,6 @@
 //! Options of the subcommands that run finite elements.
 
-use crate::fem::{FemSettings, LinearSolver};
+use crate::fem::{Code, FemSettings, LinearSolver};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
@@ -11,7 +11,7 @@ use std::time::Duration;
 pub(super) enum FemSource {
     /// The recorded curves: the built-in ones, or those of --reference
     Recorded,
-    /// A run of gmsh and FEniCSx now
+    /// A run of gmsh and a finite-element code now
     Live,
 }
 
@@ -26,18 +26,24 @@ pub(super) struct Size {
 /// Options of all subcommands that run finite elements.
 #[derive(Args)]
 pub(super) struct FemOptions {
+    /// The finite-element code
+    #[arg(long, default_value = "fenicsx", value_parser = code())]
+    engine: Code,
     /// Linear solver of the finite elements
     #[arg(long, default_value = "direct", value_parser = linear())]
     linear: LinearSolver,
     /// MPI processes per finite-element run
     #[arg(long, default_value_t = 1, value_name = "N")]
     ranks: usize,
-    /// Interpreter that imports dolfinx [default: $EDGELINE_PYTHON, /usr/bin/python3, python3]
+    /// Interpreter that imports dolfinx (for CalculiX: numpy) [default: $EDGELINE_PYTHON, /usr/bin/python3, python3]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::ExecutablePath)]
     python: Option<PathBuf>,
     /// The gmsh program
     #[arg(long, value_name = "FILE", default_value = "gmsh", value_hint = ValueHint::ExecutablePath)]
     gmsh: PathBuf,
+    /// The CalculiX program, for --engine calculix
+    #[arg(long, value_name = "FILE", default_value = "ccx", value_hint = ValueHint::ExecutablePath)]
+    ccx: PathBuf,
     /// Time limit for meshing one case, in seconds
     #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_negative_numbers = true)]
     mesh_timeout: f64,
@@ -53,9 +59,16 @@ pub(super) struct FemOptions {
 }
 
 impl FemOptions {
+    /// The code.
+    pub fn engine(&self) -> Code {
+        self.engine
+    }
+
     /// The settings for a mesh of relative element size `size`.
     pub fn settings(&self, size: f64) -> FemSettings {
         FemSettings {
+            code: self.engine,
+            ccx: self.ccx.clone(),
             size,
             linear: self.linear,
             ranks: self.ranks,
@@ -67,6 +80,13 @@ impl FemOptions {
             keep: self.keep,
         }
     }
+}
+
+fn code() -> impl TypedValueParser<Value = Code> {
+    PossibleValuesParser::new(Code::ALL.map(Code::name)).map(|name| {
+        let named = |code: &Code| code.name() == name;
+        Code::ALL.into_iter().find(named).expect("only these names pass")
+    })
 }
 
 fn linear() -> impl TypedValueParser<Value = LinearSolver> {

@@ -2,8 +2,12 @@
 
 mod bench;
 mod cold;
+mod compare;
+mod deck;
 mod doctor;
+mod explore;
 mod extras;
+mod fatigue;
 mod fem;
 mod fem_options;
 mod gate;
@@ -14,11 +18,13 @@ mod progress;
 mod provenance;
 mod published;
 mod records;
+mod reference;
 mod report;
 mod solve;
 mod study;
 mod study_options;
 mod sweep;
+mod uncertain_options;
 pub mod values;
 
 pub use program::run;

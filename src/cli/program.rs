@@ -1,7 +1,9 @@
 //! The program: its subcommands and exit codes.
 
 use super::output::{Exit, say};
-use super::{bench, doctor, extras, fem, gate, report, solve, study, sweep};
+use super::{
+    bench, compare, deck, doctor, explore, extras, fatigue, fem, gate, report, solve, study, sweep,
+};
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -23,9 +25,13 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Solve(solve::Arguments),
+    Fatigue(fatigue::Arguments),
+    Explore(explore::Arguments),
     Fem(fem::Arguments),
+    Deck(deck::Arguments),
     Study(study::Arguments),
     Sweep(sweep::Arguments),
+    Compare(compare::Arguments),
     Gate(gate::Arguments),
     Bench(bench::Arguments),
     Report(report::Arguments),
@@ -45,9 +51,13 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     };
     let outcome = match arguments.command {
         Command::Solve(arguments) => solve::run(arguments),
+        Command::Fatigue(arguments) => fatigue::run(arguments),
+        Command::Explore(arguments) => explore::run(arguments),
+        Command::Deck(arguments) => deck::run(arguments),
         Command::Fem(arguments) => fem::run(arguments),
         Command::Study(arguments) => study::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Compare(arguments) => compare::run(arguments),
         Command::Gate(arguments) => gate::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Report(arguments) => report::run(arguments),

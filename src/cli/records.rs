@@ -14,6 +14,11 @@ impl Records {
         folder.map(fem::FemResults::read_all).transpose().map(Self)
     }
 
+    /// Whether they are those built into the program.
+    pub(super) fn are_built_in(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// The record of a case, if there is one.
     pub(super) fn find(&self, case: &Case) -> Result<Option<fem::FemResults>> {
         match &self.0 {

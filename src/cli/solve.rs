@@ -2,13 +2,15 @@
 
 use super::output::{Exit, print, print_json};
 use super::progress::{progress_bar, show};
+use super::provenance::now;
+use super::uncertain_options::UncertainOptions;
 use super::values::{checked_residual, checked_tolerance, edge_model};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::{Lock, check_memory};
-use crate::report::{cells, field, solution};
+use crate::report::{cells, field, page, solution};
 use crate::solve::{
     CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells, solve_on_cells,
 };
@@ -23,8 +25,10 @@ use std::path::PathBuf;
 ///
 /// Writes summary.json, pressure.csv (the contact pressure, one row per cell), line_load.csv (load
 /// per length and half-width along the contact), curves.csv (stresses on the standard curves of both
-/// bodies) and, with --points, points.csv into the output folder. Takes well under a second; with
-/// --field, or for a scene that is not symmetric, a few seconds.
+/// bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg and .png
+/// (pressure, its map, stresses of both bodies) and summary.html, a page of one sheet about the case.
+/// With --uncertain, what uncertain inputs make of the results. Takes well under a second, with
+/// --uncertain that for each sample; with --field, or for a scene that is not symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
 /// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums.
@@ -48,6 +52,9 @@ pub(super) struct Arguments {
     /// CSV file of further points, with the columns body,x_m,y_m,z_m
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     points: Option<PathBuf>,
+    /// Also write pictures of pressure and stresses, and a page about the case
+    #[arg(long)]
+    plots: bool,
     /// Also write the stress fields of both bodies
     #[arg(long, conflicts_with = "points")]
     field: bool,
@@ -64,6 +71,8 @@ pub(super) struct Arguments {
     /// residual, 1e-8 by default
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    #[command(flatten)]
+    uncertain: UncertainOptions,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
     json: bool,
@@ -122,15 +131,18 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if !arguments.cells.is_empty() {
         return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
     }
+    arguments.uncertain.inputs(&case)?;
     let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &options)?;
-    let fields = match counts {
+    let mut more = match counts {
         Some(counts) => field::contents(&solved, counts)?,
         None => Vec::new(),
     };
     let found = solved.solution();
-    solution::write(&found, &options, fields, &arguments.out)?;
+    more.extend(pictures(&case, &found, &arguments)?);
+    more.extend(arguments.uncertain.contents(&case, arguments.method, &found.curves)?);
+    solution::write(&found, &options, more, &arguments.out)?;
     tell(&case, &found, &arguments)
 }
 
@@ -138,6 +150,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result<Exit> {
     if arguments.field {
         return Err(unsuited("field", "the engine on cells writes no fields", "leave it out"));
+    }
+    if arguments.uncertain.is_given() {
+        let reason = "the engine on cells is too slow for many solutions";
+        return Err(unsuited("uncertain", reason, "leave it out, or leave out --engine cells"));
     }
     let mut cells = CellOptions::default();
     match arguments.cells[..] {
@@ -160,9 +176,28 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     });
     bar.finish_and_clear();
     let found = found?;
-    let more = cells::contents(&found.pressure, &found.solution.summary.hertz);
+    let mut more = cells::contents(&found.pressure, &found.solution.summary.hertz);
+    more.extend(pictures(case, &found.solution, arguments)?);
     solution::write(&found.solution, options, more, &arguments.out)?;
     tell(case, &found.solution, arguments)
+}
+
+/// The pictures and the page, if they are asked for.
+fn pictures<D>(
+    case: &Case,
+    found: &Solution<D>,
+    arguments: &Arguments,
+) -> Result<Vec<(String, Vec<u8>)>> {
+    if !arguments.plots {
+        return Ok(Vec::new());
+    }
+    let engine = if arguments.engine == Engine::Cells { " on uniform cells" } else { "" };
+    let label = page::Label {
+        by: format!("{}{engine}", found.summary.method),
+        program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
+        date: now(),
+    };
+    page::of_solution(case, &label, found)
 }
 
 /// An option that does not suit the others.
@@ -263,8 +298,9 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
         (false, Engine::Cells) => ", pressure.npy, axes.json",
         (false, Engine::Line) => "",
     };
+    let plots = if arguments.plots { ", pictures and summary.html" } else { "" };
     lines.push(format!(
-        "wrote summary.json, pressure.csv, line_load.csv, curves.csv{points}{field} into {}",
+        "wrote summary.json, pressure.csv, line_load.csv, curves.csv{points}{field}{plots} into {}",
         arguments.out.display()
     ));
     lines.join("\n") + "\n"

@@ -5,15 +5,20 @@ use super::output::{Exit, print, print_json};
 use super::provenance::{command_line, now, processor};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
-use crate::case::Study;
+use crate::body::EdgeModel;
+use crate::case::{Case, Study};
+use crate::fem::FemResults;
 use crate::host::Lock;
 use crate::report::page;
 use crate::report::study_files::StudyFiles;
 use crate::report::study_summary::FemOrigin;
 use crate::report::summarise::Context;
+use crate::solve::{Options, solve};
 use crate::study::bench::{Bench, Machine, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
-use crate::study::{Range, StudyRun};
+use crate::study::reference::from_fem;
+use crate::study::verification::{self, VerificationRow};
+use crate::study::{Engine, Range, StudyRun};
 use clap::Args;
 use std::path::Path;
 use std::time::Instant;
@@ -21,7 +26,8 @@ use std::time::Instant;
 /// Runs a study: every case by every model, compared with finite elements.
 ///
 /// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
-/// errors.csv (one row per case, model, curve and quantity), effects.csv, summary.json,
+/// errors.csv (one row per case, model, curve and quantity), effects.csv, verification.csv,
+/// summary.json,
 /// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
 /// curves it takes about a minute, nearly all of it for timing and for the published method on cells
 /// (half as long with --repeats 0); with --fem live it takes minutes per case.
@@ -49,6 +55,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let outcomes = gates(&arguments.study, &run)?;
     let [speedups, published] = speedups(&arguments.study, &study)?;
+    let verification = verification(&arguments.study, &run)?;
     let files = StudyFiles::of(
         &run,
         &Context {
@@ -63,6 +70,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             gates: &outcomes,
             speedups: &speedups,
             published_speedups: &published,
+            verification: &verification,
         },
     );
     page::write_run(&files, out)?;
@@ -84,6 +92,46 @@ fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome
     let usual = options.range() == Range::default();
     let drift = if usual { gates.drift } else { None };
     Ok(gate::evaluate(run, &Gates { drift, ..gates }, Some(&Baseline::built_in()?)))
+}
+
+/// How much tighter the tolerance is of the solution that says how uncertain a model is.
+const REFINED: f64 = 0.1;
+
+/// Cases on record to which nothing was ever tuned.
+const HELD_BACK: [&str; 3] = ["validation-nu025", "validation-nu040", "validation-steel-aluminium"];
+
+/// The differences of quarter-space beside the numerical uncertainty of both sides: for the cases of the run, and in
+/// the built-in study for those held back.
+fn verification(options: &StudyOptions, run: &StudyRun) -> Result<Vec<VerificationRow>> {
+    let model = EdgeModel::QuarterSpace;
+    let refined = |case: &Case| {
+        let tighter = case.clone().with_tolerance(REFINED * case.accuracy.tolerance);
+        solve(&tighter, &Options::new(model)).map(|solution| solution.curves)
+    };
+    let mut all = Vec::new();
+    for case in &run.cases {
+        let found = case.references.iter();
+        let references: Vec<_> =
+            found.filter_map(|r| Some((r.engine.clone(), r.result.as_ref().ok()?))).collect();
+        let own = case.methods.iter().find(|m| m.source == model.into());
+        let Some(Ok(own)) = own.map(|m| &m.result) else { continue };
+        if references.is_empty() {
+            continue;
+        }
+        let curves = (model.into(), &own.solution.curves, &refined(&case.case)?);
+        all.extend(verification::rows(&case.case, false, curves, &references));
+    }
+    let built_in = options.study.is_none() && options.fem == FemSource::Recorded;
+    let compared = !all.is_empty();
+    for name in HELD_BACK.into_iter().filter(|_| built_in && compared) {
+        let case = Case::find(Path::new(name))?;
+        let Some(record) = FemResults::embedded_of(&case)? else { continue };
+        let (reference, own) = (from_fem(&record), solve(&case, &Options::new(model))?);
+        let curves = (model.into(), &own.curves, &refined(&case)?);
+        let references = [(Engine::fenicsx(), &reference)];
+        all.extend(verification::rows(&case, true, curves, &references));
+    }
+    Ok(all)
 }
 
 /// Ratios of the FEM time to the model's time and to the published method's, if a record has them from one run.

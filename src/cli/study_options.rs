@@ -9,12 +9,14 @@ use super::records::Records;
 use super::values::{chosen_models, source};
 use crate::base::Result;
 use crate::case::{Case, Study};
+use crate::fem::{Code, FemResults};
 use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
 use crate::study::bench::Bench;
 use crate::study::live::Live;
 use crate::study::{
-    Engine, Models, Range, Reference, Source, StudyRun, StudySetup, reference, run as run_study,
+    Engine, FoundReference, Models, Range, Reference, Source, StudyRun, StudySetup, reference,
+    run as run_study,
 };
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -37,12 +39,8 @@ pub(super) struct StudyOptions {
     /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
-    /// Distance from the roller's edge within which stresses are not compared, in half-widths C
-    #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
-    exclude: f64,
-    /// The same for pressure: one or more distances, separated by commas; summaries use the first
-    #[arg(long, value_name = "C,C", default_value = "0.1,0.2", value_delimiter = ',', value_parser = distance)]
-    exclude_pressure: Vec<f64>,
+    #[command(flatten)]
+    range: RangeOptions,
     /// Finite-element runs of each case with --fem live; the median time is reported
     #[arg(long, value_name = "N", default_value_t = 2)]
     fem_repeats: usize,
@@ -53,6 +51,24 @@ pub(super) struct StudyOptions {
     size: Size,
     #[command(flatten)]
     options: FemOptions,
+}
+
+/// What is left out of errors.
+#[derive(Args)]
+pub(super) struct RangeOptions {
+    /// Distance from the roller's edge within which stresses are not compared, in half-widths C
+    #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
+    exclude: f64,
+    /// The same for pressure: one or more distances, separated by commas; summaries use the first
+    #[arg(long, value_name = "C,C", default_value = "0.1,0.2", value_delimiter = ',', value_parser = distance)]
+    exclude_pressure: Vec<f64>,
+}
+
+impl RangeOptions {
+    /// The range of the errors.
+    pub(super) fn range(&self) -> Range {
+        Range { stress_c: self.exclude, pressure_c: self.exclude_pressure.clone() }
+    }
 }
 
 /// Memory of the curves of one case by one model or by FEM, with their rows in the tables (bytes).
@@ -66,7 +82,7 @@ impl StudyOptions {
 
     /// The range of the errors.
     pub(super) fn range(&self) -> Range {
-        Range { stress_c: self.exclude, pressure_c: self.exclude_pressure.clone() }
+        self.range.range()
     }
 
     /// Runs `study` with live FEM in folders below the one for the results.
@@ -81,6 +97,10 @@ impl StudyOptions {
             "give fewer cases or models, or use a sweep",
         )?;
         let references = self.references()?;
+        let engine = match self.fem {
+            FemSource::Live => Engine::of(self.options.engine()),
+            FemSource::Recorded => Engine::fenicsx(),
+        };
         let cold = ColdRuns::new(&self.out);
         let with_cells = with_cells && published::is_chosen(&self.methods);
         let on_cells = |case: &Case, counts| published::solve(case, counts, self.psi);
@@ -100,7 +120,9 @@ impl StudyOptions {
                 range: self.range(),
                 references: &|case| {
                     let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
-                    vec![(Engine::fenicsx(), references.of(case, &say))]
+                    let mut all = vec![(engine.clone(), references.of(case, &say))];
+                    all.extend(references.further(case));
+                    all
                 },
                 progress: &|done, all, what| show(&bar, done, all, what),
             },
@@ -156,6 +178,24 @@ impl FemCurves {
                 Ok(reference)
             }
         }
+    }
+}
+
+impl FemCurves {
+    /// The recorded curves of further codes, where there are any: beside built-in records alone, since a
+    /// folder of one's own has one code's.
+    fn further(&self, case: &Case) -> Vec<FoundReference> {
+        let FemCurves::Recorded { records, .. } = self else { return Vec::new() };
+        if !records.are_built_in() {
+            return Vec::new();
+        }
+        let codes = Code::ALL.into_iter().skip(1);
+        let found = codes.filter_map(|code| {
+            let record = FemResults::embedded_by(code, case).transpose()?;
+            let reference = record.map(|r| reference::from_fem(&r)).map_err(|e| e.to_string());
+            Some((Engine::of(code), reference))
+        });
+        found.collect()
     }
 }
 

@@ -7,6 +7,7 @@ use super::operator::LineOperator;
 use super::problem::Problem;
 use super::settings::ContactSettings;
 use super::solution::ContactSolution;
+use crate::base::stop::go_on;
 use crate::base::{Error, Result};
 use crate::kernels::strip;
 use nalgebra::DVector;
@@ -51,6 +52,7 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
         if answer.is_ok() {
             return answer;
         }
+        go_on()?;
         attempt.spacing *= 2.0;
     }
     attempt.max_iterations = settings.max_iterations;
@@ -72,6 +74,7 @@ fn solve_once(
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
+        go_on()?;
         let held = LinearProblem {
             operator,
             problem,

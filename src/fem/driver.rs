@@ -5,9 +5,11 @@
 //! that was stopped continues at its unfinished stage: each stage writes its JSON file last, and
 //! `work/request.key` tells whether the files belong to the same request.
 
+use super::code::Code;
 use super::jit_cache;
 use super::request::Request;
 use super::result::{MeshResult, MeshSummary, ResultTexts};
+use super::settings::{FemSettings, LinearSolver};
 use super::sum::sha256;
 use super::tools::{self, Interpreter};
 use crate::base::{Error, Result};
@@ -23,84 +25,8 @@ use std::time::Duration;
 /// The sources of the finite-element program: name and text.
 const SOURCES: &[(&str, &str)] = include!(concat!(env!("OUT_DIR"), "/fem_sources.rs"));
 
-/// The linear solver of the finite-element program.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum LinearSolver {
-    /// Sparse Cholesky factors, once per body.
-    Direct,
-    /// Conjugate gradients with algebraic multigrid; needs less memory on large meshes.
-    Iterative,
-}
-
-impl LinearSolver {
-    /// Both, the default first.
-    pub const ALL: [LinearSolver; 2] = [LinearSolver::Direct, LinearSolver::Iterative];
-
-    /// The name in requests and on the command line.
-    pub fn name(self) -> &'static str {
-        match self {
-            LinearSolver::Direct => "direct",
-            LinearSolver::Iterative => "iterative",
-        }
-    }
-
-    /// Memory for the solution of `unknowns` (bytes), from the measured growth in docs/fem.md.
-    fn bytes(self, unknowns: f64) -> f64 {
-        match self {
-            LinearSolver::Direct => 3.0 * GIB * (unknowns / 250e3).powf(1.3),
-            LinearSolver::Iterative => 1.5 * GIB * (unknowns / 250e3),
-        }
-    }
-}
-
 /// Smallest number of unknowns on a mesh of relative size 1; it grows as size^-2.7.
 const UNKNOWNS_OF_SIZE_1: f64 = 200e3;
-
-const GIB: f64 = (1u64 << 30) as f64;
-
-/// Settings of finite-element runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct FemSettings {
-    /// Relative element size, 1 is the production mesh; see [`FemSettings::SIZE_RANGE`].
-    pub size: f64,
-    /// The linear solver.
-    pub linear: LinearSolver,
-    /// Number of MPI ranks, at least 1.
-    pub ranks: usize,
-    /// The interpreter; searched for if none.
-    pub python: Option<PathBuf>,
-    /// The gmsh program.
-    pub gmsh: PathBuf,
-    /// Time limit of the mesh stage.
-    pub mesh_timeout: Duration,
-    /// Time limit of the solve stage.
-    pub solve_timeout: Duration,
-    /// Largest size of the folder of a run (bytes).
-    pub max_bytes: u64,
-    /// Whether meshes and requests are kept after success.
-    pub keep: bool,
-}
-
-impl FemSettings {
-    /// Legal range of the relative element size.
-    pub const SIZE_RANGE: (f64, f64) = (0.1, 10.0);
-}
-
-impl Default for FemSettings {
-    fn default() -> Self {
-        Self {
-            size: 1.0,
-            linear: LinearSolver::Direct,
-            ranks: 1,
-            python: None,
-            gmsh: "gmsh".into(),
-            mesh_timeout: Duration::from_secs(300),
-            solve_timeout: Duration::from_secs(3600),
-            max_bytes: 10 << 30,
-            keep: false,
-        }
-    }
-}
 
 /// Runs finite-element models with tools that were found and tested.
 pub struct Driver {
@@ -115,6 +41,17 @@ impl Driver {
     /// [`Error::Missing`] if gmsh, a suitable interpreter or, for several ranks, mpirun is missing;
     /// [`Error::Value`] if a setting is not legal.
     pub fn new(settings: FemSettings) -> Result<Self> {
+        if settings.code == Code::Calculix {
+            tools::require_ccx(&settings.ccx)?;
+        }
+        Self::without_solver(settings)
+    }
+
+    /// The same for decks, which are written and not solved.
+    ///
+    /// # Errors
+    /// As [`Driver::new`].
+    pub fn without_solver(settings: FemSettings) -> Result<Self> {
         let (low, high) = FemSettings::SIZE_RANGE;
         let refuse = |key: &str, value: String, reason: String, remedy: &str| {
             Err(Error::Value { key: key.into(), value, reason, remedy: remedy.into() })
@@ -126,25 +63,31 @@ impl Driver {
         if settings.ranks == 0 {
             return refuse("ranks", "0".into(), "at least one process has to run".into(), "give 1");
         }
+        if settings.code == Code::Calculix
+            && (settings.ranks, settings.linear) != (1, LinearSolver::Direct)
+        {
+            let (key, value) = ("engine", settings.code.name().to_string());
+            let reason = "CalculiX runs as one process with its own direct solver".to_string();
+            return refuse(key, value, reason, "leave out --ranks and --linear");
+        }
         // Refuses a mesh that is too large for this machine before it is made.
         check_memory(
             &format!("a mesh of size {}", settings.size),
             settings.linear.bytes(UNKNOWNS_OF_SIZE_1 * settings.size.powf(-2.7)),
             "take a coarser mesh with a larger --size",
         )?;
-        if settings.gmsh.to_str().is_none() {
-            return refuse(
-                "gmsh",
-                settings.gmsh.display().to_string(),
-                "a path that is not UTF-8 cannot be handed on".into(),
-                "give another path to the program",
-            );
+        for (key, program) in [("gmsh", &settings.gmsh), ("ccx", &settings.ccx)] {
+            if program.to_str().is_none() {
+                let reason = "a path that is not UTF-8 cannot be handed on".to_string();
+                let remedy = "give another path to the program";
+                return refuse(key, program.display().to_string(), reason, remedy);
+            }
         }
         tools::require(&settings.gmsh, "--gmsh")?;
         if settings.ranks > 1 {
             tools::require(Path::new("mpirun"), "the PATH")?;
         }
-        let interpreter = tools::find_interpreter(settings.python.as_deref())?;
+        let interpreter = tools::find_interpreter(settings.python.as_deref(), settings.code)?;
         Ok(Self { settings, interpreter })
     }
 
@@ -160,27 +103,13 @@ impl Driver {
     /// failure all files that help to find the cause are kept.
     ///
     /// # Errors
-    /// [`Error::Value`] about a raceway, [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
+    /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
     /// takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
-        check_shape(case)?;
-        prepare_folder(folder)?;
-        // The mark of the processes must not depend on how the folder is named.
-        let folder = &folder.canonicalize().map_err(|source| Error::Io {
-            action: "find",
-            path: folder.to_path_buf(),
-            source,
-        })?;
-        let lock = Lock::claim(folder)?;
-        // The process of an earlier run is dead; so are its children, unless the kernel cannot
-        // tell.
-        kill_marked(folder);
-
-        let (settings, linear) = (&self.settings, self.settings.linear.name());
-        let request = Request::new(case, settings.size, linear, &settings.gmsh);
-        let text = serde_json::to_string_pretty(&request).expect("plain data");
-        let key = self.key(&text);
+        self.settings.code.check(case)?;
+        let (folder, _lock) = &claim(folder)?;
+        let (text, key) = self.request(case);
         let run = Run { driver: self, case, folder, work: folder.join("work") };
         if read(&folder.join("request.key")).is_ok_and(|known| known == key)
             && let Ok(result) = run.result(folder)
@@ -206,8 +135,46 @@ impl Driver {
         if !self.settings.keep {
             remove_if_there(&run.work)?;
         }
-        drop(lock);
         Ok(result)
+    }
+
+    /// Writes the input deck of `case` and its meshes into `folder`; `progress` as in [`Driver::run`].
+    ///
+    /// # Errors
+    /// As [`Driver::run`].
+    pub fn deck(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshSummary> {
+        self.settings.code.check(case)?;
+        let (folder, _lock) = &claim(folder)?;
+        let (text, key) = self.request(case);
+        let run = Run { driver: self, case, folder, work: folder.join("work") };
+        run.prepare(&text, &key)?;
+        run.mesh(progress)?;
+        progress("writing the deck");
+        let python = Command::new(&self.interpreter.path);
+        run.stage("deck", python, self.settings.mesh_timeout, "--mesh-timeout")?;
+        let mut files = Vec::new();
+        for name in DECK_FILES {
+            let path = run.work.join(name);
+            let bytes = std::fs::read(&path).map_err(|source| Error::Io {
+                action: "read",
+                path: path.clone(),
+                source,
+            })?;
+            files.push((name, bytes));
+        }
+        write_set(folder, &files)?;
+        let done = run.work.join("mesh.json");
+        let summary = MeshSummary::parse(&read(&done)?, &done)?;
+        remove_if_there(&run.work)?;
+        Ok(summary)
+    }
+
+    /// The text of the request for `case`, and its key.
+    fn request(&self, case: &Case) -> (String, String) {
+        let request = Request::new(case, &self.settings);
+        let text = serde_json::to_string_pretty(&request).expect("plain data");
+        let key = self.key(&text);
+        (text, key)
     }
 
     /// The key that ties files to a request: everything that the result depends on.
@@ -220,6 +187,33 @@ impl Driver {
         }
         format!("{}\n", sha256(&text))
     }
+}
+
+/// The files of a deck, the one that includes others last.
+pub const DECK_FILES: [&str; 8] = [
+    "block.msh",
+    "roller.msh",
+    "block.vtu",
+    "roller.vtu",
+    "mesh.json",
+    "mesh.inp",
+    "bodies.inp",
+    "model.inp",
+];
+
+/// Makes a folder, and claims it for this process: its full path, and the lock.
+fn claim(folder: &Path) -> Result<(PathBuf, Lock)> {
+    prepare_folder(folder)?;
+    // The mark of the processes must not depend on how the folder is named.
+    let folder = folder.canonicalize().map_err(|source| Error::Io {
+        action: "find",
+        path: folder.to_path_buf(),
+        source,
+    })?;
+    let lock = Lock::claim(&folder)?;
+    // The process of an earlier run is dead; so are its children, unless the kernel cannot tell.
+    kill_marked(&folder);
+    Ok((folder, lock))
 }
 
 /// One run in progress.
@@ -366,20 +360,4 @@ fn read(path: &Path) -> Result<String> {
         MAX_RESULT_BYTES,
         "the file was not written by this version; remove it and run again",
     )
-}
-
-/// Refuses bodies whose shape finite elements do not take.
-///
-/// # Errors
-/// [`Error::Value`] with the key of the case.
-pub fn check_shape(case: &Case) -> Result<()> {
-    match case.block.radius_m {
-        None => Ok(()),
-        Some(radius_m) => Err(Error::Value {
-            key: "block.radius_m".into(),
-            value: format!("{radius_m:e}"),
-            reason: "finite elements take a flat block only".into(),
-            remedy: "remove it, or solve the case with `edgeline solve`".into(),
-        }),
-    }
 }

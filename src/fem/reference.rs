@@ -1,5 +1,6 @@
 //! Recorded finite-element results, as `results/reference/README.md` describes them.
 
+use super::code::Code;
 use super::request::Problem;
 use super::result::{FemSummary, MeshResult, check_points, nonsense, parse_curves, parse_lines};
 use super::sum::sha256;
@@ -11,11 +12,14 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The records that are built into the program: case, then `record.json`, `curves.csv` and
-/// `pressure.csv`.
-const EMBEDDED: &[(&str, [&str; 3])] = include!(concat!(env!("OUT_DIR"), "/records.rs"));
+/// Records that are built into the program: case, then `record.json`, `curves.csv` and `pressure.csv`.
+type Embedded = &'static [(&'static str, [&'static str; 3])];
 
-/// The files of a record, in the order of [`EMBEDDED`].
+/// Those of FEniCSx and of CalculiX.
+const FENICSX: Embedded = include!(concat!(env!("OUT_DIR"), "/records.rs"));
+const CALCULIX: Embedded = include!(concat!(env!("OUT_DIR"), "/records_calculix.rs"));
+
+/// The files of a record, in the order of [`Embedded`].
 const FILES: [&str; 3] = ["record.json", "curves.csv", "pressure.csv"];
 
 /// The checksums of these files, as `sha256sum` writes and checks them.
@@ -100,7 +104,7 @@ struct Record {
 impl FemResults {
     /// Names of the cases whose records are built into the program.
     pub fn embedded_names() -> impl Iterator<Item = &'static str> {
-        EMBEDDED.iter().map(|(name, _)| *name)
+        FENICSX.iter().map(|(name, _)| *name)
     }
 
     /// The record of the case called `name` that is built into the program, if there is one.
@@ -108,11 +112,15 @@ impl FemResults {
     /// # Errors
     /// [`Error::File`] when the record is damaged.
     pub fn embedded(name: &str) -> Result<Option<FemResults>> {
-        let Some((name, texts)) = EMBEDDED.iter().find(|(known, _)| *known == name) else {
+        Self::in_list(FENICSX, name, Path::new("results/reference"))
+    }
+
+    /// The record called `name` in a list of those that stand in `folder`.
+    fn in_list(list: Embedded, name: &str, folder: &Path) -> Result<Option<FemResults>> {
+        let Some((name, texts)) = list.iter().find(|(known, _)| *known == name) else {
             return Ok(None);
         };
-        let folder = Path::new("results/reference").join(name);
-        FemResults::parse(*texts, &folder).map(Some)
+        FemResults::parse(*texts, &folder.join(name)).map(Some)
     }
 
     /// The built-in record that solves the problem `case`, if there is one: the same bodies,
@@ -121,11 +129,24 @@ impl FemResults {
     /// # Errors
     /// As [`FemResults::embedded`].
     pub fn embedded_of(case: &Case) -> Result<Option<FemResults>> {
+        Self::embedded_by(Code::Fenicsx, case)
+    }
+
+    /// The built-in record of `case` by a code, as [`FemResults::embedded_of`].
+    ///
+    /// # Errors
+    /// As [`FemResults::embedded`].
+    pub fn embedded_by(code: Code, case: &Case) -> Result<Option<FemResults>> {
+        let (list, folder) = match code {
+            Code::Fenicsx => (FENICSX, "results/reference"),
+            Code::Calculix => (CALCULIX, "results/calculix"),
+        };
+        let names = || list.iter().map(|(name, _)| *name);
         // The record of the same name first, because it nearly always matches.
-        let same_name = Self::embedded_names().filter(|name| *name == case.name);
-        let others = Self::embedded_names().filter(|name| *name != case.name);
+        let same_name = names().filter(|name| *name == case.name);
+        let others = names().filter(|name| *name != case.name);
         for name in same_name.chain(others) {
-            match Self::embedded(name)? {
+            match Self::in_list(list, name, Path::new(folder))? {
                 Some(reference) if reference.is_of(case) => return Ok(Some(reference)),
                 _ => {}
             }

@@ -1,8 +1,10 @@
 //! The request to the finite-element program: the content of `request.json`, which
 //! `fem/edgeline_fem/request.py` reads.
 
+use super::code::Code;
 use super::result::{wanted_curves, wanted_lines};
-use crate::case::{Accuracy, Block, Case, Cells, Load, Pose, Roller};
+use super::settings::FemSettings;
+use crate::case::{Accuracy, Block, Case, Cells, Fatigue, Load, Pose, Roller, Sliding};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -21,6 +23,10 @@ pub(super) struct Problem {
     load: Load,
     #[serde(flatten)]
     pose: Pose,
+    #[serde(flatten)]
+    sliding: Sliding,
+    #[serde(skip)]
+    fatigue: Fatigue,
     #[serde(skip)]
     accuracy: Accuracy,
     #[serde(skip)]
@@ -35,6 +41,10 @@ pub(super) struct Request<'a> {
     mesh: Mesh,
     solver: Solver,
     gmsh: &'a Path,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    engine: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ccx: Option<&'a Path>,
     curves: Vec<WantedCurve>,
     /// In the order in which the results are to have them.
     pressure_points_m: Map<String, Value>,
@@ -89,15 +99,17 @@ fn case_of(case: &Case) -> Value {
 const CUT: f64 = 1.0 - 1e-6;
 
 impl<'a> Request<'a> {
-    /// Asks for the standard curves and pressure lines of `case` on a mesh of relative size `size`,
-    /// with the linear solver called `linear`.
-    pub fn new(case: &Case, size: f64, linear: &'static str, gmsh: &'a Path) -> Self {
+    /// Asks for the standard curves and pressure lines of `case` by the code and on the mesh of `settings`.
+    pub fn new(case: &Case, settings: &'a FemSettings) -> Self {
+        let other = settings.code != Code::Fenicsx;
         Self {
             schema: 1,
             case: case_of(case),
-            mesh: Mesh { size },
-            solver: Solver { linear, tolerance: 1e-8, max_iterations: 200 },
-            gmsh,
+            mesh: Mesh { size: settings.size },
+            solver: Solver { linear: settings.linear.name(), tolerance: 1e-8, max_iterations: 200 },
+            gmsh: &settings.gmsh,
+            engine: other.then(|| settings.code.name()),
+            ccx: other.then_some(settings.ccx.as_path()),
             curves: wanted_curves(case)
                 .into_iter()
                 .map(|(body, curve, points_m)| WantedCurve { body, curve, points_m })

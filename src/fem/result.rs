@@ -4,7 +4,7 @@ use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::Scene;
-use crate::stress::curves::{CURVE_NAMES, END_CURVES, Span, across_contact, curves_on};
+use crate::stress::curves::{Span, across_contact, curves_on, every_name};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -162,10 +162,8 @@ fn curves_of(case: &Case) -> impl Iterator<Item = CurveSpec> {
 
 /// The contact line of `case` (C).
 fn span_of(case: &Case) -> Span {
-    let c_m = case.hertz().c_m;
-    let [block, roller] = BodyKind::ALL.map(|body| case.ends_m(body));
-    let ends = [block[0].max(roller[0]), block[1].min(roller[1])].map(|y| y / c_m);
-    Span { ends, symmetric: Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric() }
+    let scene = Scene::new(case, EdgeModel::HalfSpace, None);
+    Span { ends: case.overlap(), symmetric: scene.is_symmetric(), slides: scene.slides }
 }
 
 /// The points of the pressure lines of `case` (C).
@@ -246,7 +244,7 @@ pub(super) fn parse_curves(
     let names = StressTensor::NAMES.map(|name| format!("{name}_pa"));
     stress_columns.extend(names.iter().map(String::as_str));
     let table = Csv::parse(text, path, &stress_columns)?;
-    let names_of_curves = [&CURVE_NAMES[..], &END_CURVES.map(|[_, other]| other)].concat();
+    let names_of_curves: Vec<&str> = every_name().collect();
     let mut curves: Vec<(f64, StressCurve)> = Vec::new();
     for row in table.rows() {
         let row = row?;

@@ -1,7 +1,8 @@
-//! The external tools: a Python interpreter with dolfinx, gmsh, and mpirun.
+//! The external tools: a Python interpreter, gmsh, mpirun, and CalculiX.
 
+use super::code::Code;
 use crate::base::{Error, Result};
-use crate::host::{capture, check_interrupt};
+use crate::host::{capture, capture_any, check_interrupt};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -10,25 +11,11 @@ use std::time::Duration;
 /// The environment variable that names the interpreter.
 pub const PYTHON_VARIABLE: &str = "EDGELINE_PYTHON";
 
-/// What to install, on Debian or Ubuntu.
-pub const INSTALL: &str =
-    "install it, on Debian or Ubuntu: apt-get install gmsh python3-dolfinx libopenblas0-serial";
-
-/// Imports the modules of the finite-element program and prints their versions.
-const PROBE: &str = "\
-import json, sys
-import dolfinx, mpi4py, numpy, petsc4py
-import dolfinx.fem.petsc
-print(json.dumps({'python': sys.version.split()[0], 'dolfinx': dolfinx.__version__,
-                  'petsc4py': petsc4py.__version__, 'mpi4py': mpi4py.__version__,
-                  'numpy': numpy.__version__}))
-";
-
 /// The first import takes long on a cold disk.
 const IMPORT_TIMEOUT: Duration = Duration::from_secs(120);
 const VERSION_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// A Python interpreter that imports dolfinx.
+/// A Python interpreter that imports what a code takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interpreter {
     /// The program.
@@ -57,20 +44,28 @@ pub fn candidates(explicit: Option<&Path>) -> Vec<(PathBuf, &'static str)> {
     found
 }
 
-/// Versions of the modules of an interpreter, or `None` if it does not import dolfinx.
-pub fn imports(python: &Path) -> Option<BTreeMap<String, String>> {
-    let (out, _) = capture(Command::new(python).args(["-c", PROBE]), IMPORT_TIMEOUT)?;
+/// Versions of what `code` imports, or `None` if an interpreter does not import it.
+pub fn imports(python: &Path, code: Code) -> Option<BTreeMap<String, String>> {
+    let modules = code.modules().join(", ");
+    let named = code.modules().iter().filter(|name| !name.contains('.'));
+    let versions: Vec<String> = named.map(|name| format!("'{name}': {name}.__version__")).collect();
+    let probe = format!(
+        "import json, sys\nimport {modules}\n\
+         print(json.dumps({{'python': sys.version.split()[0], {}}}))\n",
+        versions.join(", ")
+    );
+    let (out, _) = capture(Command::new(python).args(["-c", &probe]), IMPORT_TIMEOUT)?;
     serde_json::from_str(out.lines().last()?).ok()
 }
 
-/// The interpreter to use: the first candidate that imports dolfinx.
+/// The interpreter to use: the first candidate that imports what `code` takes.
 ///
 /// # Errors
 /// [`Error::Missing`] that lists what was tried.
-pub fn find_interpreter(explicit: Option<&Path>) -> Result<Interpreter> {
+pub fn find_interpreter(explicit: Option<&Path>, code: Code) -> Result<Interpreter> {
     let candidates = candidates(explicit);
     for (path, source) in &candidates {
-        if let Some(versions) = imports(path) {
+        if let Some(versions) = imports(path, code) {
             return Ok(Interpreter { path: path.clone(), source, versions });
         }
     }
@@ -78,9 +73,12 @@ pub fn find_interpreter(explicit: Option<&Path>) -> Result<Interpreter> {
     let tried: Vec<String> =
         candidates.iter().map(|(path, source)| format!("{} ({source})", path.display())).collect();
     Err(Error::Missing {
-        tool: "a Python interpreter that imports dolfinx".into(),
+        tool: format!("a Python interpreter that imports {}", code.modules()[0]),
         searched: format!("tried {}", tried.join(", ")),
-        remedy: format!("{INSTALL}; or name an interpreter with --python or {PYTHON_VARIABLE}"),
+        remedy: format!(
+            "{}; or name an interpreter with --python or {PYTHON_VARIABLE}",
+            code.install()
+        ),
     })
 }
 
@@ -103,7 +101,31 @@ pub(super) fn require(program: &Path, option: &str) -> Result<()> {
     Err(Error::Missing {
         tool: program.display().to_string(),
         searched: format!("`{} --version` does not run", program.display()),
-        remedy: format!("{INSTALL}; or name it with {option}"),
+        remedy: format!("{}; or name it with {option}", Code::Fenicsx.install()),
+    })
+}
+
+/// The version that the CalculiX program prints with `-v`.
+pub fn ccx_version(program: &Path) -> Option<String> {
+    // It calls that a failure.
+    let (out, _) = capture_any(Command::new(program).arg("-v"), VERSION_TIMEOUT)?;
+    let line = out.lines().find(|l| l.contains("Version"))?;
+    Some(line.trim().trim_start_matches("This is ").to_string())
+}
+
+/// Fails unless the CalculiX `program` can be run.
+///
+/// # Errors
+/// [`Error::Missing`] when it cannot.
+pub(super) fn require_ccx(program: &Path) -> Result<()> {
+    if ccx_version(program).is_some() {
+        return Ok(());
+    }
+    check_interrupt()?;
+    Err(Error::Missing {
+        tool: program.display().to_string(),
+        searched: format!("`{} -v` does not print a version", program.display()),
+        remedy: format!("{}; or name it with --ccx", Code::Calculix.install()),
     })
 }
 

@@ -8,6 +8,8 @@ mod memory;
 #[cfg(feature = "cli")]
 mod process;
 #[cfg(feature = "cli")]
+mod secret;
+#[cfg(feature = "cli")]
 mod signals;
 #[cfg(feature = "cli")]
 mod system;
@@ -17,7 +19,8 @@ mod text;
 pub(crate) use {
     files::{prepare_folder, remove_if_there, write_set, write_whole},
     lock::Lock,
-    process::{Stage, capture, kill_marked},
+    process::{Stage, capture, capture_any, kill_marked},
+    secret::secret,
     signals::check_interrupt,
 };
 

@@ -142,6 +142,16 @@ impl Stage<'_> {
 /// Runs a short command and returns what it printed on both streams, or `None` when it cannot be
 /// started, fails, or takes longer than `timeout`.
 pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
+    captured(command, timeout).filter(|(status, _)| status.success()).map(|(_, texts)| texts)
+}
+
+/// As [`capture`], whatever the exit code is.
+pub(crate) fn capture_any(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
+    captured(command, timeout).map(|(_, texts)| texts)
+}
+
+/// The exit status and the output of a child; `None` if it cannot be run or takes too long.
+fn captured(command: &mut Command, timeout: Duration) -> Option<(ExitStatus, (String, String))> {
     let _active = Active::new();
     let reader = |stream: Option<Box<dyn Read + Send>>| {
         std::thread::spawn(move || {
@@ -173,7 +183,7 @@ pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Option<(Strin
     }
     kill_marked(&mark);
     let texts = (out.join().ok()?, err.join().ok()?);
-    status.is_some_and(|s| s.success()).then_some(texts)
+    status.map(|status| (status, texts))
 }
 
 /// Starts a child in a process group of its own that dies with this process.

@@ -15,6 +15,20 @@ use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 /// xz = -Im(z F'). On the surface inside the strip the result is the limit from z > 0: xx = zz =
 /// -p, xz = 0.
 pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
+    let [_, f, g, h] = potential(half_width, coefficients, x, z);
+    [f + g, f - g, -h]
+}
+
+/// As [`stress`], of the modes as a traction along x on the surface, towards +x. With F as there, the
+/// tangential line load (Johnson 1985, Eq. 2.22) sums to pi xx = -2 Re F + Im(z F'), pi zz = -Im(z F'), pi xz =
+/// Im F + Re(z F').
+pub fn stress_along(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
+    let [e, f, g, h] = potential(half_width, coefficients, x, z);
+    [h - 2.0 * e, -h, f + g]
+}
+
+/// Real and imaginary part of F / pi and of z F' / pi, see [`stress`].
+fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] {
     let (t, d) = (x / half_width, z / half_width);
     // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1; for z >= 0 its imaginary part is <= 0.
     let (a, b) = (t * t - d * d - 1.0, 2.0 * t * d);
@@ -36,9 +50,10 @@ pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3]
     // Powers w^(2m+1); dw/dzeta = -w / sqrt(zeta^2 - 1).
     let (sqr, sqi) = (wr * wr - wi * wi, 2.0 * wr * wi);
     let (mut pr, mut pi) = (wr, wi);
-    let (mut fi, mut gr, mut gi) = (0.0, 0.0, 0.0);
+    let (mut fr, mut fi, mut gr, mut gi) = (0.0, 0.0, 0.0, 0.0);
     for (m, c) in coefficients.iter().enumerate() {
         let order = (2 * m + 1) as f64;
+        fr += c * pr;
         fi += c * pi;
         gr += c * order * pr;
         gi += c * order * pi;
@@ -51,7 +66,7 @@ pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3]
     } else {
         (0.0, 0.0)
     };
-    [fi + hr, fi - hr, -hi]
+    [fr, fi, hr, hi]
 }
 
 /// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the unit pressure on |x'| <= `half_width` (Johnson 1985, Eqs.
@@ -186,12 +201,32 @@ mod tests {
             for (i, g) in got.iter().enumerate() {
                 assert!((g - load(i)).abs() < 1e-9, "{i} at {x} {z}: {g} {}", load(i));
             }
+            let along = |i: usize| {
+                integrate(a, &MODES, |s| {
+                    let (d, r2) = (x - s, (x - s).powi(2) + z * z);
+                    -2.0 / PI * [d.powi(3), d * z * z, d * d * z][i] / (r2 * r2)
+                })
+            };
+            for (i, g) in stress_along(a, &MODES, x, z).iter().enumerate() {
+                assert!((g - along(i)).abs() < 1e-9, "{i} at {x} {z}: {g} {}", along(i));
+            }
         }
         let on_surface = stress(a, &MODES, 0.6, 0.0);
         let p = pressure(a, &MODES, 0.6);
         assert!((on_surface[0] + p).abs() < 1e-12 && (on_surface[1] + p).abs() < 1e-12);
         assert!(stress(a, &MODES, 2.0, 0.0).iter().all(|s| s.abs() < 1e-12));
         assert!(stress(a, &MODES, a, 0.0).iter().all(|s| s.is_finite()));
+    }
+
+    #[test]
+    fn a_hertz_traction_pulls_behind_the_contact() {
+        // Johnson 1985, Eqs. 7.6 and 7.8: -2 q x / a within the contact, and beyond it.
+        for x in [-1.0, -0.4, 0.7, 1.0] {
+            assert!((stress_along(1.0, &[1.0], x, 0.0)[0] + 2.0 * x).abs() < 1e-13, "{x}");
+        }
+        let beyond = stress_along(1.0, &[1.0], -2.0, 0.0)[0];
+        assert!((beyond - 2.0 * (2.0 - 3f64.sqrt())).abs() < 1e-13);
+        assert!((stress_along(1.0, &[1.0], 0.6, 0.0)[2] + 0.8).abs() < 1e-13);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Stress fields of both bodies: VTK files, and contours of von Mises stress.
 //!
 //! The field is evaluated on a quarter of each body and mirrored: sigma_xy and sigma_xz are odd in
-//! x, sigma_xy and sigma_yz odd in y, everything else is even.
+//! x, sigma_xy and sigma_yz odd in y, everything else is even. Where the bodies slide on each other it is
+//! evaluated on both sides of x = 0.
 
 use super::draw::{Figure, Map};
 use super::vtk::VtkGrid;
@@ -15,13 +16,16 @@ use rayon::prelude::*;
 /// the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
 
-/// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards: finer towards
-/// the roller's end along y and towards the surface along z. `counts` are at least 2 each.
+/// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards, that along x from
+/// one side to the other where the bodies slide: finer towards the roller's end along y and towards the surface along z. `counts` are at least 2 each.
 fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     let factors = case.factors();
     let half = factors.slenderness;
     let shares = |n: usize| (0..n).map(move |i| i as f64 / (n - 1) as f64);
-    let x = shares(counts[0]).map(|t| REACH[0] * t).collect();
+    let mut x: Vec<f64> = shares(counts[0]).map(|t| REACH[0] * t).collect();
+    if case.sliding.friction != 0.0 {
+        x = x[1..].iter().rev().map(|x| -x).chain(x.iter().copied()).collect();
+    }
     let mut y: Vec<f64> =
         shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
     // The computed sine of a right angle may differ from 1, but the last point must be on the end
@@ -103,24 +107,26 @@ impl<'a> Quarter<'a> {
         }
     }
 
-    /// Indices and signs of the points along an axis and its mirror image, ascending.
-    fn mirror(count: usize) -> impl Iterator<Item = (usize, f32)> + Clone {
-        (1..count).rev().map(|i| (i, -1.0)).chain((0..count).map(|i| (i, 1.0)))
+    /// Indices and signs of the points along an axis and its mirror image, ascending; an axis that has both
+    /// sides is not mirrored.
+    fn mirror(axis: &[f64]) -> impl Iterator<Item = (usize, f32)> + Clone {
+        let behind = if axis[0] < 0.0 { 1..1 } else { 1..axis.len() };
+        behind.rev().map(|i| (i, -1.0)).chain((0..axis.len()).map(|i| (i, 1.0)))
     }
 
     /// A scalar of the layers `zs` of the whole body, from its `value` at each point of the
     /// quarter; `odd` in x and in y.
     fn mirrored(&self, zs: &[usize], odd: [bool; 2], value: impl Fn(usize) -> f32) -> Vec<f32> {
-        let [nx, ny] = [self.axes[0].len(), self.axes[1].len()];
+        let [x, y, _] = &self.axes;
+        let (nx, ny) = (x.len(), y.len());
         let sign = |odd: bool, side: f32| if odd { side } else { 1.0 };
         let mut values = Vec::with_capacity((2 * nx - 1) * (2 * ny - 1) * zs.len());
         for &k in zs {
-            for (j, y) in Self::mirror(ny) {
+            for (j, along) in Self::mirror(y) {
                 let row = (k * ny + j) * nx;
-                values.extend(
-                    Self::mirror(nx)
-                        .map(|(i, x)| sign(odd[0], x) * sign(odd[1], y) * value(row + i)),
-                );
+                values.extend(Self::mirror(x).map(|(i, across)| {
+                    sign(odd[0], across) * sign(odd[1], along) * value(row + i)
+                }));
             }
         }
         values
@@ -130,7 +136,7 @@ impl<'a> Quarter<'a> {
     fn axes_m(&self, z: impl Iterator<Item = f64>) -> [Vec<f64>; 3] {
         let c_m = self.case.hertz().c_m;
         let whole = |axis: &[f64]| -> Vec<f64> {
-            Self::mirror(axis.len()).map(|(i, side)| f64::from(side) * axis[i] * c_m).collect()
+            Self::mirror(axis).map(|(i, side)| f64::from(side) * axis[i] * c_m).collect()
         };
         [whole(&self.axes[0]), whole(&self.axes[1]), z.map(|z| z * c_m).collect()]
     }
@@ -162,6 +168,7 @@ impl<'a> Quarter<'a> {
         let [x, y, z] = &self.axes;
         let half = self.case.factors().slenderness;
         let end = y.iter().position(|v| *v == half).unwrap_or(y.len() - 1);
+        let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
         let (largest, critical) = self.critical();
         let shown = |i: usize, j: usize, k: usize| {
             let v = self.von_mises(i, j, k);
@@ -180,7 +187,7 @@ impl<'a> Quarter<'a> {
         };
         let depth = format!("z = {:.2} C (critical depth)", z[critical]);
         [
-            ("x0", figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| shown(0, j, k))),
+            ("x0", figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| shown(middle, j, k))),
             (
                 "end",
                 figure("y = L1/2 (end)", ["x / C", "z / C"], [x, z], true, &|i, k| {

@@ -3,8 +3,10 @@
 pub mod bench;
 pub mod cells;
 pub mod columns;
+pub mod comparison;
 pub mod draw;
 pub mod effects_text;
+pub mod fatigue;
 pub mod field;
 pub mod gates;
 pub mod page;
@@ -17,6 +19,7 @@ pub mod summarise;
 pub mod sweep;
 pub mod table;
 mod tables;
+pub mod uncertainty;
 pub mod verdict;
 mod vtk;
 

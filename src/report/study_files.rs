@@ -8,6 +8,7 @@ use super::table::{self, Row, from_csv, to_csv};
 use super::tables;
 use crate::base::{Error, Result};
 use crate::study::effects;
+use crate::study::verification::VerificationRow;
 use crate::study::{ErrorRow, Range, Source, StudyRun};
 use serde::Serialize;
 use std::path::Path;
@@ -29,6 +30,8 @@ pub struct StudyFiles {
     pub errors: Vec<ErrorRow>,
     /// `effects.csv`: one row for each method, response and effect.
     pub effects: Vec<EffectRow>,
+    /// `verification.csv`: differences beside the numerical uncertainty of both sides.
+    pub verification: Vec<VerificationRow>,
 }
 
 impl StudyFiles {
@@ -43,6 +46,7 @@ impl StudyFiles {
             fem_error: as_written(&tables::own_errors(run), &run.range),
             errors: as_written(&tables::errors(run), &run.range),
             effects: as_written(&tables::effects(run, &effects), &run.range),
+            verification: as_written(context.verification, &run.range),
         }
     }
 
@@ -56,6 +60,7 @@ impl StudyFiles {
             ("fem_error.csv", to_csv(&self.fem_error, range)),
             ("errors.csv", to_csv(&self.errors, range)),
             ("effects.csv", to_csv(&self.effects, range)),
+            ("verification.csv", to_csv(&self.verification, range)),
             ("summary.json", pretty(&self.summary)),
         ]
         .map(|(name, text)| (name.to_string(), text.into_bytes()))
@@ -84,6 +89,7 @@ impl StudyFiles {
             fem_error: read(folder, "fem_error.csv", range)?,
             errors: read(folder, "errors.csv", range)?,
             effects: read(folder, "effects.csv", range)?,
+            verification: read(folder, "verification.csv", range)?,
             summary,
         })
     }

@@ -7,9 +7,21 @@ use crate::body::EdgeModel;
 use crate::stress::Quantity;
 use crate::study::factorial::Verdict;
 use crate::study::response::Response;
+use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
 use crate::study::{ErrorRow, FactorName, Range, Source};
 
-by_name!(BodyKind, EdgeModel, Response, RoleName, Source, Verdict);
+by_name!(
+    BodyKind,
+    Convergence,
+    EdgeModel,
+    Finding,
+    Group,
+    Response,
+    RoleName,
+    Source,
+    Verdict,
+    Zone
+);
 
 /// A row of `study.csv`: one case by one model or reference. What a source does not have is `None`.
 #[derive(Debug, Clone, PartialEq)]
@@ -308,4 +320,23 @@ columns!(EffectRow, _range, {
     mean,
     centre,
     curvature,
+});
+
+// `verification.csv`.
+columns!(VerificationRow, _range, {
+    case,
+    held_back,
+    source,
+    reference,
+    group,
+    zone,
+    difference,
+    sizes,
+    order,
+    convergence,
+    safety,
+    u_reference,
+    u_source,
+    u_num,
+    finding,
 });

@@ -11,6 +11,7 @@ use crate::study::bench::{Machine, Speedup};
 use crate::study::effects::{Effects, NotAnalysed};
 use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
+use crate::study::verification::VerificationRow;
 use crate::study::{CaseRun, Engine, MethodDetails, MethodRun, ReferenceRun, Source, StudyRun};
 
 /// The facts about a run beside its numbers.
@@ -31,6 +32,8 @@ pub struct Context<'a> {
     pub speedups: &'a [Speedup],
     /// The same of the published method at the error that it reaches.
     pub published_speedups: &'a [Speedup],
+    /// Differences beside the numerical uncertainty of both sides.
+    pub verification: &'a [VerificationRow],
 }
 
 /// The summary of a run.

@@ -6,11 +6,31 @@ use super::summarise::Context;
 use super::*;
 use crate::body::EdgeModel;
 use crate::solve::{Avoided, WorkSummary};
-use crate::study::Source;
 use crate::study::bench::Machine;
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::response::Response;
 use crate::study::synthetic::{self, Twist};
+use crate::study::verification::{self, Convergence, Finding, VerificationRow};
+use crate::study::{Source, StudyRun};
+
+/// The differences of a run's quarter-space, whose refined solution is off by 1e-4 p0.
+fn verification(run: &StudyRun) -> Vec<VerificationRow> {
+    let of_case = |case: &crate::study::CaseRun| {
+        let found = case.references.iter();
+        let references: Vec<_> =
+            found.filter_map(|r| Some((r.engine.clone(), r.result.as_ref().ok()?))).collect();
+        let model = Source::from(EdgeModel::QuarterSpace);
+        let own = case.methods.iter().find(|m| m.source == model);
+        let Some(Ok(own)) = own.map(|m| &m.result) else { return Vec::new() };
+        let curves = &own.solution.curves;
+        let mut refined = curves.clone();
+        for line in &mut refined.pressure {
+            line.p.iter_mut().for_each(|p| *p += 1e-4);
+        }
+        verification::rows(&case.case, false, (model, curves, &refined), &references)
+    };
+    run.cases.iter().flat_map(of_case).collect()
+}
 
 /// Files of a run on made-up solutions.
 fn files(twist: Twist) -> StudyFiles {
@@ -26,6 +46,7 @@ fn files(twist: Twist) -> StudyFiles {
         gates: &outcomes,
         speedups: &[],
         published_speedups: &[],
+        verification: &verification(&run),
     };
     StudyFiles::of(&run, &context)
 }
@@ -148,4 +169,66 @@ fn ratios_are_shown_with_their_uncertainty_and_their_origin() {
     }
     // Its effects are analysed like all others.
     assert!(run.effects.iter().any(|r| r.response == Response::Log10Speedup));
+}
+
+/// The made-up meshes converge with the square of their size: the index is 1.25 times the error, which is the
+/// made-up difference itself.
+#[test]
+fn differences_stand_beside_the_uncertainty_of_both_sides() {
+    let files = files(Twist::SecondReference);
+    // Nine cases, two pairs with the model and one of codes, pressure and stresses at two places.
+    assert_eq!(files.verification.len(), 9 * 3 * 4);
+    for row in &files.verification {
+        assert_eq!(row.convergence, Convergence::Observed, "{row:?}");
+        assert!((row.order.unwrap() - 2.0).abs() < 1e-5, "{row:?}");
+        let index = row.u_reference.unwrap();
+        if row.group == verification::Group::Pressure {
+            assert!((index / (1.25 * synthetic::SHIFT) - 1.0).abs() < 1e-3, "{row:?}");
+        }
+        // Codes that are the same do not differ; the model differs by less than the index.
+        assert_eq!(row.finding, Finding::Within, "{row:?}");
+        assert_eq!(row.difference == 0.0, row.source.is_engine(), "{row:?}");
+    }
+}
+
+/// Ten numbers of the page's verification, each found again in the file that it is said to be from.
+#[test]
+fn numbers_of_the_page_are_those_of_the_files() {
+    let files = files(Twist::SecondReference);
+    let page = page::html(&files).unwrap();
+    let section = page.split("id=\"verified\"").nth(1).unwrap().split("</table>").next().unwrap();
+    let text = crate::report::table::to_csv(&files.verification, &files.summary.range);
+    let mut reader = csv::Reader::from_reader(text.as_bytes());
+    let header = reader.headers().unwrap().clone();
+    let at = |name: &str| header.iter().position(|h| h == name).unwrap();
+    let rows: Vec<csv::StringRecord> = reader.records().map(Result::unwrap).collect();
+    let mut seen = 0;
+    for row in rows.iter().step_by(9) {
+        let place = match &row[at("zone")] {
+            "regular" => "regular",
+            _ => "near an end",
+        };
+        let pair = |name: &str| match name {
+            "fem" => "FEM".to_string(),
+            other => other.to_string(),
+        };
+        let pair = format!("{} − {}", pair(&row[at("source")]), pair(&row[at("reference")]));
+        let line = section
+            .lines()
+            .find(|l| {
+                l.contains(&format!("<td>{}</td>", &row[at("case")]))
+                    && l.contains(&pair)
+                    && l.contains(place)
+            })
+            .unwrap_or_else(|| panic!("no line of {pair} in {}", &row[at("case")]));
+        for column in ["difference", "u_reference", "u_source"] {
+            let value: f64 = row[at(column)].parse().unwrap();
+            let shown = format!("<td>{}</td>", crate::base::number::fixed(value, 4));
+            assert!(line.contains(&shown), "{column} {shown}: {line}");
+            seen += 1;
+        }
+    }
+    assert!(seen >= 30, "{seen}");
+    let counted = format!("Of {} differences", 9 * 2 * 4);
+    assert!(page.contains(&counted) && page.contains("code-to-code verification"));
 }

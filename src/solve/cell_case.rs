@@ -4,6 +4,7 @@ use super::cells::{PressureCell, largest};
 use super::lines;
 use super::options::Options;
 use super::scene::Scene;
+use super::shaping::Shaping;
 use super::solved::{Solution, most_stressed, wanted_curves};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
@@ -86,6 +87,14 @@ impl Default for CellOptions {
 /// [`Error::Value`] with what to do.
 pub fn check_cells(case: &Case) -> Result<()> {
     let scene = Scene::new(case, EdgeModel::HalfSpace, None);
+    if scene.slides {
+        return Err(Error::Value {
+            key: "sliding.friction".into(),
+            value: format!("{:e}", case.sliding.friction),
+            reason: "cells carry pressures only".into(),
+            remedy: "solve this case with --engine line, or without friction".into(),
+        });
+    }
     if scene.is_symmetric() && case.block.radius_m.is_none() {
         return Ok(());
     }
@@ -191,11 +200,8 @@ impl Stressed {
                 lines::stresses(free.shared(), field, &specs, &places)
             }
         };
-        let curvature = c_m / case.roller.radius_m;
-        let shaped = |body: BodyKind, stress: &RoundStress| match body {
-            BodyKind::Block => stress.flat,
-            BodyKind::Roller => stress.at(curvature),
-        };
+        let shaping = Shaping::of(case);
+        let shaped = |body: BodyKind, stress: &RoundStress| shaping.stress(body, stress);
         let curves = specs.into_iter().zip(&found.curves).map(|(spec, stresses)| StressCurve {
             body: spec.body,
             name: spec.name.to_string(),

@@ -3,9 +3,10 @@
 
 use super::cells::{largest, pressure_cells};
 use super::scene::Scene;
+use super::shaping::Shaping;
 use super::solved::{approach_m, place_of};
 use super::solved_scene::SolvedScene;
-use crate::base::{HertzScales, PerBody, Result};
+use crate::base::{HertzScales, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::Case;
 use crate::stress::{
@@ -42,7 +43,7 @@ type Sample = (BodyKind, [f64; 3], RoundStress);
 
 /// Main results of `cases`, all of which have one [`Scene`] by `method`; `each` is called with them
 /// one after the other. The contact is solved once. The largest stress is sought on all standard
-/// curves for tolerances below 5e-3, and otherwise by a search along the curves in the plane x = 0,
+/// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
 /// which finds it within 2e-3 p0 (a test of this module checks that).
 ///
 /// # Errors
@@ -67,11 +68,6 @@ pub fn key_results(
     let centre = solved.pressure.at(0.0, scene.span().centre());
     for (i, case) in cases.iter().enumerate() {
         let hertz = case.hertz();
-        let of_radius = |radius_m: f64| hertz.c_m / radius_m;
-        let curvatures = PerBody {
-            block: case.block.radius_m.map_or(0.0, of_radius),
-            roller: of_radius(case.roller.radius_m),
-        };
         each(
             i,
             KeyResults {
@@ -82,21 +78,18 @@ pub fn key_results(
                 p_max: top.p,
                 p_max_at: place_of(&solved, top),
                 p_at: at_end,
-                critical: critical(&samples, &curvatures),
+                critical: critical(&samples, &Shaping::of(case)),
             },
         );
     }
     Ok(())
 }
 
-/// The largest von Mises stress of the samples of bodies with these C / R.
-fn critical(samples: &[Sample], curvatures: &PerBody<f64>) -> Critical {
+/// The largest von Mises stress of the samples.
+fn critical(samples: &[Sample], shaping: &Shaping) -> Critical {
     let values = samples.iter().map(|(body, at, stress)| {
-        let shaped = match body {
-            BodyKind::Block => stress.on_one_side(curvatures.block),
-            BodyKind::Roller => stress.at(curvatures.roller),
-        };
-        Critical { body: *body, value: shaped.von_mises(), at: *at }
+        let value = shaping.stress(*body, stress).von_mises();
+        Critical { body: *body, value, at: *at }
     });
     let best = values.reduce(|best, next| if next.value > best.value { next } else { best });
     best.expect("both bodies have samples")
@@ -121,7 +114,7 @@ fn samples(solved: &SolvedScene) -> Vec<Sample> {
             all.extend(again);
             break;
         }
-        if solved.scene.tolerance < Resolution::COARSE {
+        if solved.scene.tolerance < Resolution::COARSE || solved.scene.slides {
             every_point(solved, kind, body.ends(), &mut all);
         } else {
             search(solved, kind, body.ends(), 1.0, &mut all);
@@ -177,7 +170,7 @@ fn search(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], side: f64, all: 
         let place = middle + side * y;
         let stress = field.round_at(place, z, &[0.0])[0];
         all.push((kind, [0.0, place, z], stress));
-        stress.flat.von_mises()
+        stress.flat.pressure.von_mises()
     };
     for y in [0.0, 0.9 * half_length, half_length] {
         for z in DEPTHS {
@@ -200,7 +193,7 @@ fn search(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], side: f64, all: 
     // A step to either side of the largest stress, halved twice.
     let best = |all: &[Sample]| {
         let own = all[start..].iter().filter(|s| s.1[0] == 0.0);
-        own.map(|s| (s.2.flat.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))
+        own.map(|s| (s.2.flat.pressure.von_mises(), s.1)).max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let mut step = 0.125;
     for _ in 0..3 {

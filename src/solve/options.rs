@@ -5,7 +5,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::BodyKind;
-use crate::stress::curves::{CURVE_NAMES, END_CURVES};
+use crate::stress::curves::{self, CURVE_NAMES};
 
 /// The edge model of a solution, and what to compute.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,10 +43,11 @@ impl Options {
         }
     }
 
-    /// Whether the curve called `name` is wanted; one at the -y end is with its twin at the other end.
+    /// Whether the curve called `name` is wanted; one at -x or at the -y end is with its twin on the other
+    /// side.
     pub fn wants(&self, name: &str) -> bool {
-        let twin = END_CURVES.iter().find(|[_, other]| *other == name).map(|[twin, _]| *twin);
-        self.curves.iter().any(|wanted| wanted == name || Some(wanted.as_str()) == twin)
+        let twin = curves::twin(name);
+        self.curves.iter().any(|wanted| wanted == name || wanted == twin)
     }
 
     /// Refuses curves that do not exist and points outside their body.
@@ -54,10 +55,7 @@ impl Options {
     /// # Errors
     /// [`Error::Value`] that names the first of them.
     pub fn check(&self, case: &Case) -> Result<()> {
-        let known = |name: &str| {
-            CURVE_NAMES.contains(&name) || END_CURVES.iter().any(|[_, other]| *other == name)
-        };
-        let unknown = |name: &&String| !known(name);
+        let unknown = |name: &&String| curves::every_name().all(|known| known != *name);
         if let Some(name) = self.curves.iter().find(unknown) {
             let nearest = CURVE_NAMES
                 .iter()

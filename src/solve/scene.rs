@@ -2,7 +2,7 @@
 
 use crate::base::{Material, PerBody, Profile};
 use crate::body::{EdgeModel, End, corner_exponent};
-use crate::case::{Accuracy, Block, Case, Load, Pose, Roller};
+use crate::case::{Accuracy, Block, Case, Load, Pose, Roller, Sliding};
 use crate::contact::Shaped;
 use crate::stress::BodyKind;
 use crate::stress::curves::Span;
@@ -57,6 +57,9 @@ pub struct Scene {
     pub load: f64,
     /// The tilt.
     pub tilt: Tilt,
+    /// Whether the contact carries a traction along x. Of which friction does not matter: the stresses under
+    /// a traction equal to the pressure are kept by themselves.
+    pub slides: bool,
     /// 2 R / C, R the equivalent radius, where a profile or a held tilt needs it, otherwise zero.
     pub steepness: f64,
     /// Depth (C) of the lines whose tilt is held; zero where none is, or where they are parallel by
@@ -88,6 +91,7 @@ impl Scene {
             bodies,
             load: PI * half_length,
             tilt: Tilt::Held(0.0),
+            slides: false,
             steepness: 0.0,
             depth: 0.0,
             model,
@@ -99,8 +103,17 @@ impl Scene {
     /// The scene of a case.
     pub fn new(case: &Case, model: EdgeModel, psi: Option<f64>) -> Self {
         // Each field of a case is in the scene, in the scales or in neither.
-        let Case { name: _, roller, block, load, pose, accuracy: Accuracy { tolerance }, cells: _ } =
-            case;
+        let Case {
+            name: _,
+            roller,
+            block,
+            load,
+            pose,
+            sliding: Sliding { friction },
+            fatigue: _,
+            accuracy: Accuracy { tolerance },
+            cells: _,
+        } = case;
         let Roller { radius_m, length_m: roller_m, material: roller_material, profile: _ } = roller;
         let Block { length_m: block_m, material: block_material, radius_m: _, profile: _ } = block;
         let Load { force_n: _, eccentricity_m } = load;
@@ -148,6 +161,7 @@ impl Scene {
             depth: 0.0,
             bodies,
             tilt,
+            slides: *friction != 0.0,
             model,
             psi,
             tolerance: *tolerance,
@@ -209,7 +223,7 @@ impl Scene {
 
     /// The contact line, for the standard curves.
     pub fn span(&self) -> Span {
-        Span { ends: self.overlap(), symmetric: self.is_symmetric() }
+        Span { ends: self.overlap(), symmetric: self.is_symmetric(), slides: self.slides }
     }
 
     /// The gap between the bodies, parallel and without load.
@@ -231,6 +245,7 @@ impl Scene {
             bodies,
             load,
             tilt,
+            slides,
             steepness,
             depth,
             model,
@@ -253,6 +268,7 @@ impl Scene {
         SceneKey {
             numbers: numbers.iter().map(bits).collect(),
             is_free,
+            slides: *slides,
             model: *model,
             psi: psi.as_ref().map(bits),
         }
@@ -289,6 +305,7 @@ impl Scene {
 pub struct SceneKey {
     numbers: Vec<u64>,
     is_free: bool,
+    slides: bool,
     model: EdgeModel,
     psi: Option<u64>,
 }

@@ -8,6 +8,7 @@ use super::grid::check_grid;
 use super::lines;
 use super::options::Options;
 use super::scene::Scene;
+use super::shaping::Shaping;
 use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
@@ -141,7 +142,7 @@ impl SolvedCase {
         let grid = Grid { y, ..grid.clone() };
         let shaped = |s: &RoundStress| self.shaped(body, s);
         let round: Option<&(dyn Fn(&RoundStress) -> StressTensor + Sync)> =
-            if self.is_round(body) { Some(&shaped) } else { None };
+            Shaping::of(&self.case).adds_to(body).then_some(&shaped as _);
         Ok(on_grid(&self.scene.field(body), &grid, round))
     }
 
@@ -187,23 +188,14 @@ impl SolvedCase {
         mirrored.chain(half.iter().copied()).collect()
     }
 
-    /// The roller's C / R.
-    fn curvature(&self) -> f64 {
-        self.hertz.c_m / self.case.roller.radius_m
+    /// C / R of a body, negative for a concave one.
+    pub(super) fn curvature(&self, body: BodyKind) -> f64 {
+        Shaping::of(&self.case).curvatures[body]
     }
 
-    /// Whether a body's surface is round.
-    fn is_round(&self, body: BodyKind) -> bool {
-        body == BodyKind::Roller || self.case.block.radius_m.is_some()
-    }
-
-    /// The stress of a body (p0) with what its radius adds.
+    /// The stress of a body (p0) with what its radius and the friction add.
     fn shaped(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
-        match (body, self.case.block.radius_m) {
-            (BodyKind::Roller, _) => stress.at(self.curvature()),
-            (BodyKind::Block, None) => stress.flat,
-            (BodyKind::Block, Some(radius_m)) => stress.on_one_side(self.hertz.c_m / radius_m),
-        }
+        Shaping::of(&self.case).stress(body, stress)
     }
 
     /// The pressure on the two standard lines.
@@ -288,7 +280,7 @@ impl SolvedCase {
             work: Some(WorkSummary::new(&stresses.found.work, alike)),
             approach_reference_m: self.case.roller.radius_m,
             roller_diametral_tension_pa: round::DIAMETRAL_TENSION
-                * self.curvature()
+                * self.curvature(BodyKind::Roller)
                 * self.hertz.p0_pa,
         }
     }

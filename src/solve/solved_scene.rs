@@ -3,6 +3,7 @@
 use super::lines;
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
+use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Shaped, Slices};
@@ -199,7 +200,8 @@ impl SolvedScene {
     /// The field of a body in the solution's own unit.
     fn own_field(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> Field<'_> {
         let (numbers, pressure) = (&self.wavenumbers, &self.own.pressure);
-        Field::new(self.body(kind), numbers, pressure, &self.moments, gamma, tolerance)
+        let field = Field::new(self.body(kind), numbers, pressure, &self.moments, gamma, tolerance);
+        if self.scene.slides { field.with_traction(pressure) } else { field }
     }
 
     /// The contact's ends along y (C).
@@ -345,6 +347,7 @@ impl Trial<'_> {
     fn settled(&self, mut line: Line) -> Result<Settled> {
         let mut setup = 0.0;
         for trial in 1.. {
+            go_on()?;
             let start = Instant::now();
             let parts = self.parts(&line)?;
             setup += start.elapsed().as_secs_f64();
@@ -393,7 +396,8 @@ impl Trial<'_> {
         let stack = |&kind: &BodyKind| {
             let SceneBody { half, middle, nu, .. } = scene.bodies[kind];
             let place = (middle, Shape { half, nu });
-            Stack::new(&axis, symmetric, place, scene.end(kind), (resolution, coarse))
+            let sort = (symmetric, scene.slides);
+            Stack::new(&axis, sort, place, scene.end(kind), (resolution, coarse))
         };
         let bodies: Vec<Stack> = distinct.iter().map(stack).collect();
         let condition = checked_condition(&bodies)?;

@@ -35,7 +35,7 @@ pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f6
             let body = &scene.bodies[kind];
             let column = field.down(&[0.0], y, down.nodes());
             let strains = column.iter().zip(down.weights()).map(|(row, weight)| {
-                let s = row[0];
+                let s = row[0].pressure;
                 weight * (body.nu * (s.xx + s.yy) - s.zz)
             });
             // 1 / E in units of 1 / E*.

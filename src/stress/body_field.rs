@@ -1,6 +1,7 @@
 //! The stress field of a body in units of C and p0, whatever units it is computed in.
 
 use super::field::{Field, Work};
+use super::flat::FlatStress;
 use super::round::RoundStress;
 use crate::base::StressTensor;
 
@@ -29,18 +30,18 @@ impl<'a> BodyField<'a> {
         self.field.work()
     }
 
-    /// [`Field::at`].
+    /// [`Field::at`], under the pressure alone.
     pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         self.flat(self.field.at(self.own(y), self.own(z), &self.all(xs)))
     }
 
-    /// [`Field::down`].
+    /// [`Field::down`], under the pressure alone.
     pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<StressTensor>> {
         let rows = self.field.down(&self.all(xs), self.own(y), &self.all(zs));
         rows.into_iter().map(|row| self.flat(row)).collect()
     }
 
-    /// [`Field::along`].
+    /// [`Field::along`], under the pressure alone.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
         self.flat(self.field.along(self.own(x), self.own(z), &self.all(ys)))
     }
@@ -69,8 +70,8 @@ impl<'a> BodyField<'a> {
         values.iter().map(|v| self.own(*v)).collect()
     }
 
-    fn flat(&self, stresses: Vec<StressTensor>) -> Vec<StressTensor> {
-        stresses.into_iter().map(|s| s * self.unit).collect()
+    fn flat(&self, stresses: Vec<FlatStress>) -> Vec<StressTensor> {
+        stresses.into_iter().map(|s| s.pressure * self.unit).collect()
     }
 
     fn round(&self, stresses: Vec<RoundStress>) -> Vec<RoundStress> {

@@ -43,6 +43,34 @@ pub const END_CURVES: [[&str; 2]; 6] = [
     ["depth-end-x1.4", "depth-end-x1.4-neg"],
 ];
 
+/// The curves off the plane x = 0, at their own x and at -x. The latter exist where the bodies slide on each
+/// other: only then do both differ.
+pub const OFF_PLANE_CURVES: [[&str; 2]; 10] = [
+    ["depth-centre-x0.7", "depth-centre-x0.7-xneg"],
+    ["depth-0.9-x0.7", "depth-0.9-x0.7-xneg"],
+    ["depth-end-x0.7", "depth-end-x0.7-xneg"],
+    ["depth-centre-x1.4", "depth-centre-x1.4-xneg"],
+    ["depth-0.9-x1.4", "depth-0.9-x1.4-xneg"],
+    ["depth-end-x1.4", "depth-end-x1.4-xneg"],
+    ["depth-0.9-x0.7-neg", "depth-0.9-x0.7-neg-xneg"],
+    ["depth-end-x0.7-neg", "depth-end-x0.7-neg-xneg"],
+    ["depth-0.9-x1.4-neg", "depth-0.9-x1.4-neg-xneg"],
+    ["depth-end-x1.4-neg", "depth-end-x1.4-neg-xneg"],
+];
+
+/// All names that a curve may have.
+pub fn every_name() -> impl Iterator<Item = &'static str> {
+    let others = END_CURVES.iter().chain(&OFF_PLANE_CURVES).map(|[_, other]| *other);
+    CURVE_NAMES.into_iter().chain(others)
+}
+
+/// The standard curve of which the one called `name` is the twin on the other side, at -x or at the -y end;
+/// itself if it is none.
+pub fn twin(name: &str) -> &str {
+    let ahead = name.strip_suffix("-xneg").unwrap_or(name);
+    ahead.strip_suffix("-neg").unwrap_or(ahead)
+}
+
 /// The part of the contact line that the curves lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Span {
@@ -50,12 +78,14 @@ pub struct Span {
     pub ends: [f64; 2],
     /// Whether the contact is symmetric about y = 0; one half of it is then enough.
     pub symmetric: bool,
+    /// Whether the bodies slide on each other; x of both signs is then needed.
+    pub slides: bool,
 }
 
 impl Span {
-    /// A symmetric contact of half-length `half_length` (C).
+    /// A symmetric contact of half-length `half_length` (C) without sliding.
     pub fn symmetric(half_length: f64) -> Self {
-        Self { ends: [-half_length, half_length], symmetric: true }
+        Self { ends: [-half_length, half_length], symmetric: true, slides: false }
     }
 
     /// The middle of the overlap.
@@ -167,12 +197,17 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
 }
 
 /// The standard curves of one body with these `ends` (C), on any contact line. Curves along y of a
-/// contact that is not symmetric go over all of it, and each of [`END_CURVES`] stands at both ends.
+/// contact that is not symmetric go over all of it, and each of [`END_CURVES`] stands at both ends. Of bodies
+/// that slide, the curve across the contact goes over both signs of x, and each of [`OFF_PLANE_CURVES`] stands
+/// at both.
 pub fn curves_on(body: BodyKind, span: &Span, ends: [f64; 2]) -> Vec<CurveSpec> {
     let y = span.both_sides([span.ends[0] - ends[0], ends[1] - span.ends[1]]);
     let (middle, centre, half_length) = (span.middle(), span.centre(), span.half_length());
     let mut x = across_contact();
     x.extend([1.75, 2.0, 2.5, 3.0]);
+    if span.slides {
+        x = x[1..].iter().rev().map(|x| -x).chain(x.iter().copied()).collect();
+    }
     let along_y = |depth: f64| y.iter().map(|&y| [0.0, y, depth]).collect::<Vec<_>>();
     let down = |x: f64, y: f64| depths().iter().map(|&z| [x, y, z]).collect::<Vec<_>>();
     let along_z = |x: f64| [centre, middle + 0.9 * half_length, span.ends[1]].map(|y| down(x, y));
@@ -192,6 +227,15 @@ pub fn curves_on(body: BodyKind, span: &Span, ends: [f64; 2]) -> Vec<CurveSpec> 
         let points = [0.0].into_iter().chain(OFF_PLANE).flat_map(other);
         let names = END_CURVES.iter().map(|[_, name]| *name);
         curves.extend(names.zip(points).map(|(name, points)| CurveSpec { body, name, points }));
+    }
+    if span.slides {
+        let behind = |curve: &CurveSpec| {
+            let [_, name] = *OFF_PLANE_CURVES.iter().find(|[own, _]| *own == curve.name)?;
+            let points = curve.points.iter().map(|[x, y, z]| [-x, *y, *z]).collect();
+            Some(CurveSpec { body, name, points })
+        };
+        let behind: Vec<_> = curves.iter().filter_map(behind).collect();
+        curves.extend(behind);
     }
     curves
 }
@@ -221,7 +265,7 @@ mod tests {
                 assert_eq!(points.len(), of(&format!("depth-{place}")).len());
             }
         }
-        let span = Span { ends: [-3.0, 5.0], symmetric: false };
+        let span = Span { ends: [-3.0, 5.0], symmetric: false, slides: false };
         let curves = curves_on(BodyKind::Block, &span, [-3.0, 7.0]);
         assert_eq!(curves.len(), CURVE_NAMES.len() + END_CURVES.len());
         let ends = |name: &str| {
@@ -234,6 +278,12 @@ mod tests {
         assert_eq!(ends("depth-end-x0.7"), [[0.7, 5.0, 0.0], [0.7, 5.0, 5.0]]);
         assert!((ends("depth-0.9-neg")[0][1] + 2.6).abs() < 1e-12);
         assert_eq!(ends("depth-centre")[0], [0.0; 3]);
+        let curves = curves_on(BodyKind::Block, &Span { slides: true, ..span }, [-3.0, 7.0]);
+        assert_eq!(curves.len(), CURVE_NAMES.len() + END_CURVES.len() + OFF_PLANE_CURVES.len());
+        let curve = |name: &str| &curves.iter().find(|c| c.name == name).unwrap().points;
+        assert_eq!(curve("surface-along-x").len(), 69);
+        assert!(curve("surface-along-x").windows(2).all(|p| p[0][0] < p[1][0]));
+        assert_eq!(curve("depth-end-x1.4-neg-xneg")[0], [-1.4, -3.0, 0.0]);
         for rounded in [5.0 * (1.0 - 1e-15), 5.0 * (1.0 + 1e-15)] {
             let flush = standard_curves(BodyKind::Block, 5.0, rounded);
             assert_eq!(flush[0].points.len(), 20);

@@ -2,18 +2,19 @@
 //!
 //! Conventions: lengths in units of C, stresses in units of p0. A stress is (1/pi) int_0^inf A(k)
 //! cos(k x) dk, or sin(k x) for the shears xy and xz, with the amplitude A the sum over the loads
-//! of the kernels of [`crate::kernels::wave`]. The stress under an endless contact with the local
+//! of the kernels of [`crate::kernels::wave`]; under a traction along x it is the other way round. The stress under an endless contact with the local
 //! pressure is subtracted from A and added in closed form ([`crate::kernels::strip`]). The
 //! remainder decays with k, so the steep edge of the pressure across the contact needs no
 //! additional wavenumbers.
 
-use super::load::Load;
+use super::flat::FlatStress;
+use super::load::{Load, Traction};
 use super::round::{LocalContact, RoundStress};
-use super::waves::{Influence, PartLoads, Waves};
+use super::waves::{Influence, PartLoads, TractionLoads, Waves};
 use crate::base::{Panels, StressTensor, Wavenumbers};
 use crate::body::{Body, Stack, transition};
 use crate::kernels::line_load::WaveStress;
-use crate::kernels::wave::WAVES;
+use crate::kernels::wave::{WAVES, Wanted, WaveTable};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
@@ -80,6 +81,9 @@ const NEGLIGIBLE: f64 = 0.005;
 /// Points closer to a surface than this (C, or in body half-lengths) count as on it.
 const ON_SURFACE: f64 = 1e-9;
 
+/// Depth (C) that stands for the surface under a traction along x, see [`below`].
+const UNDER_SURFACE: f64 = 1e-5;
+
 /// Distance from the contact's end (C) within which its local half-width is not that of the loads
 /// around.
 const END_REACH: f64 = 1.0;
@@ -92,6 +96,8 @@ const STEP: f64 = 1e-4;
 pub struct Field<'a> {
     stack: &'a Stack,
     pressure: &'a dyn Load,
+    /// The pressure as a traction along x, if the contact carries one.
+    traction: Option<&'a dyn Traction>,
     wavenumbers: &'a Wavenumbers,
     /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
     /// with the quadrature over the fine ones in their loads.
@@ -145,6 +151,7 @@ impl<'a> Field<'a> {
         Self {
             stack,
             pressure,
+            traction: None,
             wavenumbers,
             central,
             all,
@@ -155,6 +162,13 @@ impl<'a> Field<'a> {
             follows_contact: false,
             plates,
         }
+    }
+
+    /// The same field with the stresses under a `traction` along x, which is the pressure of the field. The
+    /// stack has to be one that slides.
+    #[must_use]
+    pub fn with_traction(self, traction: &'a dyn Traction) -> Self {
+        Self { traction: Some(traction), ..self }
     }
 
     /// The same field, where what a round surface adds follows the local contact, not that of the mean
@@ -231,7 +245,7 @@ impl<'a> Field<'a> {
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
     ///
     /// On a loaded surface or a free end face the known tractions are used.
-    pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+    pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
         let z = if z < ON_SURFACE { 0.0 } else { z };
         let remainders = self.remainders(y, z, xs);
         xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
@@ -256,7 +270,7 @@ impl<'a> Field<'a> {
     /// only where the load is not smooth. In the variable asinh(z / u), with the u of the nearest
     /// such place, all of them have imaginary parts of +-pi/2. Directly below such a place the
     /// variable is ln z, which is used from some depth.
-    pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<StressTensor>> {
+    pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<FlatStress>> {
         let near =
             xs.iter().fold(f64::INFINITY, |near: f64, &x| near.min(self.smooth_within(x, y)));
         let least = if near >= SMOOTH_DEPTH { 0.0 } else { SMOOTH_DEPTH };
@@ -268,12 +282,12 @@ impl<'a> Field<'a> {
             return zs.iter().map(|&z| self.at(y, z, xs)).collect();
         };
         let at_node = |t: &f64| self.remainders(y, scale * t.sinh(), xs);
-        let nodes: Vec<Vec<StressTensor>> = axis.nodes().iter().map(at_node).collect();
+        let nodes: Vec<Vec<FlatStress>> = axis.nodes().iter().map(at_node).collect();
         let smooth = |z: f64| {
             let weights: Vec<(usize, f64)> = axis.interpolation(place(z)).collect();
             let at = |(i, &x): (usize, &f64)| {
-                let own = |(node, weight): &(usize, f64)| nodes[*node][i] * *weight;
-                self.complete(x, y, z, weights.iter().map(own).sum())
+                let own = weights.iter().map(|(node, weight)| (&nodes[*node][i], *weight));
+                self.complete(x, y, z, self.weighted(own))
             };
             xs.iter().enumerate().map(at).collect()
         };
@@ -298,7 +312,7 @@ impl<'a> Field<'a> {
     pub fn round_along(&self, z: f64, ys: &[f64]) -> Vec<RoundStress> {
         let flat = self.along(0.0, z, ys);
         let slope = StressTensor::default();
-        let round = |(s, y): (StressTensor, &f64)| {
+        let round = |(s, y): (FlatStress, &f64)| {
             RoundStress::new(0.0, z, s, &slope, &self.local_contact(*y))
         };
         flat.into_iter().zip(ys).map(round).collect()
@@ -307,8 +321,8 @@ impl<'a> Field<'a> {
     /// Stresses at the points (`x`, y, `z`) for each y of `ys`, in their order. They equal
     /// [`Field::at`], interpolated if the points are closer together than the field's length of
     /// variation. Each side of the contact is sampled by itself.
-    pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<StressTensor> {
-        let mut stresses = vec![StressTensor::default(); ys.len()];
+    pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<FlatStress> {
+        let mut stresses = vec![FlatStress::default(); ys.len()];
         let [from, to] = self.pressure.ends();
         let middle = 0.5 * (from + to);
         for side in [1.0, -1.0] {
@@ -326,7 +340,7 @@ impl<'a> Field<'a> {
     }
 
     /// [`Field::along`] on the surface, on one side.
-    fn along_surface(&self, line: &Side, ys: &[f64]) -> Vec<StressTensor> {
+    fn along_surface(&self, line: &Side, ys: &[f64]) -> Vec<FlatStress> {
         // The smooth part varies over the distances from the two ends of the contact, and is analytic in
         // ln((end - u) / (end + u)) within imaginary parts of pi; if it is even, it is so in
         // ln((end - u) (end + u)), too, which needs the one half alone.
@@ -344,13 +358,13 @@ impl<'a> Field<'a> {
         let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), PI)];
         let nodes = self.sampling(inner, poles).map(|axis| {
             let at_node = |t: &f64| self.remainders(line.y(off_middle(*t)), 0.0, &[x])[0];
-            let values: Vec<StressTensor> = axis.nodes().iter().map(at_node).collect();
+            let values: Vec<FlatStress> = axis.nodes().iter().map(at_node).collect();
             (axis, values)
         });
         ys.iter()
             .map(|&y| match &nodes {
                 Some((axis, values)) if far(y) => {
-                    self.complete(x, y, 0.0, interpolated(axis, values, place(y)))
+                    self.complete(x, y, 0.0, self.interpolated(axis, values, place(y)))
                 }
                 _ => self.at(y, 0.0, &[x])[0],
             })
@@ -361,7 +375,7 @@ impl<'a> Field<'a> {
     /// u = `end` from its middle or of the body, the field has poles at the distances +-i z from the
     /// corner. With u = end + z sinh t the points are dense where the field varies, and the poles of
     /// the contact's end are at t = +-i pi/2.
-    fn along_below(&self, line: &Side, ys: &[f64]) -> Vec<StressTensor> {
+    fn along_below(&self, line: &Side, ys: &[f64]) -> Vec<FlatStress> {
         let (x, z, end) = (line.x, line.z, line.end);
         let face = self.stack.body().half + line.side * (self.stack.middle - line.middle);
         let corner = Complex::new((face - end) / z, 1.0).asinh();
@@ -371,8 +385,25 @@ impl<'a> Field<'a> {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         };
         let at_node = |t: &f64| self.at(line.y(end + z * t.sinh()), z, &[x])[0];
-        let nodes: Vec<StressTensor> = axis.nodes().iter().map(at_node).collect();
-        ys.iter().map(|y| interpolated(&axis, &nodes, place(*y))).collect()
+        let nodes: Vec<FlatStress> = axis.nodes().iter().map(at_node).collect();
+        ys.iter().map(|y| self.interpolated(&axis, &nodes, place(*y))).collect()
+    }
+
+    /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
+    fn interpolated(&self, axis: &Panels, values: &[FlatStress], place: f64) -> FlatStress {
+        self.weighted(axis.interpolation(place).map(|(node, weight)| (&values[node], weight)))
+    }
+
+    /// The sum of stresses with their weights.
+    fn weighted<'v>(&self, values: impl Iterator<Item = (&'v FlatStress, f64)>) -> FlatStress {
+        let mut sum = FlatStress::default();
+        for (s, weight) in values {
+            sum.pressure += s.pressure * weight;
+            if self.traction.is_some() {
+                sum.traction += s.traction * weight;
+            }
+        }
+        sum
     }
 
     /// The nodes for the interpolation to `places` within [`INTERPOLATION`], of functions that have
@@ -409,7 +440,40 @@ impl<'a> Field<'a> {
     }
 
     /// The stress of the endless contact with the local pressure plus `remainder`.
-    fn complete(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
+    fn complete(&self, x: f64, y: f64, z: f64, remainder: FlatStress) -> FlatStress {
+        let FlatStress { pressure, traction } = remainder;
+        let pressure = self.complete_pressure(x, y, z, pressure);
+        let along = |own| self.complete_traction(own, x, y, z, traction);
+        FlatStress { pressure, traction: self.traction.map_or(traction, along) }
+    }
+
+    /// [`Field::complete`] under a traction.
+    fn complete_traction(
+        &self,
+        own: &dyn Traction,
+        x: f64,
+        y: f64,
+        z: f64,
+        remainder: StressTensor,
+    ) -> StressTensor {
+        let mut s = remainder;
+        let body = self.stack.body();
+        for (j, weight) in self.pressure.neighbours(y) {
+            let [xx, zz, xz] = own.endless_along(j, x, z).map(|s| weight * s);
+            s.xx += xx;
+            s.zz += zz;
+            s.xz += xz;
+            s.yy += body.nu * (xx + zz);
+        }
+        if z == 0.0 {
+            s.xz = -self.pressure.at(x, y);
+            (s.zz, s.yz) = (0.0, 0.0);
+        }
+        self.free_face(y, s)
+    }
+
+    /// [`Field::complete`] under the pressure.
+    fn complete_pressure(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
         let mut s = remainder;
         let body = self.stack.body();
         for (j, weight) in self.pressure.neighbours(y) {
@@ -423,7 +487,12 @@ impl<'a> Field<'a> {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
         }
-        if self.on_face(y) && body.end.freed {
+        self.free_face(y, s)
+    }
+
+    /// The stress `s` without the tractions of a free end face, if `y` lies on one.
+    fn free_face(&self, y: f64, mut s: StressTensor) -> StressTensor {
+        if self.on_face(y) && self.stack.body().end.freed {
             (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
         }
         s
@@ -431,7 +500,7 @@ impl<'a> Field<'a> {
 
     /// Stresses at (x, `y`, `z`) for each x of `xs`, less those of an endless contact of the
     /// pressure at `y`.
-    fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+    fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
         let faded = if farthest == 0.0 {
@@ -440,27 +509,41 @@ impl<'a> Field<'a> {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
         let mut target = Target::new(self, &waves, y, z);
-        let mut sums = vec![[0.0; 6]; xs.len()];
+        let mut sums = vec![[[0.0; 6]; 2]; xs.len()];
         let mut fading = 0;
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
                 target.work.faded = ((waves.k.len() - i) * target.loads()) as u64;
                 break;
             }
-            let amplitudes = target.amplitudes(i);
-            let largest = amplitudes.iter().fold(0.0, |m: f64, a| m.max(a.abs()));
+            let (pressure, traction) = target.amplitudes(i);
+            let all = pressure.iter().chain(traction.iter().flatten());
+            let largest = all.fold(0.0, |m: f64, a| m.max(a.abs()));
             // A small amplitude stays small only if oscillations across the contact are resolved.
             let small = k > 1.0 && weight * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
-                for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
-                    *s += weight * a * if StressTensor::ODD_IN_X[i] { sin } else { cos };
+                add_wave(&mut sum[0], weight, &pressure, cos, sin);
+                if let Some(traction) = &traction {
+                    add_wave(&mut sum[1], weight, traction, sin, cos);
                 }
             }
         }
         self.counters.add(&target.work);
-        sums.into_iter().map(StressTensor::from_components).collect()
+        let flat = |sums: [[f64; 6]; 2]| {
+            let [pressure, traction] = sums.map(StressTensor::from_components);
+            FlatStress { pressure, traction }
+        };
+        sums.into_iter().map(flat).collect()
+    }
+}
+
+/// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times `shears`, all
+/// others times `others`.
+fn add_wave(sum: &mut [f64; 6], weight: f64, amplitudes: &[f64; 6], others: f64, shears: f64) {
+    for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
+        *s += weight * a * if StressTensor::ODD_IN_X[i] { shears } else { others };
     }
 }
 
@@ -493,6 +576,8 @@ struct Target<'a> {
     waves: &'a Waves,
     nu: f64,
     z: f64,
+    /// Whether the contact carries a traction.
+    slides: bool,
     /// The influence of each part of the loads.
     parts: Vec<PartTarget<'a>>,
     /// The contact's nodes that interpolate the local pressure, and their shares.
@@ -508,6 +593,8 @@ struct PartTarget<'a> {
     eta: f64,
     /// Whether the point lies on the other side of the middle.
     behind: bool,
+    /// Whether it lies in the plane x = 0.
+    central: bool,
     surface: Influence,
     /// The loads on the end faces at +H and -H, if any.
     faces: Option<[Influence; 2]>,
@@ -515,8 +602,12 @@ struct PartTarget<'a> {
     /// that the stress correction subtracts at the point.
     correction: Option<(Influence, f64)>,
     plate: Option<PlateAt>,
+    /// The influence of a traction on the surface, if the point lies on it; else that of the pressure.
+    under: Option<Influence>,
     /// The stresses of the most recent [`WAVES`] wavenumbers.
     stresses: BlockStress,
+    /// The same under the traction, without and with the loads that free the end faces.
+    traction: [BlockStress; 2],
     /// Scratch space.
     scratch: Vec<[f32; WAVES]>,
 }
@@ -545,6 +636,7 @@ impl<'a> Target<'a> {
             waves,
             nu: field.stack.body().nu,
             z,
+            slides: field.traction.is_some(),
             parts: (0..waves.parts.len()).map(|i| PartTarget::new(field, waves, i, y, z)).collect(),
             local: field.pressure.neighbours(y),
             work: Work::default(),
@@ -556,20 +648,24 @@ impl<'a> Target<'a> {
         self.parts.iter().map(PartTarget::loads).sum()
     }
 
-    /// Amplitudes of the six components at wavenumber number `i`; wavenumbers must be evaluated in
-    /// order.
-    fn amplitudes(&mut self, i: usize) -> [f64; 6] {
+    /// Amplitudes of the six components at wavenumber number `i`, under the pressure and under the
+    /// traction; wavenumbers must be evaluated in order.
+    fn amplitudes(&mut self, i: usize) -> ([f64; 6], Option<[f64; 6]>) {
         let mut amplitudes = [0.0; 6];
+        let mut traction = self.slides.then_some([0.0; 6]);
         for part in &mut self.parts {
             let own = part.amplitudes(i, &mut self.work);
-            let sign = if part.behind { part.body.parity.sign() } else { 1.0 };
-            for (component, (sum, own)) in amplitudes.iter_mut().zip(own).enumerate() {
-                let turned = part.behind && StressTensor::ODD_IN_Y[component];
-                *sum += if turned { -sign * own } else { sign * own };
+            part.add_to(&mut amplitudes, own);
+            if let Some(traction) = &mut traction {
+                let own = part.traction_amplitudes(i);
+                part.add_to(traction, own);
             }
         }
         self.take_endless_contact(i, &mut amplitudes);
-        amplitudes
+        if let Some(traction) = &mut traction {
+            self.take_endless_traction(i, traction);
+        }
+        (amplitudes, traction)
     }
 
     /// Subtracts the effect of an endless contact with the local pressure.
@@ -582,6 +678,23 @@ impl<'a> Target<'a> {
         amplitudes[2] += (1.0 + k * z) * e;
         amplitudes[4] += k * z * e;
     }
+
+    /// The same of the traction.
+    fn take_endless_traction(&self, i: usize, amplitudes: &mut [f64; 6]) {
+        let (k, z) = (self.waves.k[i], below(self.z));
+        let p: f64 = self.local.iter().map(|(j, w)| w * self.waves.contact[(i, *j)]).sum();
+        let e = (-k * z).exp() * p;
+        amplitudes[0] += (2.0 - k * z) * e;
+        amplitudes[1] += 2.0 * self.nu * e;
+        amplitudes[2] += k * z * e;
+        amplitudes[4] += (1.0 - k * z) * e;
+    }
+}
+
+/// The depth at which the stress of a traction less that of an endless contact is computed for a point at
+/// the depth `z`: on the surface itself the stress beside a line load is infinite, in mean value it is not.
+fn below(z: f64) -> f64 {
+    z.max(UNDER_SURFACE)
 }
 
 impl<'a> PartTarget<'a> {
@@ -612,7 +725,11 @@ impl<'a> PartTarget<'a> {
             faces,
             correction,
             plate,
+            under: (body.along.is_some() && z < UNDER_SURFACE)
+                .then(|| Influence::of_surface(body, waves, eta, UNDER_SURFACE)),
+            central: waves.central,
             stresses: BlockStress::default(),
+            traction: Default::default(),
             scratch: Vec::new(),
         }
     }
@@ -628,17 +745,74 @@ impl<'a> PartTarget<'a> {
         self.surface.len() + on_end + self.on_faces()
     }
 
+    /// Adds the amplitudes `own` of this part to `sum`, on the point's side of the body's middle.
+    fn add_to(&self, sum: &mut [f64; 6], own: [f64; 6]) {
+        let sign = if self.behind { self.body.parity.sign() } else { 1.0 };
+        for (component, (sum, own)) in sum.iter_mut().zip(own).enumerate() {
+            let turned = self.behind && StressTensor::ODD_IN_Y[component];
+            *sum += if turned { -sign * own } else { sign * own };
+        }
+    }
+
     /// Sums the loads of the [`WAVES`] wavenumbers from number `first` on.
     fn sum_block(&mut self, first: usize) {
         let (body, scratch) = (self.body, &mut self.scratch);
+        let loads = (body, &*body.kernel);
+        let wanted = if self.central { Wanted::PLAIN } else { Wanted::ALL };
         let block = &self.loads.blocks[first / WAVES];
-        self.stresses.surface = self.surface.stresses(body, block, scratch);
+        self.stresses.surface = self.surface.stresses(loads, block, wanted, scratch);
         if let Some((end, _)) = &self.correction {
-            self.stresses.end = end.stresses(body, block, scratch);
+            self.stresses.end = end.stresses(loads, block, wanted, scratch);
         }
         if let Some(faces) = self.faces.as_ref().filter(|_| first < self.loads.ends) {
-            self.stresses.faces = faces.each_ref().map(|f| f.stresses(body, block, scratch));
+            let on = |f: &Influence| f.stresses(loads, block, wanted, scratch);
+            self.stresses.faces = faces.each_ref().map(on);
         }
+    }
+
+    /// [`PartTarget::sum_block`] of the loads under the traction. In the plane x = 0 all but the shears
+    /// vanish.
+    fn sum_traction(&mut self, first: usize, along: &WaveTable, loads: &TractionLoads) {
+        let (body, scratch) = (self.body, &mut self.scratch);
+        let wanted = if self.central { Wanted::SHEARS } else { Wanted::ALL };
+        let block = &loads.own[first / WAVES];
+        let surface = self.under.as_ref().unwrap_or(&self.surface);
+        let [own, freeing] = &mut self.traction;
+        own.surface = surface.stresses((body, along), block, wanted, scratch);
+        if let Some((end, _)) = self.correction.as_ref().filter(|_| wanted.plain) {
+            own.end = end.stresses((body, along), block, wanted, scratch);
+        }
+        if let Some(faces) = self.faces.as_ref().filter(|_| first < self.loads.ends) {
+            let (pressed, block) = ((body, &*body.kernel), &loads.freeing[first / WAVES]);
+            freeing.surface = self.surface.stresses(pressed, block, wanted, scratch);
+            let on = |f: &Influence| f.stresses(pressed, block, wanted, scratch);
+            freeing.faces = faces.each_ref().map(on);
+        }
+    }
+
+    /// [`PartTarget::amplitudes`] under the traction.
+    fn traction_amplitudes(&mut self, i: usize) -> [f64; 6] {
+        let (Some(along), Some(loads)) = (&self.body.along, &self.loads.traction) else {
+            return [0.0; 6];
+        };
+        let wave = i % WAVES;
+        if wave == 0 {
+            self.sum_traction(i, along, loads);
+        }
+        let [own, freeing] = &self.traction;
+        let mut amplitudes = in_body(&own.surface[wave].0);
+        if let Some((_, share)) = &self.correction {
+            amplitudes[1] -= own.end[wave].0.ww * share;
+        }
+        if self.body.end.freed && i < self.loads.ends {
+            let mut pressed = in_body(&freeing.surface[wave].0);
+            self.add_faces(i, &freeing.faces, &loads.plate[i], &mut pressed);
+            // These loads are sin(k x): a quarter of a wave behind, where their shears are - cos(k x).
+            for (component, (sum, own)) in amplitudes.iter_mut().zip(pressed).enumerate() {
+                *sum += if StressTensor::ODD_IN_X[component] { -own } else { own };
+            }
+        }
+        amplitudes
     }
 
     /// Amplitudes of the six components at wavenumber number `i`, on the side y > 0 of the body's
@@ -648,8 +822,8 @@ impl<'a> PartTarget<'a> {
         if wave == 0 {
             self.sum_block(i);
         }
-        let (WaveStress { xx, ww, dd, xw, xd, wd }, mut done) = self.stresses.surface[wave];
-        let mut amplitudes = [xx, ww, dd, xw, xd, wd];
+        let (stress, mut done) = self.stresses.surface[wave];
+        let mut amplitudes = in_body(&stress);
         if let Some((_, share)) = &self.correction {
             let (on_end, count) = self.stresses.end[wave];
             amplitudes[1] -= on_end.ww * share;
@@ -657,7 +831,7 @@ impl<'a> PartTarget<'a> {
         }
         let loaded_ends = self.body.end.freed && i < self.loads.ends;
         if loaded_ends {
-            done += self.add_faces(i, &mut amplitudes);
+            done += self.add_faces(i, &self.stresses.faces, &self.loads.plate[i], &mut amplitudes);
         }
         let ends = if loaded_ends { 0 } else { self.on_faces() };
         work.done += done as u64;
@@ -666,18 +840,23 @@ impl<'a> PartTarget<'a> {
         amplitudes
     }
 
-    /// Adds the effect of the loads on the end faces and of the plate's remainder; returns the
-    /// number of loads within reach.
-    fn add_faces(&self, i: usize, amplitudes: &mut [f64; 6]) -> usize {
+    /// Adds the stresses of the loads on either of the end `faces` and of the plate's remainder under
+    /// their `transform`; returns the number of loads within reach.
+    fn add_faces(
+        &self,
+        i: usize,
+        faces: &[[(WaveStress, usize); WAVES]; 2],
+        transform: &[f64],
+        amplitudes: &mut [f64; 6],
+    ) -> usize {
         let mut done = 0;
-        for (face, into) in self.stresses.faces.iter().zip([-1.0, 1.0]) {
+        for (face, into) in faces.iter().zip([-1.0, 1.0]) {
             let (s, count) = face[i % WAVES];
             let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
             amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
             done += count;
         }
         if let Some(PlateAt { kernels, phases }) = &self.plate {
-            let transform = &self.loads.plate[i];
             let plate = match kernels {
                 Some((kernels, part)) => Body::plate_stress(&kernels[*part][i], transform, phases),
                 None => {
@@ -691,9 +870,10 @@ impl<'a> PartTarget<'a> {
     }
 }
 
-/// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
-fn interpolated(axis: &Panels, values: &[StressTensor], place: f64) -> StressTensor {
-    axis.interpolation(place).map(|(node, weight)| values[node] * weight).sum()
+/// The components of a load on the surface in the body's axes.
+fn in_body(stress: &WaveStress) -> [f64; 6] {
+    let WaveStress { xx, ww, dd, xw, xd, wd } = *stress;
+    [xx, ww, dd, xw, xd, wd]
 }
 
 /// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
@@ -703,7 +883,7 @@ fn rounded(
     xs: &[f64],
     zs: &[f64],
     contact: &LocalContact,
-    flat: impl Fn(&[f64]) -> Vec<Vec<StressTensor>>,
+    flat: impl Fn(&[f64]) -> Vec<Vec<FlatStress>>,
 ) -> Vec<Vec<RoundStress>> {
     // Points at x = 0 and on the surface are not shifted along x.
     let sloped = |x: f64| x != 0.0 && zs.iter().any(|z| *z > 0.0);
@@ -719,7 +899,7 @@ fn rounded(
             let own = next();
             let slope = if sloped(x) {
                 let (before, after) = (next(), next());
-                (after - before) * (0.5 / STEP)
+                (after.pressure - before.pressure) * (0.5 / STEP)
             } else {
                 StressTensor::default()
             };

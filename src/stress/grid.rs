@@ -107,8 +107,8 @@ impl Mirrored {
 ///
 /// A line of points along x costs little more than one of its points, because [`BodyField::at`] shares
 /// the kernels over x; lines are computed in parallel. The contact is even in x, and may be so in y: points
-/// that are exact mirror images of other points of the grid are copied. `shaped` says what becomes of the stress of a
-/// round body; none for a flat one. The memory is that of the
+/// that are exact mirror images of other points of the grid are not computed again. `shaped` says what becomes of the stress of a
+/// round body or under a traction; none for a flat one under pressure alone. The memory is that of the
 /// result, 48 bytes per point, and one line for each thread.
 pub fn on_grid(
     field: &BodyField,
@@ -134,17 +134,17 @@ pub fn on_grid(
                 return;
             }
             let (y, z) = (y.distinct[magnitude], grid.z[iz]);
-            let stresses = match shaped {
-                None => field.at(y, z, &x.distinct),
-                Some(shaped) => field.round_at(y, z, &x.distinct).iter().map(shaped).collect(),
-            };
-            let mirrored = |s: StressTensor, negative: bool, odd| match negative {
-                true => s.mirrored(odd),
-                false => s,
+            let own = match shaped {
+                None => {
+                    let flat = field.at(y, z, &x.distinct).into_iter();
+                    flat.map(|s| RoundStress { flat: s.into(), ..RoundStress::default() }).collect()
+                }
+                Some(_) => field.round_at(y, z, &x.distinct),
             };
             for (ix, &(i, behind)) in x.of.iter().enumerate() {
-                let s = mirrored(stresses[i], behind, StressTensor::ODD_IN_X);
-                let s = mirrored(s, negative, StressTensor::ODD_IN_Y);
+                let s = if behind { own[i].mirrored_in_x() } else { own[i] };
+                let s = shaped.map_or(s.flat.pressure, |shaped| shaped(&s));
+                let s = if negative { s.mirrored(StressTensor::ODD_IN_Y) } else { s };
                 (xx[ix], yy[ix], zz[ix]) = (s.xx, s.yy, s.zz);
                 (xy[ix], xz[ix], yz[ix]) = (s.xy, s.xz, s.yz);
             }

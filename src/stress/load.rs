@@ -54,3 +54,10 @@ pub trait Load: Debug + Sync {
         self.axis().interpolation(if self.is_symmetric() { y.abs() } else { y }).collect()
     }
 }
+
+/// A [`Load`] whose pressure may act as a traction along x instead.
+pub trait Traction: Load {
+    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure of node `j` as a
+    /// traction along +x.
+    fn endless_along(&self, j: usize, x: f64, z: f64) -> [f64; 3];
+}

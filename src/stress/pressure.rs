@@ -1,6 +1,6 @@
 //! The contact pressure as a function of position.
 
-use super::load::Load;
+use super::load::{Load, Traction};
 use super::round::LocalContact;
 use crate::base::Panels;
 use crate::kernels::strip;
@@ -134,5 +134,11 @@ impl Load for Pressure {
 
     fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
         strip::stress(self.half_widths[j], &self.coefficients[j], x, z)
+    }
+}
+
+impl Traction for Pressure {
+    fn endless_along(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
+        strip::stress_along(self.half_widths[j], &self.coefficients[j], x, z)
     }
 }

@@ -24,6 +24,7 @@
 //! z lies x z / R farther out along the surface than x. Rotation and shift apply to the whole flat
 //! field, including its free ends.
 
+use super::flat::FlatStress;
 use crate::base::StressTensor;
 use multiversion::multiversion;
 use std::f64::consts::PI;
@@ -77,7 +78,7 @@ impl LocalContact {
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub struct RoundStress {
     /// The flat body's stress.
-    pub flat: StressTensor,
+    pub flat: FlatStress,
     /// The contribution of the round shape per C / R.
     pub round: StressTensor,
 }
@@ -88,10 +89,12 @@ impl RoundStress {
     pub fn new(
         x: f64,
         z: f64,
-        flat: StressTensor,
+        flat: impl Into<FlatStress>,
         slope: &StressTensor,
         contact: &LocalContact,
     ) -> Self {
+        let whole = flat.into();
+        let flat = whole.pressure;
         let [xx, zz, xz] = contact.tilted(x, z);
         let turned = StressTensor {
             xx: -2.0 * flat.xz,
@@ -109,19 +112,26 @@ impl RoundStress {
             // The tractions on the surface are known.
             (round.zz, round.xz, round.yz) = (0.0, 0.0, 0.0);
         }
-        Self { flat, round }
+        Self { flat: whole, round }
     }
 
-    /// The stress (p0) for C / R = `curvature`, positive for a convex body.
+    /// The stress (p0) under the pressure for C / R = `curvature`, positive for a convex body.
     pub fn at(&self, curvature: f64) -> StressTensor {
-        self.flat + self.round * curvature
+        self.flat.pressure + self.round * curvature
+    }
+
+    /// The stress at the mirror image in the plane x = 0.
+    #[must_use]
+    pub fn mirrored_in_x(&self) -> Self {
+        let round = self.round.mirrored(StressTensor::ODD_IN_X);
+        Self { flat: self.flat.mirrored_in_x(), round }
     }
 
     /// [`RoundStress::at`] without the diametral tension, which only a disc has that is squeezed between
     /// two loads.
     pub fn on_one_side(&self, curvature: f64) -> StressTensor {
         let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
-        self.flat + (self.round - tension) * curvature
+        self.flat.pressure + (self.round - tension) * curvature
     }
 }
 

@@ -5,7 +5,7 @@ use crate::body::stencil::Stencil;
 use crate::body::{Body, Layer, Stack};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
-use crate::kernels::wave::{Places, SurfaceSpread, WAVES, add_surface_spread};
+use crate::kernels::wave::{Places, SurfaceSpread, WAVES, Wanted, WaveTable, add_surface_spread};
 use nalgebra::{DMatrix, DVector};
 use std::f64::consts::PI;
 use std::ops::AddAssign;
@@ -19,7 +19,7 @@ pub(super) struct Waves {
     pub weights: Vec<f64>,
     /// Contact pressure at the contact's nodes, a row for each wavenumber.
     pub contact: DMatrix<f64>,
-    /// Whether they are valid for the plane x = 0 only, where shears that are odd in x vanish.
+    /// Whether they are valid for the plane x = 0 only, where what is odd in x vanishes.
     pub central: bool,
     /// The loads of each part of the pressure, in the order of [`Stack::parts`].
     pub parts: Vec<PartLoads>,
@@ -35,6 +35,19 @@ pub(super) struct PartLoads {
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
+    /// The loads under the pressure as a traction along x instead; none where the contact carries none.
+    pub traction: Option<TractionLoads>,
+}
+
+/// The loads under a traction along x, in the form of [`PartLoads`].
+#[derive(Debug, Clone)]
+pub(super) struct TractionLoads {
+    /// The traction itself, on the surface.
+    pub own: Vec<LoadBlock>,
+    /// The pressures that free the end faces of its normal stress, see [`crate::body::TractionLayer`].
+    pub freeing: Vec<LoadBlock>,
+    /// Transform of these on the end faces, for the plate.
+    pub plate: Vec<Vec<f64>>,
 }
 
 /// The loads of some wavenumbers, in single precision, as the kernels' tables are.
@@ -117,39 +130,82 @@ impl PartLoads {
         layers: &[Layer],
         shares: &[(usize, S)],
     ) -> Self {
-        let (surface, face) = nodal_loads(body, contact, layers, shares);
         // The layers with loads on their end faces come first, and so do the wavenumbers between
         // them.
         let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
-        let (mut plate, mut plate_waves) = (Vec::new(), Vec::new());
-        for (k, q) in k.iter().zip(face.column_iter()).take(ends) {
-            plate.push(body.plate_transform(*k, q.as_slice()));
-            plate_waves.push(body.plate_waves(*k));
-        }
-        let (surface, face) = (surface.transpose(), face.transpose());
-        let charges = [body.surface.charges(&surface), body.face.charges(&face)];
-        let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
-        let means = total / body.half;
-        let blocks = (0..k.len()).step_by(WAVES).map(|first| LoadBlock {
-            surface: Loads::new(first, k, &surface, &charges[0]),
-            face: Loads::new(first, &k[..ends], &face, &charges[1]),
-            mean: block(first, means.as_slice()).map(|mean| mean as f32),
+        let transforms = |face: &DMatrix<f64>| {
+            let waves = k.iter().zip(face.column_iter()).take(ends);
+            waves.map(|(k, q)| body.plate_transform(*k, q.as_slice())).collect::<Vec<_>>()
+        };
+        let (surface, face) = nodal_loads(body, contact, layers, shares, Under::Pressure);
+        let traction = body.along.as_ref().map(|_| {
+            let own = contact_loads(body, contact);
+            let (surface, face) = nodal_loads(body, contact, layers, shares, Under::Traction);
+            TractionLoads {
+                own: blocks(body, (k, 0), &own, &DMatrix::zeros(body.face.axis.len(), k.len())),
+                freeing: blocks(body, (k, ends), &surface, &face),
+                plate: transforms(&face),
+            }
         });
-        Self { ends, blocks: blocks.collect(), plate, plate_waves }
+        let plate = transforms(&face);
+        let plate_waves = k.iter().take(ends).map(|k| body.plate_waves(*k)).collect();
+        let blocks = blocks(body, (k, ends), &surface, &face);
+        Self { ends, blocks, plate, plate_waves, traction }
     }
 }
 
-/// The loads at the nodes of the surface and of the end faces, a column for each wavenumber, under
-/// the transforms `contact` of the pressure; see [`Waves::new`].
+/// The loads in blocks, from those on the surface and on the end faces at the wavenumbers `k`, a column for
+/// each; the end faces carry loads at the first `ends` of them.
+fn blocks(
+    body: &Body,
+    (k, ends): (&[f64], usize),
+    surface: &DMatrix<f64>,
+    face: &DMatrix<f64>,
+) -> Vec<LoadBlock> {
+    let (surface, face) = (surface.transpose(), face.transpose());
+    let charges = [body.surface.charges(&surface), body.face.charges(&face)];
+    let total = &surface * DVector::from_column_slice(body.surface.axis.weights());
+    let means = total / body.half;
+    let blocks = (0..k.len()).step_by(WAVES).map(|first| LoadBlock {
+        surface: Loads::new(first, k, &surface, &charges[0]),
+        face: Loads::new(first, &k[..ends], &face, &charges[1]),
+        mean: block(first, means.as_slice()).map(|mean| mean as f32),
+    });
+    blocks.collect()
+}
+
+/// What acts on the contact.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Under {
+    Pressure,
+    /// The same along x.
+    Traction,
+}
+
+/// The transforms `contact` at the nodes of the surface, a column for each wavenumber.
+fn contact_loads(body: &Body, contact: &DMatrix<f64>) -> DMatrix<f64> {
+    let mut surface = DMatrix::zeros(body.surface.axis.len(), contact.nrows());
+    surface.rows_range_mut(body.contact()).copy_from(&contact.transpose());
+    surface
+}
+
+/// The pressures at the nodes of the surface and of the end faces, a column for each wavenumber,
+/// `under` the transforms `contact`; see [`Waves::new`].
 fn nodal_loads<S: AsRef<[f64]>>(
     body: &Body,
     contact: &DMatrix<f64>,
     layers: &[Layer],
     shares: &[(usize, S)],
+    under: Under,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
     let mut face = DMatrix::zeros(body.face.axis.len(), shares.len());
     for (at, layer) in layers.iter().enumerate() {
+        let (on_surface, on_face) = match (under, &layer.traction) {
+            (Under::Pressure, _) => (layer.surface.as_ref(), layer.face.as_ref()),
+            (Under::Traction, Some(own)) => (Some(&own.surface), Some(&own.face)),
+            (Under::Traction, None) => continue,
+        };
         // The wavenumbers interpolated from a layer are consecutive.
         let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
         let start = shares.partition_point(|s| end(s) <= at);
@@ -162,15 +218,20 @@ fn nodal_loads<S: AsRef<[f64]>>(
         let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
             into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
         };
-        match &layer.surface {
+        match on_surface {
             Some(matrix) => add(&mut surface, matrix),
             None => surface.view_range_mut(body.contact(), waves.clone()).add_assign(&p),
         }
-        if let Some(matrix) = &layer.face {
+        if let Some(matrix) = on_face {
             add(&mut face, matrix);
         }
     }
     (surface, face)
+}
+
+/// Whether shears are ever wanted: in the plane x = 0 those of a traction alone.
+fn shears(body: &Body, waves: &Waves) -> bool {
+    !waves.central || body.along.is_some()
 }
 
 /// The influence of the loads on a body's surface or end face on a target.
@@ -208,14 +269,14 @@ impl Influence {
         let mut strips = Vec::with_capacity(body.most_strips());
         body.for_strips(waves.k[0], y, z, |u, w| strips.push((u, w as f32)));
         let stencil = body.surface_stencil(y, z);
-        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, waves.central)
+        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, shears(body, waves))
     }
 
     /// q on the end faces at +H and -H, `depths` from them, from (`y`, `z`).
     pub fn of_faces(body: &Body, waves: &Waves, y: f64, z: f64, depths: [f64; 2]) -> [Self; 2] {
         let [near, far] = body.face_stencils(y, z);
         [(near, depths[0]), (far, depths[1])].map(|(stencil, depth)| {
-            Self::new(Side::Face, stencil, &[], &body.face.axis, z, depth, waves.central)
+            Self::new(Side::Face, stencil, &[], &body.face.axis, z, depth, shears(body, waves))
         })
     }
 
@@ -228,12 +289,12 @@ impl Influence {
         axis: &Panels,
         along: f64,
         depth: f64,
-        central: bool,
+        shears: bool,
     ) -> Self {
         let mut offsets = stencil.take_offsets();
         offsets.extend(strips.iter().map(|(u, _)| u));
         let target = if depth > 0.0 {
-            Position::Within(Places::new(offsets, depth, central))
+            Position::Within(Places::new(offsets, depth, shears))
         } else {
             let beyond = along > axis.end() * (1.0 + 1e-12);
             let shares = if beyond { Vec::new() } else { axis.interpolation(along).collect() };
@@ -250,13 +311,13 @@ impl Influence {
         }
     }
 
-    /// The stresses of each wavenumber of `block`, in the frame of the loaded surface, and the
-    /// number of loads within its reach. Shears across the plane x = 0 are omitted if the loads are
-    /// valid only there. `loads` is scratch space.
+    /// The `wanted` stresses of each wavenumber of `block`, loads of `kernel` on this `body`, in the
+    /// frame of the loaded surface, and the number of loads within its reach. `loads` is scratch space.
     pub fn stresses(
         &self,
-        body: &Body,
+        (body, kernel): (&Body, &WaveTable),
         block: &LoadBlock,
+        wanted: Wanted,
         loads: &mut Vec<[f32; WAVES]>,
     ) -> [(WaveStress, usize); WAVES] {
         let own = match self.side {
@@ -276,7 +337,7 @@ impl Influence {
             Position::Within(places) => {
                 let distances = places.distances();
                 self.stencil.gather(&own.values, &own.charges, distances, limit, sources);
-                body.kernel.sum(&own.k, places, reach, loads)
+                kernel.sum(&own.k, places, reach, loads, wanted)
             }
             Position::Upon(offsets, shares) => {
                 self.stencil.gather(&own.values, &own.charges, offsets, limit, sources);
@@ -338,7 +399,7 @@ mod tests {
         let line = resolution.contact_axis(5.0);
         let stack = Stack::new(
             &line,
-            true,
+            (true, false),
             (0.0, shape),
             EdgeModel::QuarterSpace.end(0.3, None),
             (&resolution, numbers.coarse().nodes()),
@@ -373,11 +434,12 @@ mod tests {
                     |_| numbers.interpolation(i),
                 );
                 for (influence, alone) in own.iter().zip(influences(&one)) {
-                    let together =
-                        influence.stresses(body, &all.parts[0].blocks[i / WAVES], &mut scratch);
+                    let loads = (body, &*body.kernel);
+                    let block = &all.parts[0].blocks[i / WAVES];
+                    let together = influence.stresses(loads, block, Wanted::ALL, &mut scratch);
                     let (got, count) = together[i % WAVES];
-                    let (want, alone) =
-                        alone.stresses(body, &one.parts[0].blocks[0], &mut scratch)[0];
+                    let block = &one.parts[0].blocks[0];
+                    let (want, alone) = alone.stresses(loads, block, Wanted::ALL, &mut scratch)[0];
                     let values = |s: WaveStress| [s.xx, s.ww, s.dd, s.xw, s.xd, s.wd];
                     for (got, want) in values(got).into_iter().zip(values(want)) {
                         assert!((got - want).abs() < 1e-5 * (1.0 + want.abs()), "{i} at {y}, {z}");

@@ -2,7 +2,9 @@
 //! There a body's material is a table of its own; in case files and records it is not.
 
 use crate::base::Material;
-use crate::case::{Accuracy, Block, Case, Cells, Load, Pose, ProfileSpec, Roller};
+use crate::case::{
+    Accuracy, Block, Case, Cells, Fatigue, Load, Pose, ProfileSpec, Roller, Sliding,
+};
 use serde::{Deserialize, Serialize};
 
 /// A case in `bench.json`.
@@ -18,6 +20,10 @@ pub(super) struct CaseForm {
     load: Load,
     #[serde(flatten)]
     pose: Pose,
+    #[serde(flatten)]
+    sliding: Sliding,
+    #[serde(default, skip_serializing_if = "Fatigue::is_none")]
+    fatigue: Fatigue,
     #[serde(flatten)]
     accuracy: Accuracy,
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -1,22 +1,26 @@
 //! Error measures of a source against a reference on the same points.
 //!
-//! Lengths are in units of C, stresses and pressures in units of p0. The roller's edge is the line
-//! y = S_l, z = 0 (any x): stress and pressure are singular or very steep there. Points nearer to
-//! it than a given distance are excluded. The distance is measured in space; on `depth-end` it is
-//! the depth.
+//! Lengths are in units of C, stresses and pressures in units of p0. The edges of the contact are the
+//! lines y = either end of the bodies' overlap, z = 0 (any x): stress and pressure are singular or very
+//! steep there. Points nearer to one than a given distance are excluded. The distance is measured in
+//! space; on `depth-end` it is the depth.
 //!
 //! With e the difference at the retained points and w trapezoid weights of the curve's arc length
 //! (segments with a point left out do not count), the measures are
 //! max |e|, RMS = sqrt(sum w e^2 / sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1
-//! properties of the curve, not of how densely it was sampled.
+//! properties of the curve, not of how densely it was sampled. [`POINTS`] are on no curve: each counts
+//! alike.
 
 use super::source::Source;
 use crate::base::{Error, Result};
-use crate::stress::{Critical, Curves, Quantity, away_from_edge};
+use crate::stress::{Critical, Curves, Quantity, away_from_edges};
 use serde::{Deserialize, Serialize};
 
 /// The name that stands in place of a body for the contact pressure.
 pub const CONTACT: &str = "contact";
+
+/// The name of points that lie on no curve.
+pub const POINTS: &str = "points";
 
 /// The range over which errors are taken.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -96,15 +100,14 @@ fn weights(at: &[[f64; 3]], kept: &[bool]) -> Vec<f64> {
     w
 }
 
-/// Measures of `difference`; `None` when no segment of the curve is kept.
-fn measure(at: &[[f64; 3]], difference: &[f64], kept: &[bool]) -> Option<Measures> {
-    let w = weights(at, kept);
+/// Measures of `difference` with weights `w`; `None` when these are zero: no segment of the curve is kept.
+fn measure(w: &[f64], difference: &[f64], kept: &[bool]) -> Option<Measures> {
     let total: f64 = w.iter().sum();
     if total <= 0.0 {
         return None;
     }
     let (mut max, mut max_index, mut square, mut absolute) = (-1.0, 0, 0.0, 0.0);
-    for i in (0..at.len()).filter(|&i| kept[i]) {
+    for i in (0..w.len()).filter(|&i| kept[i]) {
         let e = difference[i].abs();
         // A NaN must show as one, not lose every comparison.
         if e > max || e.is_nan() {
@@ -169,13 +172,17 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    fn row(&self, case: &str, method: &str, half_length: f64) -> Option<ErrorRow> {
-        let away = |at: &[f64; 3]| away_from_edge(*at, half_length, self.excluded_c);
+    fn row(&self, case: &str, method: &str, ends: [f64; 2]) -> Option<ErrorRow> {
+        let away = |at: &[f64; 3]| away_from_edges(*at, ends, self.excluded_c);
         let kept: Vec<bool> = self.at.iter().map(away).collect();
+        let w = match self.curve {
+            POINTS => kept.iter().map(|&k| f64::from(u8::from(k))).collect(),
+            _ => weights(self.at, &kept),
+        };
         let difference: Vec<f64> =
             self.value.iter().zip(self.reference).map(|(a, b)| a - b).collect();
-        let m = measure(self.at, &difference, &kept)?;
-        let own = self.own_error.as_ref().and_then(|e| measure(self.at, e, &kept));
+        let m = measure(&w, &difference, &kept)?;
+        let own = self.own_error.as_ref().and_then(|e| measure(&w, e, &kept));
         let (peak_here, peak_there) = (peak(self.value, &kept), peak(self.reference, &kept));
         Some(ErrorRow {
             case: case.to_string(),
@@ -202,14 +209,15 @@ impl Pair<'_> {
 /// Errors of `candidate`, the curves of `source`, against `reference`: one row for each quantity of
 /// each curve of the reference, and one for each pressure line and range.
 ///
-/// `half_length` is the roller's half-length S_l (C). Curves of the reference that the candidate
-/// does not have are left out; a curve on other points is an error.
+/// `ends` are those of the bodies' overlap (C). Curves of the reference that the candidate does not have
+/// are left out, and so is a quantity that the reference does not state (NaN at all points); a curve on
+/// other points is an error.
 ///
 /// # Errors
 /// [`Error::Value`] when a point of the reference is missing from the candidate's curve.
 pub fn compare(
     case: &str,
-    half_length: f64,
+    ends: [f64; 2],
     reference: &Curves,
     (source, candidate): (&Source, &Curves),
     range: &Range,
@@ -232,7 +240,7 @@ pub fn compare(
                 reference: &line.p,
                 own_error: line.own_error.clone(),
             };
-            rows.extend(pair.row(case, source.name(), half_length));
+            rows.extend(pair.row(case, source.name(), ends));
         }
     }
     for curve in &reference.stress {
@@ -242,6 +250,9 @@ pub fn compare(
         for (k, quantity) in Quantity::ALL.into_iter().enumerate() {
             let value: Vec<f64> = index.iter().map(|&i| quantity.of(&other.stress[i])).collect();
             let truth: Vec<f64> = curve.stress.iter().map(|s| quantity.of(s)).collect();
+            if truth.iter().all(|v| v.is_nan()) {
+                continue;
+            }
             let pair = Pair {
                 body: curve.body.name(),
                 curve: &curve.name,
@@ -252,7 +263,7 @@ pub fn compare(
                 reference: &truth,
                 own_error: curve.own_error.as_ref().map(|e| e.iter().map(|v| v[k]).collect()),
             };
-            rows.extend(pair.row(case, source.name(), half_length));
+            rows.extend(pair.row(case, source.name(), ends));
         }
     }
     Ok(rows)
@@ -261,11 +272,11 @@ pub fn compare(
 /// The largest von Mises stress of all curves. On a depth curve the parabola through the largest
 /// point and its neighbours gives value and depth, so that the place does not depend on the
 /// sampling. `None` when no point is left.
-pub fn critical_point(curves: &Curves, half_length: f64, excluded_c: f64) -> Option<Critical> {
+pub fn critical_point(curves: &Curves, ends: [f64; 2], excluded_c: f64) -> Option<Critical> {
     let mut best: Option<Critical> = None;
     for curve in &curves.stress {
         let v: Vec<f64> = curve.stress.iter().map(|s| s.von_mises()).collect();
-        let kept = |i: usize| away_from_edge(curve.at[i], half_length, excluded_c);
+        let kept = |i: usize| away_from_edges(curve.at[i], ends, excluded_c);
         for i in (0..v.len()).filter(|&i| kept(i)) {
             if best.is_some_and(|b| v[i] <= b.value) {
                 continue;
@@ -358,6 +369,8 @@ mod tests {
     use crate::stress::{BodyKind, PressureLine, StressCurve};
     use approx::assert_relative_eq;
 
+    const ENDS: [f64; 2] = [-5.0, 5.0];
+
     /// A depth curve under the roller's end with sigma_xx = f(z) and a pressure line p = g(y).
     fn sampled(f: impl Fn(f64) -> f64, g: impl Fn(f64) -> f64) -> Curves {
         let z = [0.0, 0.05, 0.1, 0.3, 0.7, 1.5];
@@ -395,7 +408,7 @@ mod tests {
             |z| if z < 0.09 { 99.0 } else { z },
             |y| if y > 4.91 { 50.0 } else { 1.0 - 0.01 * y },
         );
-        let rows = compare("c", 5.0, &reference, (&mirror(), &other), &Range::default()).unwrap();
+        let rows = compare("c", ENDS, &reference, (&mirror(), &other), &Range::default()).unwrap();
         let xx = rows.iter().find(|r| r.quantity == "sigma_xx").unwrap();
         assert_eq!((xx.points, xx.excluded_c), (4, 0.1));
         assert_eq!((xx.max, xx.max_at), (1.5, [0.0, 5.0, 1.5]));
@@ -425,10 +438,10 @@ mod tests {
         let mut moved = reference.clone();
         moved.stress[0].at[3][2] = 0.31;
         let message =
-            compare("c", 5.0, &reference, (&mirror(), &moved), &Range::default()).unwrap_err();
+            compare("c", ENDS, &reference, (&mirror(), &moved), &Range::default()).unwrap_err();
         assert!(message.to_string().contains("depth-end of the block"), "{message}");
         let broken = sampled(|z| if z == 0.3 { f64::NAN } else { 0.0 }, |_| 1.0);
-        let rows = compare("c", 5.0, &reference, (&mirror(), &broken), &Range::default()).unwrap();
+        let rows = compare("c", ENDS, &reference, (&mirror(), &broken), &Range::default()).unwrap();
         let summary = summarise(&rows, &Range::default()).unwrap();
         assert!(summary.stress[0].is_nan() && summary.stress[1].is_nan());
     }
@@ -437,7 +450,7 @@ mod tests {
     fn critical_depth_lies_between_samples() {
         // sigma_xx alone is its own von Mises stress: a parabola that peaks at 0.6.
         let s = sampled(|z| 1.0 - (z - 0.6) * (z - 0.6), |_| 1.0);
-        let critical = critical_point(&s, 5.0, 0.1).unwrap();
+        let critical = critical_point(&s, ENDS, 0.1).unwrap();
         assert_relative_eq!(critical.at[2], 0.6, epsilon = 1e-12);
         assert_relative_eq!(critical.value, 1.0, epsilon = 1e-12);
     }

@@ -4,6 +4,7 @@
 //! A gate takes the worst of all numbers that it selects. A gate that selects nothing fails: a
 //! wrong filter must not look like a pass.
 
+use super::errors::ErrorRow;
 use super::response::Response;
 use super::run::{Role, StudyRun};
 use super::source::Source;
@@ -241,26 +242,30 @@ pub fn parse(text: &str, path: &Path) -> Result<Gates> {
     Ok(gates)
 }
 
+/// The numbers of the errors of a model in a case.
+pub(super) fn of_errors(case: &str, method: EdgeModel, rows: &[ErrorRow]) -> Vec<Number> {
+    let of_row = |row: &ErrorRow| {
+        [("max", row.max), ("rms", row.rms), ("l1", row.l1)].map(|(measure, value)| Number {
+            case: case.to_string(),
+            method,
+            body: row.body.clone(),
+            curve: row.curve.clone(),
+            quantity: row.quantity.clone(),
+            excluded_c: Some(row.excluded_c),
+            measure,
+            value,
+        })
+    };
+    rows.iter().flat_map(of_row).collect()
+}
+
 /// All numbers of a run that a gate can look at.
 pub fn numbers(run: &StudyRun) -> Vec<Number> {
     let mut all = Vec::new();
     for case in &run.cases {
         for m in &case.methods {
             let (Source::Model(method), Ok(result)) = (&m.source, &m.result) else { continue };
-            for row in &result.errors {
-                for (measure, value) in [("max", row.max), ("rms", row.rms), ("l1", row.l1)] {
-                    all.push(Number {
-                        case: case.case.name.clone(),
-                        method: *method,
-                        body: row.body.clone(),
-                        curve: row.curve.clone(),
-                        quantity: row.quantity.clone(),
-                        excluded_c: Some(row.excluded_c),
-                        measure,
-                        value,
-                    });
-                }
-            }
+            all.extend(of_errors(&case.case.name, *method, &result.errors));
             let mut whole = |quantity: &str, value: Option<f64>| {
                 all.extend(value.map(|value| Number {
                     case: case.case.name.clone(),
@@ -293,7 +298,7 @@ fn selects(list: &[String], name: &str) -> bool {
 }
 
 impl Gate {
-    fn takes(&self, n: &Number) -> bool {
+    pub(super) fn takes(&self, n: &Number) -> bool {
         let quantity = match self.quantity.as_str() {
             "stress" => n.quantity.starts_with("sigma_"),
             q => n.quantity == q,
@@ -307,7 +312,7 @@ impl Gate {
             && self.excluded_c.is_none_or(|c| n.excluded_c == Some(c))
     }
 
-    fn evaluate(&self, numbers: &[Number], failed_cases: &[String]) -> GateOutcome {
+    pub(super) fn evaluate(&self, numbers: &[Number], failed_cases: &[String]) -> GateOutcome {
         let at_least = self.quantity == "speedup";
         let chosen: Vec<&Number> = numbers.iter().filter(|n| self.takes(n)).collect();
         // total_cmp puts a NaN above everything, so it is the worst of errors.

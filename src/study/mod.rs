@@ -4,6 +4,7 @@
 //! [`crate::base::HertzScales`]): a study compares cases of different loads.
 
 pub mod bench;
+pub mod brought;
 mod case_form;
 pub mod design;
 pub mod effects;
@@ -20,6 +21,8 @@ mod run;
 mod source;
 pub mod sweep;
 pub mod timing;
+pub mod uncertain;
+pub mod verification;
 
 pub use case_form::{BlockForm, RollerForm};
 pub use errors::{CONTACT, ErrorRow, Range};

@@ -21,6 +21,10 @@ pub struct Reference {
     pub curves: Curves,
     /// Where they come from and what they cost.
     pub provenance: Provenance,
+    /// Relative size of their mesh, where they have one.
+    pub size: Option<f64>,
+    /// The curves of coarser meshes and their sizes, finest first.
+    pub coarser: Vec<(f64, Curves)>,
 }
 
 /// Where reference curves come from. What a record does not state is `None`.
@@ -323,9 +327,9 @@ pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
 
 /// Looks for the most stressed point of a reference.
 fn reference_run(case: &Case, (engine, result): FoundReference, range: &Range) -> ReferenceRun {
-    let half_length = case.factors().slenderness;
+    let ends = case.overlap();
     let critical =
-        result.as_ref().ok().and_then(|r| critical_point(&r.curves, half_length, range.stress_c));
+        result.as_ref().ok().and_then(|r| critical_point(&r.curves, ends, range.stress_c));
     ReferenceRun { engine, result, critical }
 }
 
@@ -336,15 +340,15 @@ fn method_run(
     (source, solution, timing): (Source, Result<Solution<MethodDetails>>, Vec<Timing>),
     range: &Range,
 ) -> MethodRun {
-    let half_length = case.factors().slenderness;
+    let ends = case.overlap();
     let compared = |solution: Solution<MethodDetails>| {
         let own = (&source, &solution.curves);
         let errors = match reference {
-            Some(r) => compare(&case.name, half_length, &r.curves, own, range)?,
+            Some(r) => compare(&case.name, ends, &r.curves, own, range)?,
             None => Vec::new(),
         };
         Ok(MethodResult {
-            critical: critical_point(&solution.curves, half_length, range.stress_c),
+            critical: critical_point(&solution.curves, ends, range.stress_c),
             summary: summarise(&errors, range),
             solution,
             errors,

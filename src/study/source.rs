@@ -1,6 +1,7 @@
 //! The source of a result: an edge model or a reference.
 
 use crate::body::EdgeModel;
+use crate::fem::Code;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -20,9 +21,14 @@ pub enum Source {
 pub struct Engine(String);
 
 impl Engine {
+    /// A finite-element code.
+    pub fn of(code: Code) -> Self {
+        Self(code.source().to_string())
+    }
+
     /// gmsh and FEniCSx; the name in files is `fem`.
     pub fn fenicsx() -> Self {
-        Self("fem".to_string())
+        Self::of(Code::Fenicsx)
     }
 
     /// The name in files of the published method on uniform cells.
@@ -33,6 +39,11 @@ impl Engine {
         Self(Self::PUBLISHED.to_string())
     }
 
+    /// Curves from anywhere, by the name that they were given.
+    pub fn brought(name: &str) -> Self {
+        Self(name.to_string())
+    }
+
     /// The name in files.
     pub fn name(&self) -> &str {
         &self.0
@@ -40,10 +51,11 @@ impl Engine {
 
     /// The name for readers.
     pub fn title(&self) -> &str {
-        match self {
-            _ if *self == Self::fenicsx() => "FEM",
-            _ if *self == Self::published() => "guilbault, cells",
-            _ => &self.0,
+        let own = |code: &Code| code.source() == self.0;
+        match Code::ALL.into_iter().find(own) {
+            Some(code) => code.title(),
+            None if *self == Self::published() => "guilbault, cells",
+            None => &self.0,
         }
     }
 }

@@ -260,7 +260,9 @@ fn reference(case: &Case, twist: &Twist) -> std::result::Result<Reference, Strin
     for line in &mut curves.pressure {
         line.own_error = Some(vec![0.002; line.at.len()]);
     }
-    Ok(Reference { curves, provenance: provenance(case) })
+    let coarser = [1.4, 2.0]
+        .map(|size| (size, solution(case, method, end_share(method), mesh_shift(size)).curves));
+    Ok(Reference { curves, provenance: provenance(case), size: Some(1.0), coarser: coarser.into() })
 }
 
 /// The made-up origin of the FEM curves.

@@ -46,7 +46,7 @@ fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor
     let axis = resolution.contact_axis(3.0);
     let stack = Stack::new(
         &axis,
-        true,
+        (true, false),
         (0.0, Shape { half: 4.0, nu: 0.3 }),
         EdgeModel::QuarterSpace.end(0.3, None),
         (&resolution, wavenumbers.coarse().nodes()),
@@ -167,7 +167,7 @@ fn stresses_superpose_and_mirror() {
 // --- Equilibrium and compatibility at any place ------------------------------------------------
 
 /// Numbers of scenes, and of points in each of their bodies.
-const SCENES: usize = 10;
+pub const SCENES: usize = 10;
 const PLACES: usize = 16;
 
 /// Step of the differences (C).
@@ -178,16 +178,20 @@ const STEP: f64 = 0.03;
 const SINGULAR: f64 = 0.3;
 
 /// Limits of the divergence (p0 / C) and of the Laplacian of the trace (p0 / C^2).
-const LIMITS: [f64; 2] = [0.006, 0.05];
+pub const LIMITS: [f64; 2] = [0.006, 0.05];
 
 /// Additional limit of the divergence in a round roller per C / R, because its round shape is
 /// included to first order only, and uniformly along the line.
 const FIRST_ORDER: f64 = 0.3;
 
 /// Pseudo-random numbers in 0 to 1, the same in every run.
-struct Random(TestRng);
+pub struct Random(TestRng);
 
 impl Random {
+    pub fn new() -> Self {
+        Self(TestRng::deterministic_rng(RngAlgorithm::ChaCha))
+    }
+
     fn number(&mut self) -> f64 {
         self.0.next_u64() as f64 / u64::MAX as f64
     }
@@ -202,7 +206,7 @@ impl Random {
     }
 
     /// A case with random slenderness, ends, materials and load.
-    fn case(&mut self) -> Case {
+    pub fn case(&mut self) -> Case {
         let ratio = match self.number() {
             u if u < 0.3 => 1.0,
             u if u < 0.5 => 1.0 - self.scale(1e-4, 0.1),
@@ -223,7 +227,7 @@ impl Random {
     /// A place in a body of half-length `half`, off all planes of symmetry, the last coordinate the
     /// depth below its surface: half of them near the contact's end, and all so far from surfaces
     /// that differences lie within.
-    fn place(&mut self, contact: f64, half: f64) -> [f64; 3] {
+    pub fn place(&mut self, contact: f64, half: f64) -> [f64; 3] {
         const INSIDE: f64 = 2.1 * STEP;
         loop {
             let x = self.between(INSIDE, 2.5);
@@ -245,7 +249,7 @@ impl Random {
 
 /// The largest component of the divergence of the stress at a point, and the Laplacian of its
 /// trace, by central differences of fourth order.
-fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64; 2] {
+pub fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64; 2] {
     let trace = |s: &StressTensor| s.xx + s.yy + s.zz;
     let here = trace(&stress(place));
     let (mut divergence, mut laplacian) = ([0.0; 3], 0.0);
@@ -274,7 +278,7 @@ fn imbalance(stress: impl Fn([f64; 3]) -> StressTensor, place: [f64; 3]) -> [f64
 /// harmonic. The roller has its true shape, whose surface falls by x^2 / (2 R).
 #[test]
 fn fields_are_in_equilibrium_and_compatible() {
-    let mut random = Random(TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let mut random = Random::new();
     for _ in 0..SCENES {
         let case = random.case();
         let scene = Scene::new(&case, EdgeModel::QuarterSpace, None);

@@ -1,6 +1,7 @@
 //! Tests of the numerics, which need the library alone.
 
 mod analytic;
+mod benchmarks;
 mod cells;
 mod common;
 mod eccentric;
@@ -11,4 +12,5 @@ mod layering;
 mod profiles;
 mod refinement;
 mod scenes;
+mod sliding;
 mod verification;

@@ -54,7 +54,7 @@ fn dependencies_build_with_the_oldest_supported_compiler() {
 #[test]
 fn the_oldest_supported_compiler_is_the_same_everywhere() {
     for (file, wanted) in [
-        ("README.md", format!("It needs Rust {OLDEST}")),
+        ("README.md", format!("need Rust {OLDEST}")),
         ("tests/all.sh", format!("install Rust {OLDEST} or newer")),
         (".github/workflows/accuracy.yml", format!("rustup toolchain install {OLDEST}")),
         (".github/workflows/accuracy.yml", format!("cargo +{OLDEST} ")),

@@ -240,6 +240,50 @@ fn solve_writes_its_files() {
 }
 
 #[test]
+fn plots_name_case_version_and_units() {
+    let folder = tempfile::tempdir().unwrap();
+    let arguments = ["solve", "half-short", "--plots", "--tolerance", "5e-3", "--out", "o"];
+    assert!(edgeline(folder.path(), &arguments).status().unwrap().success());
+    let out = folder.path().join("o");
+    let version = concat!("edgeline ", env!("CARGO_PKG_VERSION"));
+    for name in
+        ["pressure", "pressure-map", "along-block", "depth-block", "along-roller", "depth-roller"]
+    {
+        let svg = std::fs::read_to_string(out.join(format!("plot-{name}.svg"))).unwrap();
+        for part in ["half-short, quarter-space", version, "(MPa)", "(mm)"] {
+            assert!(svg.contains(part), "{name}: {part}");
+        }
+        let png = std::fs::read(out.join(format!("plot-{name}.png"))).unwrap();
+        assert!(png.starts_with(b"\x89PNG\r\n\x1a\n"));
+    }
+    let page = std::fs::read_to_string(out.join("summary.html")).unwrap();
+    let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
+    let summary: Value = serde_json::from_str(&text).unwrap();
+    let mpa = |value: &Value| format!("{:.1} MPa", value.as_f64().unwrap() * 1e-6);
+    for part in [
+        "half-short".to_string(),
+        version.to_string(),
+        mpa(&summary["p_centre_pa"]),
+        mpa(&summary["critical"]["value_pa"]),
+        "2.1e11".to_string(),
+    ] {
+        assert!(page.contains(&part), "{part}");
+    }
+    assert_eq!(page.matches("<svg").count(), 6);
+    assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("://"), "nothing is fetched");
+    // What is not solved is not drawn.
+    let arguments =
+        ["solve", "half-short", "--plots", "--curve", "depth-end", "--body", "block", "--out", "p"];
+    assert!(edgeline(folder.path(), &arguments).status().unwrap().success());
+    let drawn = files(&folder.path().join("p"));
+    assert!(drawn.contains(&"plot-depth-block.svg".into()), "{drawn:?}");
+    assert!(
+        !drawn.iter().any(|name| name.contains("roller") || name.contains("along")),
+        "{drawn:?}"
+    );
+}
+
+#[test]
 fn json_is_the_only_thing_on_standard_output() {
     let folder = tempfile::tempdir().unwrap();
     let arguments = ["solve", "half-short", "--method", "mirror", "--json", "--body", "block"];
@@ -289,4 +333,40 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
         let said = refused(folder.path(), &all);
         assert!(said.contains(wanted), "{said}");
     }
+}
+
+#[test]
+fn uncertain_inputs_leave_bands() {
+    let folder = tempfile::tempdir().unwrap();
+    let solve =
+        ["solve", "flush-short", "--tolerance", "1e-2", "--curve", "depth-end", "--samples", "8"];
+    let inputs = ["--uncertain", "load_n=5%", "--uncertain", "block.young_pa=4%"];
+    let run = |more: &[&str]| {
+        edgeline(folder.path(), &[&solve[..], &inputs, more].concat()).output().unwrap()
+    };
+    assert!(run(&["--out", "a"]).status.success());
+    assert!(
+        run(&["--out", "b"]).status.success()
+            && run(&["--out", "c", "--seed", "2"]).status.success()
+    );
+    let text = |out: &str, name: &str| {
+        std::fs::read_to_string(folder.path().join(out).join(name)).unwrap()
+    };
+    // The seed makes the samples.
+    assert_eq!(text("a", "uncertainty.json"), text("b", "uncertainty.json"));
+    assert_ne!(text("a", "uncertainty.json"), text("c", "uncertainty.json"));
+    let found: Value = serde_json::from_str(&text("a", "uncertainty.json")).unwrap();
+    let centre = &found["results"]["p_centre_pa"];
+    let relative = |key: &str| centre[key].as_f64().unwrap() / centre["value"].as_f64().unwrap();
+    assert!((relative("first_order") - 0.027).abs() < 0.003, "{centre}");
+    assert!(centre["parts"]["load.force_n"].as_f64() > centre["parts"]["block.young_pa"].as_f64());
+    let table = rows(&folder.path().join("a/uncertainty.csv"));
+    assert!(
+        table.iter().any(|r| r["body"] == "contact") && table.iter().any(|r| r["body"] == "roller")
+    );
+    assert!(table.iter().all(|r| number(r, "low_pa") <= number(r, "high_pa")));
+    assert!(text("a", "plot-uncertainty.svg").contains("two standard deviations"));
+    let said =
+        refused(folder.path(), &["solve", "flush-short", "--uncertain", "lod_n=5%", "--out", "d"]);
+    assert!(said.contains("lod_n") && !folder.path().join("d").exists(), "{said}");
 }

@@ -190,7 +190,7 @@ fn finite_elements_go_on_after_a_full_disk() {
         run
     };
     // Room for the sources of the finite-element side, not for its results.
-    disk.fill(327_680);
+    disk.fill(389_120);
     let said = refused(&mut run());
     assert!(said.contains("make room there"), "{said}");
     assert!(!bench.out().join("fem.json").exists());

@@ -2,9 +2,14 @@
 
 mod bench;
 mod cli;
+mod compare;
 mod corpora;
+mod docs;
+mod explore;
+mod fatigue;
 mod faults;
 mod gate;
+mod sliding;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;

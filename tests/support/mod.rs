@@ -64,17 +64,7 @@ impl Bench {
     /// `edgeline fem` with the real tools.
     pub fn live(&self, case: &str) -> Command {
         let mut command = edgeline(self.folder.path(), &["fem", case, "--out"]);
-        // Under nohup or in the background of a script, SIGHUP and SIGINT are ignored. Children
-        // inherit that, and edgeline respects it.
-        // SAFETY: a plain system call that is async-signal-safe.
-        unsafe {
-            command.pre_exec(|| {
-                for signal in [libc::SIGHUP, libc::SIGINT] {
-                    libc::signal(signal, libc::SIG_DFL);
-                }
-                Ok(())
-            });
-        }
+        interruptible(&mut command);
         command.arg(self.out());
         command
     }
@@ -159,4 +149,64 @@ pub fn wait_for(what: &str, condition: impl Fn() -> bool) {
 
 pub fn start(command: &mut Command) -> Child {
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
+}
+
+/// Gives signals their usual effect on a command.
+pub fn interruptible(command: &mut Command) {
+    // Under nohup or in the background of a script, SIGHUP and SIGINT are ignored. Children
+    // inherit that, and edgeline respects it.
+    // SAFETY: a plain system call that is async-signal-safe.
+    unsafe {
+        command.pre_exec(|| {
+            for signal in [libc::SIGHUP, libc::SIGINT] {
+                libc::signal(signal, libc::SIG_DFL);
+            }
+            Ok(())
+        });
+    }
+}
+
+/// A running explorer, which is killed with the test.
+pub struct Explorer {
+    pub child: Child,
+    pub link: String,
+    pub port: u16,
+    pub token: String,
+}
+
+impl Explorer {
+    pub fn start(folder: &Path, arguments: &[&str]) -> Self {
+        let mut command = edgeline(folder, &["explore"]);
+        interruptible(&mut command);
+        let mut child =
+            command.args(arguments).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut link = String::new();
+        let mut output = std::io::BufReader::new(child.stdout.take().unwrap());
+        std::io::BufRead::read_line(&mut output, &mut link).unwrap();
+        let link = link.trim().to_string();
+        let rest = link.strip_prefix("http://127.0.0.1:").unwrap_or_else(|| panic!("{link:?}"));
+        let (port, token) = rest.trim_end_matches('/').split_once('/').unwrap();
+        assert!(token.len() == 32 && token.bytes().all(|b| b.is_ascii_hexdigit()), "{link}");
+        let (port, token) = (port.parse().unwrap(), token.to_string());
+        Self { child, link, port, token }
+    }
+
+    /// Waits until it has ended.
+    pub fn ended(&mut self) -> std::process::ExitStatus {
+        let until = Instant::now() + Duration::from_secs(20);
+        loop {
+            if let Some(status) = self.child.try_wait().unwrap() {
+                return status;
+            }
+            assert!(Instant::now() < until, "the explorer goes on");
+            std::thread::sleep(Duration::from_millis(20));
+        }
+    }
+}
+
+impl Drop for Explorer {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
 }

@@ -24,6 +24,15 @@ fn every_field() -> Case {
         },
         load: Load { force_n: 1e3, eccentricity_m: Some(1e-3) },
         pose: Pose { tilt_rad: Some(1e-4), offset_m: 2e-3 },
+        sliding: Sliding { friction: 0.2 },
+        fatigue: Fatigue {
+            dang_van_alpha: Some(0.31),
+            dang_van_beta_pa: Some(3.5e8),
+            fatemi_socie_k: Some(0.7),
+            yield_pa: Some(1.7e9),
+            residual_xx_pa: Some(-1.1e8),
+            residual_yy_pa: Some(-1.2e8),
+        },
         accuracy: Accuracy { tolerance: 2e-3 },
         cells: Some(Cells { half_width_m: 4e-4 }),
     }
@@ -179,7 +188,7 @@ fn problems_differ_by_any_number_but_how_they_are_solved() {
             draft.case().unwrap()
         };
         assert!(case.is_same_problem(&changed(1.0 + 1e-13)), "{}", key.path);
-        let matters = !["accuracy", "cells"].contains(&key.table());
+        let matters = !["fatigue", "accuracy", "cells"].contains(&key.table());
         assert_eq!(case.is_same_problem(&changed(1.0 + 1e-6)), !matters, "{}", key.path);
     }
 }

@@ -1,6 +1,6 @@
 //! The page and its Markdown from their templates.
 
-use super::{effects, errors, explorer, fem, solves, times};
+use super::{effects, errors, explorer, fem, solves, times, verification};
 use crate::base::number::{
     duration, duration_with_spread, fixed, rounded, significant, with_minus_signs,
 };
@@ -36,7 +36,7 @@ pub fn html(files: &StudyFiles) -> Result<String> {
     // "<" inside the data would let a name end the script element.
     let data = explorer::data(files).to_string().replace('<', "\\u003c");
     let time_plot = plots::named(files, "time-error").unwrap_or_default();
-    render("page.html", PAGE, files, context! { data, time_plot, css => STYLE, js => SCRIPT })
+    render("page.html", PAGE, files, context! { data, time_plot, js => SCRIPT })
 }
 
 /// The same tables as Markdown.
@@ -54,15 +54,6 @@ fn render(
     files: &StudyFiles,
     more: minijinja::Value,
 ) -> Result<String> {
-    let mut environment = Environment::new();
-    add_filters(&mut environment);
-    let fault = |e: minijinja::Error| Error::File {
-        path: name.into(),
-        line: None,
-        message: format!("{e:#}"),
-        remedy: "run the study again with this version".to_string(),
-    };
-    environment.add_template(name, template).map_err(fault)?;
     let base = context! {
         s => files.summary,
         caveats => CAVEATS,
@@ -76,10 +67,28 @@ fn render(
         timed => fem::timed(files),
         equal_error => fem::equal_error(files),
         fem_versions => fem::versions(files),
+        verification => verification::data(files),
     };
+    fill(name, template, context! { ..more, ..base })
+}
+
+/// Fills the template called `name` with `data`, and with the style of all pages as `css`.
+///
+/// # Errors
+/// [`Error::File`] when the data lack what the template shows.
+pub fn fill(name: &str, template: &str, data: minijinja::Value) -> Result<String> {
+    let mut environment = Environment::new();
+    add_filters(&mut environment);
+    let fault = |e: minijinja::Error| Error::File {
+        path: name.into(),
+        line: None,
+        message: format!("{e:#}"),
+        remedy: "run it again with this version".to_string(),
+    };
+    environment.add_template(name, template).map_err(fault)?;
     environment
         .get_template(name)
-        .and_then(|t| t.render(context! { ..more, ..base }))
+        .and_then(|t| t.render(context! { css => STYLE, ..data }))
         .map_err(fault)
 }
 

@@ -1,10 +1,12 @@
-//! The plots of a study, from the files of its run.
+//! The plots of a study, from the files of its run, and those of one solution.
 
 mod all;
 mod case;
 mod effects;
+mod solution;
 mod symbol;
 mod times;
 
 pub use all::{all, named};
+pub use solution::of_solution;
 pub use symbol::Shown;

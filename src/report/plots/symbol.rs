@@ -29,12 +29,13 @@ impl Shown {
     pub fn symbol(self) -> String {
         let symbol = match self {
             Self::Pressure => "p",
-            Self::Stress(Quantity::Stress(component)) => {
-                ["σxx", "σyy", "σzz", "σxy", "σxz", "σyz"][usize::from(component)]
-            }
-            Self::Stress(Quantity::VonMises) => "von Mises",
-            Self::Stress(Quantity::TauMax) => "τmax",
+            Self::Stress(quantity) => symbol(quantity),
         };
         format!("{symbol} / p0")
     }
+}
+
+/// The symbol of a scalar of the stress.
+pub(super) fn symbol(quantity: Quantity) -> &'static str {
+    ["σxx", "σyy", "σzz", "σxy", "σxz", "σyz", "von Mises", "τmax"][quantity.index()]
 }

@@ -58,9 +58,8 @@ impl Deviation {
         curves: (&Source, &Curves),
         range: &Range,
     ) -> Option<Self> {
-        let half_length = case.factors().slenderness;
         // Both sides are sampled at the standard points, so the comparison cannot fail.
-        let rows = compare(&case.name, half_length, reference, curves, range).ok()?;
+        let rows = compare(&case.name, case.overlap(), reference, curves, range).ok()?;
         Self::of(&rows, range)
     }
 }

@@ -1,0 +1,30 @@
+"""Other programs that this one runs."""
+
+import subprocess
+
+from .lifetime import die_with_parent
+from .request import FemError
+
+# Limit of a program's output (bytes); only a faulty run prints more.
+MAX_OUTPUT = 1 << 20
+
+
+def run_program(command, name, folder=None):
+    """Run a program called ``name`` in ``folder`` to its end: its exit code and what it printed.
+
+    Raises :class:`FemError` if it cannot be run, or prints more than ``MAX_OUTPUT``, which ends it.
+    """
+    try:
+        # It ends with this process; its output may be arbitrary bytes.
+        with subprocess.Popen(
+            command, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+            preexec_fn=die_with_parent, cwd=folder,
+        ) as process:
+            said = process.stdout.read(MAX_OUTPUT + 1)
+            if len(said) > MAX_OUTPUT:
+                process.kill()
+                raise FemError(f"'{command[0]}' printed more than {MAX_OUTPUT >> 20} MiB and was stopped; "
+                               f"see what it is, or name another {name} program")
+    except OSError as error:
+        raise FemError(f"{name} program '{command[0]}' cannot be run: {error.strerror}") from error
+    return process.returncode, said.decode(errors="replace")

@@ -1,0 +1,165 @@
+//! `edgeline compare`: curves from anywhere against the models and recorded FEM.
+
+use super::output::{Exit, print, print_json, say};
+use super::provenance::{command_line, now};
+use super::records::Records;
+use super::study_options::RangeOptions;
+use crate::base::{Error, Result};
+use crate::case::Case;
+use crate::host::{Lock, prepare_folder, write_set};
+use crate::report::comparison::{Context, Summary, files};
+use crate::report::gates;
+use crate::report::table::read;
+use crate::study::brought::{BroughtFile, Comparison, Limits, Statements};
+use crate::study::gate::{self, Gates};
+use crate::study::reference;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// Compares curves from anywhere (another program, measurements) with the models and recorded FEM.
+///
+/// A file is CSV with a column for each coordinate and either stress components and a body, or a
+/// pressure; lines `# key: value` above it state units and axes (docs/compare.md). The models are
+/// evaluated at its points. Quarter-space is held to the limits of --gates, or to the built-in ones
+/// widened by the error that the file states. Writes errors.csv, curves.csv, pressure.csv,
+/// gates.json, gates.md, plots/*.svg, compare.html and summary.json into the output folder. Exit
+/// code 0: all gates hold; 1: one failed; 2: could not run. Takes about a second.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A case file, or the name of a built-in case
+    #[arg(value_hint = ValueHint::FilePath)]
+    case: PathBuf,
+    /// Files of curves (CSV)
+    #[arg(required = true, value_name = "CURVES.csv", value_hint = ValueHint::FilePath)]
+    curves: Vec<PathBuf>,
+    /// Folder for the results; created if it does not exist
+    #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+    /// Thresholds (TOML) as they are, instead of the built-in ones widened by the files' errors
+    #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
+    gates: Option<PathBuf>,
+    /// Folder of recorded curves, one folder per case, instead of the built-in ones
+    #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
+    reference: Option<PathBuf>,
+    #[command(flatten)]
+    range: RangeOptions,
+    #[command(flatten)]
+    stated: StatedOptions,
+    /// Print the summary as one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// What options state in place of the files' headers.
+#[derive(Args)]
+struct StatedOptions {
+    /// Unit of coordinates, in place of the files' own: m, cm, mm, um or in
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<String>,
+    /// Unit of stresses and pressures: Pa, kPa, MPa, GPa, psi or ksi
+    #[arg(long, value_name = "UNIT")]
+    stress_unit: Option<String>,
+    /// The files' directions across the contact, along it, and into the block, as in "z -x y"
+    #[arg(long, allow_hyphen_values = true)]
+    axes: Option<String>,
+    /// The files' coordinates of the contact's origin, as in "0 12.5 0"
+    #[arg(long, allow_hyphen_values = true)]
+    origin: Option<String>,
+    /// bodies: z goes into each body; space: one system of axes for both
+    #[arg(long)]
+    system: Option<String>,
+    /// block or roller, where no column says so
+    #[arg(long)]
+    body: Option<String>,
+    /// Largest error of the curves as a fraction of p0
+    #[arg(long, value_name = "P0")]
+    error_p0: Option<String>,
+}
+
+impl StatedOptions {
+    fn statements(&self) -> Result<Statements> {
+        let mut statements = Statements::default();
+        for (key, value) in [
+            ("length_unit", &self.length_unit),
+            ("stress_unit", &self.stress_unit),
+            ("axes", &self.axes),
+            ("origin", &self.origin),
+            ("system", &self.system),
+            ("body", &self.body),
+            ("error_p0", &self.error_p0),
+        ] {
+            let Some(value) = value else { continue };
+            statements.set(key, value).map_err(|reason| Error::Value {
+                key: format!("--{}", key.replace('_', "-")),
+                value: value.clone(),
+                reason,
+                remedy: "docs/compare.md describes it".to_string(),
+            })?;
+        }
+        Ok(statements)
+    }
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    let case = Case::find(&arguments.case)?;
+    let stated = arguments.stated.statements()?;
+    let thresholds = match &arguments.gates {
+        Some(path) => gate::parse(&read(path)?, path)?,
+        None => Gates::built_in()?,
+    };
+    let limits = match &arguments.gates {
+        Some(_) => Limits::Given(&thresholds.gate),
+        None => Limits::Widened(&thresholds.gate),
+    };
+    let mut brought: Vec<BroughtFile> = Vec::new();
+    for path in &arguments.curves {
+        let file = BroughtFile::read(path, &case, &stated)?;
+        different_name(&brought, &file)?;
+        brought.push(file);
+    }
+    let record = Records::read(arguments.reference.as_deref())?.find(&case)?;
+    let fem = record.as_ref().map(reference::from_fem);
+    let compared =
+        Comparison::new(&case, brought, fem.as_ref(), &limits, &arguments.range.range())?;
+    let (date, command) = (now(), command_line());
+    let own_limits = arguments.gates.is_some();
+    let summary = Summary::of(&compared, &Context { date: &date, command: &command, own_limits });
+    let contents = files(&compared, &summary)?;
+    let out = &arguments.out;
+    let _lock = Lock::claim(out)?;
+    prepare_folder(&out.join("plots"))?;
+    write_set(out, &contents)?;
+    for file in &summary.files {
+        if !file.left_out.is_empty() {
+            let left_out = file.left_out.join(", ");
+            say(&format!("note: {}: all points are next to an edge: {left_out}", file.name));
+        }
+    }
+    if arguments.json {
+        print_json(&summary)?;
+    } else {
+        print(&text(&summary, &arguments))?;
+    }
+    Ok(if summary.gates_hold { Exit::Done } else { Exit::GateFailed })
+}
+
+/// Refuses two files whose curves have one name.
+fn different_name(others: &[BroughtFile], file: &BroughtFile) -> Result<()> {
+    match others.iter().find(|other| other.name == file.name) {
+        None => Ok(()),
+        Some(other) => Err(Error::Value {
+            key: "name".to_string(),
+            value: file.name.clone(),
+            reason: format!("{} and {} are called so", other.path.display(), file.path.display()),
+            remedy: "write a line `# name: ...` above one of the tables".to_string(),
+        }),
+    }
+}
+
+/// The short summary for a reader.
+fn text(summary: &Summary, arguments: &Arguments) -> String {
+    let table = gates::table(&summary.gates);
+    let verdict = summary.verdict.join("\n");
+    let out = arguments.out.display();
+    format!("{table}{verdict}\nwrote compare.html, tables and plots into {out}\n")
+}

@@ -1,0 +1,123 @@
+//! `edgeline fatigue`: what the material goes through as the contact passes it.
+
+use super::output::{Exit, print, print_json};
+use super::values::{checked_tolerance, edge_model};
+use crate::base::Result;
+use crate::body::EdgeModel;
+use crate::case::Case;
+use crate::host::{Lock, write_set};
+use crate::report::fatigue::{CriticalPlace, Passages, Summary, contents, summary};
+use crate::report::study_files::pretty;
+use crate::solve::{Options, Passage, SolvedCase};
+use crate::stress::BodyKind;
+use clap::{Args, ValueHint};
+use std::path::PathBuf;
+
+/// Finds where a contact that passes again and again begins to damage its bodies.
+///
+/// A place of a body sees the stresses along x, one after the other. From this history at places over the
+/// length and the depth of both bodies: the range of tau_xz, the largest shear and von Mises stress and, with their
+/// numbers in the case's [fatigue] table, the measures of Dang Van and of Fatemi and Socie. Writes fatigue.csv (one
+/// row per place, the values by half-spaces beside the method's), fatigue-<body>.vtr for ParaView, a map of each measure
+/// with its largest value marked (fatigue-*.svg and .png), and summary.json with the critical places and how
+/// far half-spaces are off. Takes some seconds.
+#[derive(Args)]
+pub(super) struct Arguments {
+    /// A case file, or the name of a built-in case
+    #[arg(value_hint = ValueHint::FilePath)]
+    case: PathBuf,
+    /// How the free ends of the bodies are modelled
+    #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
+    method: EdgeModel,
+    /// Folder for the results; created if it does not exist
+    #[arg(long, default_value = "fatigue", value_hint = ValueHint::DirPath)]
+    out: PathBuf,
+    /// Numbers of places along the contact and into the bodies; half as many are added beyond an end
+    #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count)]
+    places: Vec<usize>,
+    /// Accuracy as a fraction of p0, that of the case by default
+    #[arg(long, allow_negative_numbers = true)]
+    tolerance: Option<f64>,
+    /// Print the summary as one JSON object and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// Parses a number of places.
+fn count(text: &str) -> std::result::Result<usize, String> {
+    match text.parse::<usize>() {
+        Ok(value) if (2..=500).contains(&value) => Ok(value),
+        _ => Err("give a number of places between 2 and 500".into()),
+    }
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    let mut case = Case::find(&arguments.case)?;
+    if let Some(tolerance) = arguments.tolerance {
+        case.accuracy.tolerance = checked_tolerance(tolerance)?;
+    }
+    let counts = places(&arguments)?;
+    let _lock = Lock::claim(&arguments.out)?;
+    let passages = |method: EdgeModel| -> Result<Passages> {
+        let solved = SolvedCase::new(&case, &Options::new(method))?;
+        let bodies = BodyKind::ALL.map(|body| Passage::new(&solved, body, counts)).to_vec();
+        Ok(Passages { method: method.name().into(), bodies })
+    };
+    let own = passages(arguments.method)?;
+    let half_space = match arguments.method {
+        EdgeModel::HalfSpace => None,
+        _ => Some(passages(EdgeModel::HalfSpace)?),
+    };
+    let hertz = case.hertz();
+    let found = summary(&case, &hertz, &own, half_space.as_ref());
+    let mut files = contents(&case, &hertz, &own, half_space.as_ref());
+    files.push(("summary.json".into(), pretty(&found).into_bytes()));
+    write_set(&arguments.out, &files)?;
+    if arguments.json {
+        print_json(&found)?;
+    } else {
+        print(&text(&found, &arguments))?;
+    }
+    Ok(Exit::Done)
+}
+
+/// The numbers of places along y and down z.
+fn places(arguments: &Arguments) -> Result<[usize; 2]> {
+    let given = arguments.places.as_slice();
+    given.try_into().map_err(|_| crate::base::Error::Value {
+        key: "--places".into(),
+        value: format!("{given:?}"),
+        reason: "places have two directions".into(),
+        remedy: "give for example 33,31".into(),
+    })
+}
+
+/// The short summary for a reader.
+fn text(found: &Summary, arguments: &Arguments) -> String {
+    let Summary { case, method, c_m, p0_pa, friction, critical } = found;
+    let mut lines = vec![format!(
+        "{case} by {method}, friction {friction}: C {:.4} mm, p0 {:.1} MPa",
+        c_m * 1e3,
+        p0_pa * 1e-6
+    )];
+    lines.extend(critical.iter().map(|c| line(c, *c_m, *p0_pa)));
+    lines.push(format!("  {}", arguments.out.display()));
+    lines.join("\n") + "\n"
+}
+
+/// One critical place.
+fn line(c: &CriticalPlace, c_m: f64, p0_pa: f64) -> String {
+    let CriticalPlace { body, measure, value, at_m, over_limit, half_space, .. } = c;
+    let name = measure.trim_end_matches("_pa");
+    let value = match measure.ends_with("_pa") {
+        true => format!("{:.4} p0", value / p0_pa),
+        false => format!("{value:.4e}"),
+    };
+    let [y, z] = at_m.map(|v| v / c_m);
+    let limit = over_limit.map_or(String::new(), |ratio| format!(", {ratio:.3} of the limit"));
+    let half_space = half_space.as_ref().map_or(String::new(), |other| {
+        let [y, z] = other.at_m.map(|v| v / c_m);
+        format!("; half-spaces: {:.2} times that, at y = {y:.2} C, z = {z:.2} C", other.factor)
+    });
+    format!("  {}, {name}: {value} at y = {y:.2} C, z = {z:.2} C{limit}{half_space}", body.name())
+}

@@ -1,0 +1,57 @@
+//! Options of uncertain inputs.
+
+use crate::base::Result;
+use crate::body::EdgeModel;
+use crate::case::Case;
+use crate::report::uncertainty;
+use crate::stress::Curves;
+use crate::study::uncertain::{Input, propagate};
+use clap::Args;
+
+/// Uncertain numbers of a case, and how they are sampled.
+#[derive(Args)]
+pub(super) struct UncertainOptions {
+    /// A number of the case and its standard deviation, as load_n=5% or roller.radius_m=1e-5; may be given
+    /// several times. Writes uncertainty.csv and .json and plot-uncertainty.svg
+    #[arg(long, value_name = "KEY=DEVIATION")]
+    uncertain: Vec<String>,
+    /// Samples of the Latin hypercube
+    #[arg(long, default_value_t = 64, value_name = "N", requires = "uncertain")]
+    samples: usize,
+    /// Seed of the samples
+    #[arg(long, default_value_t = 1, value_name = "N", requires = "uncertain")]
+    seed: u64,
+}
+
+impl UncertainOptions {
+    /// Whether an input is uncertain.
+    pub(super) fn is_given(&self) -> bool {
+        !self.uncertain.is_empty()
+    }
+
+    /// The uncertain numbers of `case`.
+    ///
+    /// # Errors
+    /// As [`Input::parse`].
+    pub(super) fn inputs(&self, case: &Case) -> Result<Vec<Input>> {
+        self.uncertain.iter().map(|text| Input::parse(text, case)).collect()
+    }
+
+    /// The files of the spreads of a solution with these `curves`; none without an uncertain input.
+    ///
+    /// # Errors
+    /// As [`propagate`].
+    pub(super) fn contents(
+        &self,
+        case: &Case,
+        method: EdgeModel,
+        curves: &Curves,
+    ) -> Result<Vec<(String, Vec<u8>)>> {
+        if !self.is_given() {
+            return Ok(Vec::new());
+        }
+        let sampling = (self.samples, self.seed);
+        let found = propagate(case, method, curves, self.inputs(case)?, sampling)?;
+        Ok(uncertainty::contents(&found, method))
+    }
+}

@@ -1,0 +1,104 @@
+//! The finite-element codes, declared here and nowhere else.
+
+use crate::base::BodyKind;
+use crate::base::{Error, Result};
+use crate::body::EdgeModel;
+use crate::case::{Case, Sliding};
+use crate::solve::Scene;
+
+/// A finite-element code.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Code {
+    /// gmsh and FEniCSx: 27-node bricks, exact non-penetration.
+    Fenicsx,
+    /// CalculiX on the same grid: 20-node bricks, its own contact by a penalty.
+    Calculix,
+}
+
+impl Code {
+    /// All of them; errors are taken against the first that has curves.
+    pub const ALL: [Code; 2] = [Code::Fenicsx, Code::Calculix];
+
+    /// The name in requests and on the command line.
+    pub fn name(self) -> &'static str {
+        match self {
+            Code::Fenicsx => "fenicsx",
+            Code::Calculix => "calculix",
+        }
+    }
+
+    /// The name of its curves in the files of a study.
+    pub fn source(self) -> &'static str {
+        match self {
+            Code::Fenicsx => "fem",
+            Code::Calculix => "calculix",
+        }
+    }
+
+    /// The name for readers.
+    pub fn title(self) -> &'static str {
+        match self {
+            Code::Fenicsx => "FEM",
+            Code::Calculix => "CalculiX",
+        }
+    }
+
+    /// The modules that the interpreter has to import, the one that names it first.
+    pub fn modules(self) -> &'static [&'static str] {
+        match self {
+            Code::Fenicsx => &["dolfinx", "petsc4py", "mpi4py", "numpy", "dolfinx.fem.petsc"],
+            Code::Calculix => &["numpy"],
+        }
+    }
+
+    /// What to install, on Debian or Ubuntu.
+    pub fn install(self) -> &'static str {
+        match self {
+            Code::Fenicsx => {
+                "install it, on Debian or Ubuntu: apt-get install gmsh python3-dolfinx libopenblas0-serial"
+            }
+            Code::Calculix => {
+                "install it, on Debian or Ubuntu: apt-get install gmsh calculix-ccx python3-numpy"
+            }
+        }
+    }
+
+    /// Refuses bodies and scenes that it does not take.
+    ///
+    /// # Errors
+    /// [`Error::Value`] with the key of the case.
+    pub fn check(self, case: &Case) -> Result<()> {
+        let refuse = |key: &str, value: String, reason: &str, remedy: &str| {
+            let (reason, remedy) = (reason.to_string(), remedy.to_string());
+            Err(Error::Value { key: key.to_string(), value, reason, remedy })
+        };
+        if let Some(radius_m) = case.block.radius_m {
+            let remedy = "remove it, or solve the case with `edgeline solve`";
+            let value = format!("{radius_m:e}");
+            return refuse(
+                "block.radius_m",
+                value,
+                "finite elements take a flat block only",
+                remedy,
+            );
+        }
+        if self == Code::Fenicsx {
+            return Ok(());
+        }
+        let remedy = "remove it, or take --engine fenicsx";
+        if !Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric() {
+            let reason = "the deck models a quarter of the bodies, which takes a scene that is symmetric along y";
+            return refuse("pose or eccentricity", case.name.clone(), reason, remedy);
+        }
+        if case.sliding != Sliding::default() {
+            let (value, reason) =
+                (case.sliding.friction.to_string(), "the deck's contact is frictionless");
+            return refuse("sliding.friction", value, reason, remedy);
+        }
+        if BodyKind::ALL.into_iter().any(|body| case.profile(body).is_some()) {
+            let reason = "the deck takes straight generatrices only";
+            return refuse("profile", case.name.clone(), reason, remedy);
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,143 @@
+//! The pictures of one solution, and a page of one sheet about it for a report.
+
+use crate::base::number::{duration, significant, with_minus_signs};
+use crate::base::{BodyKind, Error, Result};
+use crate::case::{Case, Draft, Form, KEYS, Key};
+use crate::report::plots;
+use crate::solve::{Solution, Summary};
+use minijinja::{Environment, context};
+
+const NAME: &str = "solution.html";
+const PAGE: &str = include_str!("solution.html");
+
+/// What holds for every solution.
+const NOTES: [&str; 4] = [
+    "Lengths are in mm from the middle of the roller: x across the contact, y along it, z into the body at \
+     hand. Tension is positive, and pressure where the bodies press each other.",
+    "C and p0 are the half-width and the largest pressure of Hertz's contact of endless bodies under the same \
+     load per length of the shorter body.",
+    "At the edge of a body on a longer one the elastic stress has no bound. Values nearer to it than 0.1 C are \
+     drawn but not counted as largest.",
+    "The contact is smooth and elastic. Compare the largest stress with the yield strength of the material \
+     before the numbers are used.",
+];
+
+/// How a case was solved: what is written on pictures and page.
+#[derive(Debug, Clone)]
+pub struct Label {
+    /// The model, and the engine if it is not the usual one.
+    pub by: String,
+    /// The program and its version.
+    pub program: String,
+    /// When; left out if empty.
+    pub date: String,
+}
+
+/// The pictures of `solution`, `plot-<name>.svg` and `.png`, and `summary.html`, which shows them beside the
+/// case and the results.
+///
+/// # Errors
+/// [`Error::File`] when the page cannot be made.
+pub fn of_solution<D>(
+    case: &Case,
+    label: &Label,
+    solution: &Solution<D>,
+) -> Result<Vec<(String, Vec<u8>)>> {
+    let (mut files, mut pictures) = (Vec::new(), Vec::new());
+    for (name, figure) in
+        plots::of_solution(case, &format!("{}, {}", label.by, label.program), solution)
+    {
+        let picture = figure.draw();
+        let svg = picture.to_svg();
+        files.push((format!("plot-{name}.png"), picture.to_png()));
+        files.push((format!("plot-{name}.svg"), svg.clone().into_bytes()));
+        pictures.push(svg);
+    }
+    let mut environment = Environment::new();
+    let fault = |e: minijinja::Error| Error::File {
+        path: NAME.into(),
+        line: None,
+        message: format!("{e:#}"),
+        remedy: "report this as a fault of the program".to_string(),
+    };
+    environment.add_template(NAME, PAGE).map_err(fault)?;
+    let page = environment.get_template(NAME).and_then(|template| {
+        template.render(context! {
+            case => case.name, by => label.by, program => label.program, date => label.date,
+            results => results(case, &solution.summary), inputs => inputs(case), notes => NOTES,
+            pictures,
+        })
+    });
+    files.push(("summary.html".into(), page.map_err(fault)?.into_bytes()));
+    Ok(files)
+}
+
+/// A number with its unit.
+fn with_unit(value: f64, unit: &str) -> String {
+    format!("{} {unit}", with_minus_signs(&significant(value, 5))).trim_end().to_string()
+}
+
+/// The numbers and the kinds of profiles of a case, as its file has them.
+fn inputs(case: &Case) -> Vec<[String; 2]> {
+    let draft = Draft::of(case, Form::Load);
+    let number = |key: &Key| {
+        let value = key.get(&draft)?;
+        Some([format!("{} ({})", capital(key.what), key.table()), with_unit(value, "")])
+    };
+    let profile = |body: BodyKind| {
+        let profile = match body {
+            BodyKind::Block => &case.block.profile,
+            BodyKind::Roller => &case.roller.profile,
+        };
+        Some([format!("Profile ({})", body.name()), profile.as_ref()?.kind.name().to_string()])
+    };
+    let factors = case.factors();
+    let factors =
+        [("W", factors.load), ("S_l", factors.slenderness), ("L_r", factors.length_ratio)]
+            .map(|(name, value)| [name.to_string(), with_unit(value, "")]);
+    let numbers = KEYS.iter().filter_map(number);
+    numbers.chain(BodyKind::ALL.into_iter().filter_map(profile)).chain(factors).collect()
+}
+
+/// "the load in newtons," as "Load in newtons".
+fn capital(what: &str) -> String {
+    let what = what.trim_start_matches("the ").trim_end_matches(',');
+    let mut letters = what.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+/// The results in numbers.
+fn results<D>(case: &Case, found: &Summary<D>) -> Vec<[String; 2]> {
+    let hertz = &found.hertz;
+    let mm = |v: f64| with_unit(1e3 * v, "mm");
+    let pressure =
+        |v: f64| format!("{} ({})", with_unit(1e-6 * v, "MPa"), with_unit(v / hertz.p0_pa, "p0"));
+    let place = |at_m: &[f64]| {
+        let numbers: Vec<String> = at_m.iter().map(|v| with_unit(1e3 * v, "")).collect();
+        format!("{} mm", numbers.join(", "))
+    };
+    let mut rows = vec![
+        ("C, p0", format!("{}, {}", mm(hertz.c_m), with_unit(1e-6 * hertz.p0_pa, "MPa"))),
+        ("Contact modulus E*", with_unit(1e-9 * hertz.e_star_pa, "GPa")),
+        ("Pressure in the middle", pressure(found.p_centre_pa)),
+        ("Largest mean pressure of a cell", pressure(found.p_max_pa)),
+        ("… at x, y", place(&found.p_max_at_m)),
+    ];
+    if let Some(critical) = &found.critical {
+        rows.push(("Largest von Mises stress", pressure(critical.value_pa)));
+        rows.push(("… in", critical.body.name().to_string()));
+        rows.push(("… at x, y, z", place(&critical.at_m)));
+    }
+    rows.push(("Contact along y, from and to", place(&found.contact_y_m)));
+    rows.push(("Approach of the bodies", with_unit(1e6 * found.approach_m, "µm")));
+    if found.tilt_rad != 0.0 {
+        rows.push(("Tilt", with_unit(1e3 * found.tilt_rad, "mrad")));
+    }
+    if found.centre_of_pressure_m[1] != 0.0 {
+        rows.push(("Line of action at y", mm(found.centre_of_pressure_m[1])));
+    }
+    rows.push(("Tolerance", with_unit(case.accuracy.tolerance, "p0")));
+    rows.push(("Load is met to", format!("{:.0e}", found.load_error_rel)));
+    rows.push(("Run time", duration(found.seconds.total)));
+    rows.into_iter().map(|(name, value)| [name.to_string(), value]).collect()
+}

@@ -1,0 +1,197 @@
+//! The plots of one solution: pressure, and stresses of both bodies on the standard curves, in mm and MPa.
+
+use super::symbol::symbol;
+use crate::base::{BodyKind, HertzScales};
+use crate::case::Case;
+use crate::report::draw::{Colour, Figure, Look, Map, Marker, Panel, Series, Shade};
+use crate::solve::Solution;
+use crate::stress::{EDGE, Quantity, away_from_edges};
+
+const MM: f64 = 1e3;
+const MPA: f64 = 1e-6;
+
+/// Von Mises stress and the component that free ends change most.
+const SHOWN: [Quantity; 2] = [Quantity::Stress(1), Quantity::VonMises];
+
+/// The lines into the bodies and along them, with what they are called in legends.
+const DOWN: [(&str, &str); 5] = [
+    ("depth-centre", "centre"),
+    ("depth-0.9", "0.9 of the half-length"),
+    ("depth-end", "end"),
+    ("depth-0.9-neg", "0.9 at the −y end"),
+    ("depth-end-neg", "−y end"),
+];
+const ALONG: [(&str, &str); 3] = [
+    ("surface-along-y", "surface"),
+    ("along-y-0.5C", "0.5 C deep"),
+    ("along-y-0.78C", "0.78 C deep"),
+];
+
+/// Most lines of a map in each direction; cells that lie closer are thinned out.
+const MOST_LINES: f64 = 400.0;
+
+/// A solution in the units of its plots.
+struct Plots<'a, D> {
+    solution: &'a Solution<D>,
+    /// Name of the case and of what solved it.
+    title: String,
+    hertz: HertzScales,
+    /// The ends of the overlap (C).
+    ends: [f64; 2],
+}
+
+/// The plots of `solution` by the names of their files: pressure, its map, and for each body that has
+/// curves its stresses. `by` names what solved the case.
+pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(String, Figure)> {
+    let hertz = solution.curves.hertz;
+    let [block, roller] = BodyKind::ALL.map(|body| case.ends_m(body));
+    let ends = [block[0].max(roller[0]), block[1].min(roller[1])].map(|y| y / hertz.c_m);
+    let plots = Plots { solution, title: format!("{}, {by}", case.name), hertz, ends };
+    let mut figures =
+        vec![("pressure".to_string(), plots.pressure()), ("pressure-map".to_string(), plots.map())];
+    for body in BodyKind::ALL {
+        for (place, axis, lines) in [("along", 1, &ALONG[..]), ("depth", 2, &DOWN)] {
+            let figure = plots.stress(body, axis, lines);
+            if figure.panels.iter().all(|panel| !panel.series.is_empty()) {
+                figures.push((format!("{place}-{}", body.name()), figure));
+            }
+        }
+    }
+    figures
+}
+
+/// The looks of the curves of one panel, told apart without colour too.
+fn looks() -> [Look; 5] {
+    let look = |rgb, dash, marker| Look { colour: Colour { name: "", rgb }, dash, marker };
+    [
+        look([0x00, 0x72, 0xb2], None, Marker::Circle),
+        look([0xd5, 0x5e, 0x00], Some((7.0, 3.0)), Marker::Triangle),
+        look([0x00, 0x8c, 0x67], Some((2.0, 3.0)), Marker::Square),
+        look([0xb0, 0x60, 0x95], Some((9.0, 3.0)), Marker::Cross),
+        look([0x7a, 0x5c, 0x00], Some((1.0, 2.0)), Marker::Diamond),
+    ]
+}
+
+impl<D> Plots<'_, D> {
+    /// Whether a point's value is that of a singular edge, for which axes make no room.
+    fn at_edge(&self, at: [f64; 3]) -> bool {
+        !away_from_edges(at, self.ends, EDGE)
+    }
+
+    /// The edges' surroundings on an axis along y.
+    fn shade(&self) -> Option<Shade> {
+        let [from, to] =
+            [self.ends[1] - EDGE, self.ends[1] + EDGE].map(|y| y * self.hertz.c_m * MM);
+        Some(Shade { from, to, name: "within 0.1 C of the edge".into() })
+    }
+
+    /// One curve from its places (C) and values (p0).
+    fn series(
+        &self,
+        name: &str,
+        look: Look,
+        axis: usize,
+        points: impl Iterator<Item = ([f64; 3], f64)>,
+    ) -> Series {
+        let points: Vec<([f64; 3], f64)> = points.collect();
+        let HertzScales { c_m, p0_pa, .. } = self.hertz;
+        let place = |(at, value): &([f64; 3], f64)| (at[axis] * c_m * MM, value * p0_pa * MPA);
+        Series {
+            beyond: points.iter().map(|(at, _)| self.at_edge(*at)).collect(),
+            ..Series::curve(name, look, points.iter().map(place).collect())
+        }
+    }
+
+    /// The pressure on both lines, and the load per length.
+    fn pressure(&self) -> Figure {
+        let [look, ..] = looks();
+        let pressure = |title: &str, name: &str, axis: usize, x_label: &str| {
+            let line = self.solution.curves.line(name);
+            let points = line.into_iter().flat_map(|line| line.at.iter().zip(&line.p));
+            let points = points.map(|(&[x, y], &p)| ([x, y, 0.0], p));
+            Panel {
+                title: title.into(),
+                x_label: x_label.into(),
+                y_label: "p (MPa)".into(),
+                series: vec![self.series("", look, axis, points)],
+                ..Panel::default()
+            }
+        };
+        let HertzScales { c_m, p0_pa, .. } = self.hertz;
+        let loads = self.solution.line_loads.iter();
+        let loads = loads.map(|line| (line.y * c_m * MM, line.load * c_m * p0_pa * 1e-3)).collect();
+        let load = Panel {
+            title: "Load per length".into(),
+            x_label: "y (mm)".into(),
+            y_label: "q (N/mm)".into(),
+            series: vec![Series::curve("", look, loads)],
+            ..Panel::default()
+        };
+        let along = pressure("Along the contact line, x = 0", "along-y", 1, "y (mm)");
+        Figure {
+            title: format!("{}: contact pressure", self.title),
+            columns: 3,
+            panels: vec![
+                Panel { shade: self.shade(), ..along },
+                pressure("Across the contact, in its middle", "along-x", 0, "x (mm)"),
+                load,
+            ],
+            panel_size: (380, 320),
+        }
+    }
+
+    /// The pressure over the whole contact.
+    fn map(&self) -> Figure {
+        let HertzScales { c_m, p0_pa, .. } = self.hertz;
+        let cells = &self.solution.cells;
+        let lines = |of: &dyn Fn(usize) -> f64| {
+            let mut all: Vec<f64> = (0..cells.len()).map(of).collect();
+            all.sort_by(f64::total_cmp);
+            let apart = (all[all.len() - 1] - all[0]) / MOST_LINES;
+            all.dedup_by(|next, kept| *next - *kept < apart);
+            all
+        };
+        let (ys, xs) = (lines(&|i| cells[i].y), lines(&|i| cells[i].x));
+        let mut values = vec![0.0; ys.len() * xs.len()];
+        let place = |all: &[f64], v: f64| all.binary_search_by(|a| a.total_cmp(&v)).ok();
+        // Beside a singular edge the colours end with the largest value outside.
+        let outside = cells.iter().filter(|cell| !self.at_edge([cell.x, cell.y, 0.0]));
+        let most = outside.map(|cell| cell.p).fold(0.0, f64::max);
+        for cell in cells {
+            if let (Some(i), Some(j)) = (place(&ys, cell.y), place(&xs, cell.x)) {
+                values[j * ys.len() + i] = cell.p.min(most) * p0_pa * MPA;
+            }
+        }
+        let axes = [ys, xs].map(|axis| axis.iter().map(|v| v * c_m * MM).collect());
+        let capped = cells.iter().any(|cell| cell.p > most);
+        let label = if capped { "p (MPa), as far as 0.1 C from the ends" } else { "p (MPa)" };
+        let map = Map { label: label.into(), axes, down: false, values };
+        let title = format!("{}: contact pressure", self.title);
+        Figure::of_map(title, ["y (mm)", "x (mm)"], map)
+    }
+
+    /// The stresses of a body on some lines, `axis` along which they run.
+    fn stress(&self, body: BodyKind, axis: usize, lines: &[(&str, &str)]) -> Figure {
+        let panel = |of: Quantity| {
+            let curves = lines.iter().zip(looks()).filter_map(|(&(name, label), look)| {
+                let curve = self.solution.curves.curve(body, name)?;
+                let points = curve.at.iter().zip(&curve.stress).map(|(at, s)| (*at, of.of(s)));
+                Some(self.series(label, look, axis, points))
+            });
+            Panel {
+                x_label: ["x (mm)", "y (mm)", "z (mm)"][axis].into(),
+                y_label: format!("{} (MPa)", symbol(of)),
+                series: curves.collect(),
+                shade: if axis == 1 { self.shade() } else { None },
+                ..Panel::default()
+            }
+        };
+        let place = if axis == 1 { "along the contact" } else { "into the body" };
+        Figure {
+            title: format!("{}: {} {place}, x = 0", self.title, body.name()),
+            columns: 2,
+            panels: SHOWN.map(panel).into(),
+            panel_size: (500, 300),
+        }
+    }
+}

@@ -1,0 +1,46 @@
+//! What a case's own radii and friction make of the stresses that cases of one scene share.
+
+use crate::base::{BodyKind, PerBody, StressTensor};
+use crate::case::{Case, Sliding};
+use crate::stress::RoundStress;
+
+/// The radii and the friction of a case.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Shaping {
+    /// C / R of each body, negative for a concave one.
+    pub curvatures: PerBody<f64>,
+    /// The traction on the block along +x in pressures.
+    pub friction: f64,
+}
+
+impl Shaping {
+    /// Those of a case.
+    pub fn of(case: &Case) -> Self {
+        let of_radius = |radius_m: f64| case.hertz().c_m / radius_m;
+        let Sliding { friction } = case.sliding;
+        let curvatures = PerBody {
+            block: case.block.radius_m.map_or(0.0, of_radius),
+            roller: of_radius(case.roller.radius_m),
+        };
+        Self { curvatures, friction }
+    }
+
+    /// Whether the stress of a body is more than that of a flat one under the pressure alone.
+    pub fn adds_to(&self, body: BodyKind) -> bool {
+        self.curvatures[body] != 0.0 || self.friction != 0.0
+    }
+
+    /// The stress of a body (p0). What the round shape makes of the friction's part is of second order
+    /// and left out.
+    pub fn stress(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
+        match body {
+            BodyKind::Block => {
+                let pressed = stress.on_one_side(self.curvatures.block);
+                pressed + stress.flat.traction * self.friction
+            }
+            BodyKind::Roller => {
+                stress.at(self.curvatures.roller) + stress.flat.traction * -self.friction
+            }
+        }
+    }
+}

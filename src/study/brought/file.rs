@@ -1,0 +1,421 @@
+//! A file of curves: CSV with a header of `# key: value` lines.
+
+use super::columns::{self, Meaning};
+use super::statements::{Axes, KEYS, Statements, System, Unit, body_of};
+use crate::base::{BodyKind, Error, Result, StressTensor};
+use crate::case::Case;
+use crate::host::{check_memory, read_text};
+use crate::solve::{Extent, Outside};
+use crate::stress::{Curves, PressureLine, StressCurve};
+use crate::study::errors::POINTS;
+use std::path::{Path, PathBuf};
+use std::result::Result as Checked;
+
+/// Larger files are refused without reading them (bytes).
+pub const MAX_BYTES: u64 = 1 << 30;
+
+/// Memory for a byte of a file: a point takes about 40 of them, and a stress by every model.
+const BYTES_PER_BYTE: f64 = 25.0;
+
+/// Points that rounding has moved out of a body by less than this (C) are moved back.
+const ROUNDING: f64 = 1e-3;
+
+/// Points this near to an end of the overlap (C) are on it.
+const END: f64 = 1e-5;
+
+/// Depths below this (C) are those of the surface.
+const SURFACE: f64 = 1e-6;
+
+/// The curves of a file, in C and p0 and in our axes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BroughtFile {
+    /// What they are called.
+    pub name: String,
+    /// The file.
+    pub path: PathBuf,
+    /// What it states, or options do.
+    pub statements: Statements,
+    /// The curves. A component that the file lacks is NaN at all points.
+    pub curves: Curves,
+    /// Number of points.
+    pub points: usize,
+    /// Columns that mean nothing here.
+    pub ignored: Vec<String>,
+}
+
+/// A column that is used.
+struct Column {
+    /// Where it stands, from 0.
+    at: usize,
+    /// Its name.
+    header: String,
+    meaning: Meaning,
+    /// What turns its numbers into SI units.
+    si: f64,
+}
+
+impl BroughtFile {
+    /// Reads the file `path` of curves of `case`; `options` take the place of what it states.
+    ///
+    /// # Errors
+    /// [`Error::File`] with line and column of what cannot be used, [`Error::Io`],
+    /// [`Error::Memory`].
+    pub fn read(path: &Path, case: &Case, options: &Statements) -> Result<Self> {
+        let size = std::fs::metadata(path).map_or(0, |m| m.len());
+        let what = format!("comparing {}", path.display());
+        check_memory(&what, size as f64 * BYTES_PER_BYTE, "split the file")?;
+        Self::parse(&read_text(path, MAX_BYTES, "split the file")?, path, case, options)
+    }
+
+    /// Reads the text of a file; `path` names the curves that have no name.
+    ///
+    /// # Errors
+    /// As [`BroughtFile::read`].
+    pub fn parse(text: &str, path: &Path, case: &Case, options: &Statements) -> Result<Self> {
+        let text = text.trim_start_matches('\u{feff}');
+        let own = read_statements(text, path)?;
+        let statements = options.clone().or(&own);
+        let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+        let mut reader = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .delimiter(delimiter(text))
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let place = |e: &csv::Error| e.position().map(|p| p.line() as usize);
+        let of_csv = |e: csv::Error| refuse(path, place(&e), e.to_string());
+        let header = reader.headers().map_err(of_csv)?.clone();
+        let line = reader.position().line().saturating_sub(1).max(1) as usize;
+        let (columns, ignored) = find_columns(&header, &statements)
+            .map_err(|message| refuse(path, Some(line), message))?;
+        let mut table = Table::new(case, &statements, &columns, path, line)?;
+        for record in reader.records() {
+            table.take(&record.map_err(of_csv)?)?;
+        }
+        let (curves, points) = table.finish()?;
+        let name = statements.name.clone().unwrap_or(stem);
+        Ok(Self { name, path: path.to_path_buf(), statements, curves, points, ignored })
+    }
+}
+
+fn refuse(path: &Path, line: Option<usize>, message: String) -> Error {
+    Error::File {
+        path: path.to_path_buf(),
+        line,
+        message,
+        remedy: "docs/compare.md describes the file".to_string(),
+    }
+}
+
+/// The lines `# key: value` before the table. Other comments are left alone, unless a key is
+/// mistyped.
+fn read_statements(text: &str, path: &Path) -> Result<Statements> {
+    let mut statements = Statements::default();
+    for (i, line) in text.lines().enumerate() {
+        let line = line.trim();
+        let Some(comment) = line.strip_prefix('#') else {
+            if line.is_empty() {
+                continue;
+            }
+            break;
+        };
+        let Some((key, value)) = comment.split_once(':') else { continue };
+        let (key, value) = (key.trim(), value.trim());
+        let distance = |(known, _): &(&str, &str)| strsim::damerau_levenshtein(known, key);
+        let nearest = KEYS.iter().min_by_key(|k| distance(k)).expect("there are keys");
+        let said = match distance(nearest) {
+            0 => statements.set(key, value),
+            // A short word is near to anything.
+            1 | 2 if key.len() > 4 => {
+                Err(format!("'{key}' is no key; did you mean {}?", nearest.0))
+            }
+            _ => Ok(()),
+        };
+        said.map_err(|message| refuse(path, Some(i + 1), message))?;
+    }
+    Ok(statements)
+}
+
+/// The character between columns: the one that is most frequent in the line of their names.
+fn delimiter(text: &str) -> u8 {
+    let is_header = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let header = text.lines().find(is_header).unwrap_or_default();
+    let count = |c: &u8| header.bytes().filter(|b| b == c).count();
+    // The last of equals: a comma.
+    *b"\t;,".iter().max_by_key(|c| count(c)).expect("three characters")
+}
+
+/// The columns that are used, and the names of the others.
+fn find_columns(
+    header: &csv::StringRecord,
+    statements: &Statements,
+) -> Checked<(Vec<Column>, Vec<String>), String> {
+    let (mut columns, mut ignored) = (Vec::<Column>::new(), Vec::new());
+    for (at, header) in header.iter().enumerate() {
+        let Some((meaning, unit)) = columns::read(header) else {
+            ignored.push(header.to_string());
+            continue;
+        };
+        let si = match meaning {
+            Meaning::Place(_) => {
+                in_si(unit, statements.length, header, "length_unit", &Unit::of_length)?
+            }
+            Meaning::Stress(_) | Meaning::Pressure => {
+                in_si(unit, statements.stress, header, "stress_unit", &Unit::of_stress)?
+            }
+            _ => 1.0,
+        };
+        if meaning != Meaning::Same
+            && let Some(other) = columns.iter().find(|c| c.meaning == meaning)
+        {
+            return Err(format!("columns '{}' and '{header}' are the same thing", other.header));
+        }
+        columns.push(Column { at, header: header.to_string(), meaning, si });
+    }
+    Ok((columns, ignored))
+}
+
+/// What turns a column into SI units: its own unit, or else the one that is stated.
+fn in_si(
+    own: Option<Unit>,
+    stated: Option<Unit>,
+    header: &str,
+    key: &str,
+    of_name: &dyn Fn(&str) -> Option<Unit>,
+) -> Checked<f64, String> {
+    match (own, stated) {
+        (Some(own), _) if of_name(own.name).is_none() => {
+            Err(format!("column '{header}' cannot be in {}", own.name))
+        }
+        (Some(own), Some(stated)) if own != stated => Err(format!(
+            "column '{header}' is in {}, but {key} is {}: correct one of them",
+            own.name, stated.name
+        )),
+        (Some(unit), _) | (None, Some(unit)) => Ok(unit.si),
+        (None, None) => Err(format!(
+            "the unit of column '{header}' is not stated: write a line `# {key}: ...` above the table, \
+             or give the option --{}",
+            key.replace('_', "-")
+        )),
+    }
+}
+
+/// Rows as they become curves.
+struct Table<'a> {
+    case: &'a Case,
+    path: &'a Path,
+    columns: &'a [Column],
+    body: Option<BodyKind>,
+    axes: Axes,
+    origin_m: [f64; 3],
+    system: System,
+    /// Whether the rows are pressures and not stresses.
+    pressures: bool,
+    /// The mesh of the rows so far.
+    mesh: f64,
+    /// The names that stay the same.
+    same: Vec<String>,
+    curves: Curves,
+}
+
+impl<'a> Table<'a> {
+    fn new(
+        case: &'a Case,
+        statements: &Statements,
+        columns: &'a [Column],
+        path: &'a Path,
+        line: usize,
+    ) -> Result<Self> {
+        let refuse = |message: String| refuse(path, Some(line), message);
+        let has = |of: &dyn Fn(Meaning) -> bool| columns.iter().any(|c| of(c.meaning));
+        let stresses = has(&|m| matches!(m, Meaning::Stress(_)));
+        let pressures = has(&|m| m == Meaning::Pressure);
+        if stresses == pressures {
+            let which = if stresses {
+                "both stresses and a pressure"
+            } else {
+                "no column of a stress or a pressure"
+            };
+            return Err(refuse(format!(
+                "has {which}: give sigma_xx to sigma_yz (also S11 or SX) in one file, p (also CPRESS) in another"
+            )));
+        }
+        let axes = statements.axes.unwrap_or_default();
+        let wanted = if pressures { 2 } else { 3 };
+        for (axis, _) in &axes.0[..wanted] {
+            if !has(&|m| m == Meaning::Place(*axis)) {
+                let name = ["x", "y", "z"][*axis];
+                return Err(refuse(format!(
+                    "has no column {name}: give one, with 0 where all points have it"
+                )));
+            }
+        }
+        if stresses && statements.body.is_none() && !has(&|m| m == Meaning::Body) {
+            let remedy = "give one with block or roller, or a line `# body: block` above the table";
+            return Err(refuse(format!("has no column body: {remedy}")));
+        }
+        let first = columns.iter().find(|c| matches!(c.meaning, Meaning::Place(_)));
+        let length = statements.length.map_or_else(|| first.map_or(1.0, |c| c.si), |u| u.si);
+        Ok(Self {
+            case,
+            path,
+            columns,
+            body: statements.body,
+            axes,
+            origin_m: statements.origin.unwrap_or_default().map(|v| v * length),
+            system: statements.system.unwrap_or(System::Bodies),
+            pressures,
+            mesh: f64::INFINITY,
+            same: vec![String::new(); columns.len()],
+            curves: Curves { hertz: case.hertz(), pressure: Vec::new(), stress: Vec::new() },
+        })
+    }
+
+    /// Takes in a row.
+    fn take(&mut self, record: &csv::StringRecord) -> Result<()> {
+        let line = record.position().map(|p| p.line() as usize);
+        let path = self.path;
+        let at = |column: &Column, message: String| {
+            let place = format!("column {} ({}): {message}", column.at + 1, column.header);
+            refuse(path, line, place)
+        };
+        let (mut place, mut stress, mut p) = ([0.0; 3], [f64::NAN; 6], f64::NAN);
+        let (mut body, mut curve, mut mesh) = (self.body, POINTS.to_string(), None);
+        for (column, same) in self.columns.iter().zip(&mut self.same) {
+            // The reader refuses rows of another width than the header.
+            let text = &record[column.at];
+            let number = || match text.parse::<f64>() {
+                Ok(value) if value.is_finite() => Ok(value * column.si),
+                _ => Err(at(column, format!("'{text}' is not a finite number"))),
+            };
+            match column.meaning {
+                Meaning::Place(axis) => place[axis] = number()?,
+                Meaning::Stress(i) => stress[i] = number()?,
+                Meaning::Pressure => p = number()?,
+                Meaning::Mesh => mesh = Some(number()?),
+                Meaning::Curve if text.is_empty() => {}
+                Meaning::Curve => curve = text.to_string(),
+                Meaning::Body => {
+                    let unknown = || at(column, format!("'{text}' is neither block nor roller"));
+                    body = Some(body_of(text).ok_or_else(unknown)?);
+                }
+                Meaning::Same if same.is_empty() => *same = text.to_string(),
+                Meaning::Same if same == text => {}
+                Meaning::Same => {
+                    return Err(at(
+                        column,
+                        format!("'{text}' after '{same}': give one file for each"),
+                    ));
+                }
+            }
+        }
+        if let Some(mesh) = mesh {
+            if mesh > self.mesh {
+                return Ok(());
+            }
+            if mesh < self.mesh {
+                // All rows so far are of a coarser mesh.
+                (self.curves.pressure, self.curves.stress) = Default::default();
+                self.mesh = mesh;
+            }
+        }
+        let place = self.axes.turn(std::array::from_fn(|i| place[i] - self.origin_m[i]));
+        let added = if self.pressures {
+            self.add_pressure(curve, [place[0], place[1]], p)
+        } else {
+            let stress = self.axes.turn_stress(&StressTensor::from_components(stress));
+            self.add_stress(body.expect("a column or a statement"), curve, place, stress)
+        };
+        added.map_err(|message| refuse(path, line, message))
+    }
+
+    fn add_pressure(&mut self, name: String, at_m: [f64; 2], p_pa: f64) -> Checked<(), String> {
+        let Curves { hertz, pressure, .. } = &mut self.curves;
+        let lines = pressure.iter_mut();
+        let line = match lines.into_iter().position(|line| line.name == name) {
+            Some(i) => &mut pressure[i],
+            None => {
+                pressure.push(PressureLine {
+                    name,
+                    at: Vec::new(),
+                    p: Vec::new(),
+                    own_error: None,
+                });
+                pressure.last_mut().expect("just added")
+            }
+        };
+        let [x, mut y] = at_m.map(|v| v / hertz.c_m);
+        // Beyond the end by rounding there would be no pressure.
+        for end in self.case.overlap() {
+            if (y - end).abs() < END {
+                y = end;
+            }
+        }
+        line.at.push([x, y]);
+        line.p.push(p_pa / hertz.p0_pa);
+        Ok(())
+    }
+
+    fn add_stress(
+        &mut self,
+        body: BodyKind,
+        name: String,
+        mut at_m: [f64; 3],
+        mut stress: StressTensor,
+    ) -> Checked<(), String> {
+        if self.system == System::Space {
+            if body == BodyKind::Roller {
+                at_m[2] = -at_m[2];
+                stress = stress.mirrored(StressTensor::ODD_IN_Z);
+            }
+            at_m[2] -= surface_m(self.case, body, at_m[0]);
+        }
+        let at_m = self.moved_inside(body, at_m)?;
+        let Curves { hertz, stress: curves, .. } = &mut self.curves;
+        let curve = match curves.iter().position(|c| c.body == body && c.name == name) {
+            Some(i) => &mut curves[i],
+            None => {
+                let (at, stress) = (Vec::new(), Vec::new());
+                curves.push(StressCurve { body, name, at, stress, own_error: None });
+                curves.last_mut().expect("just added")
+            }
+        };
+        curve.at.push(at_m.map(|v| v / hertz.c_m));
+        curve.stress.push(stress * (1.0 / hertz.p0_pa));
+        Ok(())
+    }
+
+    /// The point, moved back into the body where rounding has moved it out.
+    fn moved_inside(&self, body: BodyKind, mut at_m: [f64; 3]) -> Checked<[f64; 3], String> {
+        let (extent, c_m) = (Extent::of(self.case, body), self.curves.hertz.c_m);
+        let [from, to] = extent.ends_m();
+        let y = at_m[1].clamp(from, to);
+        if (y - at_m[1]).abs() <= ROUNDING * c_m {
+            at_m[1] = y;
+        }
+        if (-ROUNDING * c_m..SURFACE * c_m).contains(&at_m[2]) {
+            at_m[2] = 0.0;
+        }
+        extent.check(at_m).map(|()| at_m).map_err(|outside| {
+            let Outside { axis, value_m, reason, remedy } = outside;
+            format!("in our axes {axis} = {value_m:e} m {reason}: {remedy}, or state units, axes and origin")
+        })
+    }
+
+    fn finish(self) -> Result<(Curves, usize)> {
+        let pressures = self.curves.pressure.iter().map(|line| line.at.len());
+        let points = pressures.chain(self.curves.stress.iter().map(|c| c.at.len())).sum();
+        if points == 0 {
+            return Err(refuse(self.path, None, "holds no points".to_string()));
+        }
+        Ok((self.curves, points))
+    }
+}
+
+/// How far a body's unloaded surface lies below the tangent plane at `x_m`, into the body (m).
+fn surface_m(case: &Case, body: BodyKind, x_m: f64) -> f64 {
+    let radius_m = match body {
+        BodyKind::Roller => Some(case.roller.radius_m),
+        BodyKind::Block => case.block.radius_m,
+    };
+    radius_m.map_or(0.0, |r| x_m * x_m / (r + r.signum() * (r * r - x_m * x_m).max(0.0).sqrt()))
+}

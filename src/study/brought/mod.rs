@@ -1,0 +1,13 @@
+//! Curves from anywhere: read from a file, and compared with the models and recorded FEM at its own
+//! points.
+
+mod between;
+mod columns;
+mod compared;
+
+mod file;
+mod statements;
+
+pub use compared::{Comparison, FileRun, Limits, UNSTATED_ERROR};
+pub use file::{BroughtFile, MAX_BYTES};
+pub use statements::{KEYS, Statements, System};

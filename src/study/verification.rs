@@ -1,0 +1,334 @@
+//! Numerical uncertainty of both sides of a comparison, in the terms of ASME V&V 20-2009.
+//!
+//! The difference E of a model's solution and a code's data is set against what both do not know of
+//! themselves: u_num of the code by the grid convergence index of Roache (J. Fluids Eng. 116 (1994) 405),
+//! Fs |f1 - f2| / (r^p - 1), and that of the model by its own refinement. |E| beyond
+//! sqrt(u_code^2 + u_model^2) is a difference of the models; below, nothing can be said but that they
+//! agree. All are root mean squares over the same points, with equal weights for all curves.
+//!
+//! Places are kept apart: more than 1 C from the ends of the contact, where solutions are regular, and 0.1
+//! to 1 C from one, where gradients are steep and the pressure of a longer body grows without bound. Nearer,
+//! a singular value belongs to its mesh, and nothing is compared.
+
+use super::run::Reference;
+use super::source::{Engine, Source};
+use crate::case::Case;
+use crate::stress::{Curves, Quantity, away_from_edges};
+use serde::{Deserialize, Serialize};
+
+/// A place on the curves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Zone {
+    /// More than 1 C from the ends of the contact.
+    Regular,
+    /// 0.1 to 1 C from one.
+    NearEnd,
+}
+
+/// Distances from an end of the contact between which places are near it (C).
+pub const NEAR_END: [f64; 2] = [0.1, 1.0];
+
+/// What is compared.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Group {
+    /// The contact pressure on both lines.
+    Pressure,
+    /// The six stress components on all curves of both bodies.
+    Stress,
+}
+
+/// How a code's meshes converge.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Convergence {
+    /// Differences fall by an order from 1 to the formal one.
+    Observed,
+    /// They fall faster; the formal order is used.
+    Faster,
+    /// They fall by an order below 1, or do not fall.
+    None,
+    /// There are two meshes; the formal order is assumed.
+    Assumed,
+    /// There is one mesh.
+    OneMesh,
+}
+
+/// What the uncertainties say of a difference.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Finding {
+    /// It is within the numerical uncertainty of both sides.
+    Within,
+    /// It is larger: a difference of what is modelled.
+    Resolved,
+    /// One side does not know its uncertainty.
+    Unknown,
+}
+
+/// A difference with its uncertainties: a row of `verification.csv` (p0).
+#[derive(Debug, Clone, PartialEq)]
+pub struct VerificationRow {
+    /// The case.
+    pub case: String,
+    /// Whether no one tuned anything to the case.
+    pub held_back: bool,
+    /// What is compared with the reference: a model, or another code.
+    pub source: Source,
+    /// The reference.
+    pub reference: Source,
+    /// What is compared.
+    pub group: Group,
+    /// Where.
+    pub zone: Zone,
+    /// RMS of the difference E.
+    pub difference: f64,
+    /// Relative sizes of the reference's meshes, coarse to fine.
+    pub sizes: String,
+    /// Observed order of convergence.
+    pub order: Option<f64>,
+    /// How the meshes converge.
+    pub convergence: Convergence,
+    /// The factor of safety.
+    pub safety: Option<f64>,
+    /// The reference's numerical uncertainty: the grid convergence index.
+    pub u_reference: Option<f64>,
+    /// The source's own: by its refinement, or by its meshes.
+    pub u_source: Option<f64>,
+    /// Both together.
+    pub u_num: Option<f64>,
+    /// What they say.
+    pub finding: Finding,
+}
+
+/// The formal order: that of stresses of quadratic elements at their best points.
+const FORMAL_ORDER: f64 = 3.0;
+
+/// Factors of safety for three meshes with an order, and otherwise.
+const SAFETY: [f64; 2] = [1.25, 3.0];
+
+/// A code's numerical uncertainty and where it comes from.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct GridIndex {
+    /// Observed order.
+    pub order: Option<f64>,
+    /// How the meshes converge.
+    pub convergence: Convergence,
+    /// The factor of safety.
+    pub safety: f64,
+    /// The index.
+    pub index: f64,
+}
+
+/// The grid convergence index of the finest of meshes: `sizes` fine to coarse, and `changes`, the norms of the
+/// differences of neighbouring ones, the finest first. `None` for one mesh.
+pub fn grid_index(sizes: &[f64], changes: &[f64]) -> Option<GridIndex> {
+    let (&[fine, middle, ..], &[last, ..]) = (sizes, changes) else { return None };
+    let index = |order: f64, safety: f64| safety * last / ((middle / fine).powf(order) - 1.0);
+    let found = |order, convergence, used, safety| {
+        Some(GridIndex { order, convergence, safety, index: index(used, safety) })
+    };
+    let (Some(&coarse), Some(&first)) = (sizes.get(2), changes.get(1)) else {
+        return found(None, Convergence::Assumed, FORMAL_ORDER, SAFETY[1]);
+    };
+    match order([coarse, middle, fine], [first, last]) {
+        Some(p) if p > FORMAL_ORDER => found(Some(p), Convergence::Faster, FORMAL_ORDER, SAFETY[0]),
+        Some(p) if p >= 1.0 => found(Some(p), Convergence::Observed, p, SAFETY[0]),
+        low => found(low, Convergence::None, 1.0, SAFETY[1]),
+    }
+}
+
+/// The order q for which errors that are multiples of size^q change so from mesh to mesh; `None` if no order
+/// from 0.001 to 12 does.
+fn order([coarse, middle, fine]: [f64; 3], [first, last]: [f64; 2]) -> Option<f64> {
+    let ratio = |q: f64| (coarse.powf(q) - middle.powf(q)) / (middle.powf(q) - fine.powf(q));
+    let (mut low, mut high) = (1e-3, 12.0);
+    let wanted = first / last;
+    if last.is_nan() || last <= 0.0 || wanted <= ratio(low) || wanted >= ratio(high) {
+        return None;
+    }
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if ratio(middle) < wanted { low = middle } else { high = middle }
+    }
+    Some(0.5 * (low + high))
+}
+
+/// Root mean square of the difference of two sources in a zone; `None` where they have no common curve there.
+fn difference(a: &Curves, b: &Curves, group: Group, zone: Zone, ends: [f64; 2]) -> Option<f64> {
+    let kept = |at: [f64; 3]| {
+        let far = |distance| away_from_edges(at, ends, distance);
+        match zone {
+            Zone::Regular => far(NEAR_END[1]),
+            Zone::NearEnd => far(NEAR_END[0]) && !far(NEAR_END[1]),
+        }
+    };
+    let mean = |squares: Vec<f64>| {
+        let count = squares.len() as f64;
+        (count > 0.0).then(|| squares.iter().sum::<f64>() / count)
+    };
+    let per_curve: Vec<f64> = match group {
+        Group::Pressure => a
+            .pressure
+            .iter()
+            .filter_map(|line| {
+                let other = b.line(&line.name)?;
+                let points = line.at.iter().zip(line.p.iter().zip(&other.p));
+                mean(
+                    points
+                        .filter(|(at, _)| kept([at[0], at[1], 0.0]))
+                        .map(|(_, (p, q))| (p - q).powi(2))
+                        .collect(),
+                )
+            })
+            .collect(),
+        Group::Stress => a
+            .stress
+            .iter()
+            .filter_map(|curve| {
+                let other = b.curve(curve.body, &curve.name)?;
+                let points = curve.at.iter().zip(curve.stress.iter().zip(&other.stress));
+                let squares = points.filter(|(at, _)| kept(**at)).flat_map(|(_, (s, t))| {
+                    let components = &Quantity::ALL[..6];
+                    components.iter().map(move |q| (q.of(s) - q.of(t)).powi(2))
+                });
+                mean(squares.collect())
+            })
+            .collect(),
+    };
+    mean(per_curve).map(f64::sqrt)
+}
+
+/// One side of a comparison: its curves, and others of its own that say how uncertain it is.
+struct Side<'a> {
+    source: Source,
+    curves: &'a Curves,
+    /// Relative sizes of the meshes, finest first; empty for a model.
+    sizes: Vec<f64>,
+    /// The coarser meshes, finest first; for a model its refined solution.
+    others: Vec<&'a Curves>,
+}
+
+/// The places and groups that are compared.
+const PARTS: [(Group, Zone); 4] = [
+    (Group::Pressure, Zone::Regular),
+    (Group::Pressure, Zone::NearEnd),
+    (Group::Stress, Zone::Regular),
+    (Group::Stress, Zone::NearEnd),
+];
+
+impl<'a> Side<'a> {
+    fn of_code(engine: &Engine, reference: &'a Reference) -> Self {
+        let coarser = || reference.coarser.iter();
+        let sizes = reference.size.into_iter().chain(coarser().map(|(size, _)| *size)).collect();
+        let others = coarser().map(|(_, curves)| curves).collect();
+        Self { source: engine.clone().into(), curves: &reference.curves, sizes, others }
+    }
+
+    /// Changes from mesh to mesh, the finest first.
+    fn changes(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Vec<f64> {
+        let all: Vec<&Curves> =
+            std::iter::once(self.curves).chain(self.others.iter().copied()).collect();
+        all.windows(2).map_while(|pair| difference(pair[0], pair[1], group, zone, ends)).collect()
+    }
+
+    fn grid_index(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Option<GridIndex> {
+        grid_index(&self.sizes, &self.changes(group, zone, ends))
+    }
+
+    /// What it does not know of itself.
+    fn uncertainty(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Option<f64> {
+        match self.source {
+            Source::Model(_) => self.changes(group, zone, ends).first().copied(),
+            Source::Engine(_) => Some(self.grid_index(group, zone, ends)?.index),
+        }
+    }
+}
+
+/// All differences of a case: of a model, whose `refined` solution says how uncertain it is, from every reference, and of
+/// every further reference from the first.
+pub fn rows(
+    case: &Case,
+    held_back: bool,
+    (model, curves, refined): (Source, &Curves, &Curves),
+    references: &[(Engine, &Reference)],
+) -> Vec<VerificationRow> {
+    let ends = case.overlap();
+    let codes: Vec<Side> = references.iter().map(|(engine, r)| Side::of_code(engine, r)).collect();
+    let model = Side { source: model, curves, sizes: Vec::new(), others: vec![refined] };
+    let of_model = codes.iter().map(|code| (&model, code));
+    let of_codes = codes.iter().skip(1).map(|code| (code, &codes[0]));
+    let pairs: Vec<(&Side, &Side)> = of_model.chain(of_codes).collect();
+    let mut all = Vec::new();
+    for (source, reference) in pairs {
+        for (group, zone) in PARTS {
+            let Some(found) = difference(source.curves, reference.curves, group, zone, ends) else {
+                continue;
+            };
+            let grid = reference.grid_index(group, zone, ends);
+            let (u_reference, u_source) =
+                (grid.map(|g| g.index), source.uncertainty(group, zone, ends));
+            let u_num = u_reference.zip(u_source).map(|(a, b)| a.hypot(b));
+            let mut sizes = reference.sizes.clone();
+            sizes.reverse();
+            all.push(VerificationRow {
+                case: case.name.clone(),
+                held_back,
+                source: source.source.clone(),
+                reference: reference.source.clone(),
+                group,
+                zone,
+                difference: found,
+                sizes: sizes.iter().map(f64::to_string).collect::<Vec<_>>().join(" "),
+                order: grid.and_then(|g| g.order),
+                convergence: grid.map_or(Convergence::OneMesh, |g| g.convergence),
+                safety: grid.map(|g| g.safety),
+                u_reference,
+                u_source,
+                u_num,
+                finding: match u_num {
+                    None => Finding::Unknown,
+                    Some(u) if found <= u => Finding::Within,
+                    Some(_) => Finding::Resolved,
+                },
+            });
+        }
+    }
+    all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Errors 0.1 size^q on sizes 1, 1.4 and 2: the order is found, and the index is the safety times the error.
+    #[test]
+    fn known_orders_are_found() {
+        let sizes = [1.0, 1.4, 2.0];
+        let changes = |q: f64| {
+            let error = sizes.map(|s: f64| 0.1 * s.powf(q));
+            [error[1] - error[0], error[2] - error[1]]
+        };
+        for q in [1.2, 2.0, 2.9] {
+            let found = grid_index(&sizes, &changes(q)).unwrap();
+            assert!((found.order.unwrap() - q).abs() < 1e-9);
+            assert_eq!((found.convergence, found.safety), (Convergence::Observed, 1.25));
+            assert!((found.index - 0.125).abs() < 1e-12);
+        }
+        // Faster than the formal order: the formal one gives the larger index.
+        let found = grid_index(&sizes, &changes(5.0)).unwrap();
+        assert_eq!(found.convergence, Convergence::Faster);
+        assert!(found.index > 0.125);
+        let slow = grid_index(&sizes, &changes(0.5)).unwrap();
+        assert_eq!((slow.convergence, slow.safety), (Convergence::None, 3.0));
+        assert!(slow.index > 3.0 * changes(0.5)[0]);
+        // Differences that grow with refinement have no order.
+        let diverging = grid_index(&sizes, &[0.02, 0.01]).unwrap();
+        assert_eq!((diverging.order, diverging.convergence), (None, Convergence::None));
+        let two = grid_index(&sizes[..2], &changes(2.0)[..1]).unwrap();
+        assert_eq!((two.convergence, two.safety), (Convergence::Assumed, 3.0));
+        assert_eq!(grid_index(&sizes[..1], &[]), None);
+        assert_eq!(grid_index(&sizes, &[0.0, 0.01]).unwrap().index, 0.0);
+    }
+}
