@@ -35,12 +35,15 @@ fn refusal(error: &edgeline::base::Error, file: &str) {
 /// Checks a case that was accepted: it is within the legal ranges and survives its own file.
 fn accepted(case: &Case) {
     case.check().expect("what a reader accepts is legal");
-    let hertz = case.hertz();
-    assert!(hertz.c_m > 0.0 && hertz.c_m.is_finite(), "{case:?}");
-    assert!(hertz.p0_pa > 0.0 && hertz.p0_pa.is_finite(), "{case:?}");
     let again =
         Case::parse(&case.to_toml(), Path::new("again")).expect("a case reads its own file");
     assert!(again.is_same_problem(case), "{case:?} became {again:?}");
+    if case.load.approach_m.is_some() {
+        return;
+    }
+    let hertz = case.hertz();
+    assert!(hertz.c_m > 0.0 && hertz.c_m.is_finite(), "{case:?}");
+    assert!(hertz.p0_pa > 0.0 && hertz.p0_pa.is_finite(), "{case:?}");
 }
 
 /// A case file.

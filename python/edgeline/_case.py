@@ -80,6 +80,9 @@ class Case:
         `e_star_pa` is the contact modulus, `c_m` the half-width C and `p0_pa` the
         maximum pressure.
 
+        They follow from a force: a case with `approach_m` has none, its solution
+        has them in `Solution.summary`.
+
         Source: Johnson, Contact Mechanics, 1985, Eqs. 4.43 to 4.45.
         """
         scales: dict[str, float] = json.loads(self._native.hertz())
@@ -121,5 +124,8 @@ class Case:
         return Case.from_toml, (self.to_toml(),)
 
     def __repr__(self) -> str:
+        approach_m = self.tables["load"].get("approach_m")
+        if approach_m is not None:
+            return f"<edgeline.Case {self.name}: approach {approach_m:.4g} m>"
         factors = ", ".join(f"{name} {value:.4g}" for name, value in self.factors.items())
         return f"<edgeline.Case {self.name}: {factors}>"

@@ -53,14 +53,16 @@ impl Case {
     }
 
     /// E* (Pa), C (m) and p0 (Pa) as JSON.
-    fn hertz(&self) -> String {
-        serde_json::to_string(&self.0.hertz()).expect("scales are plain data")
+    fn hertz(&self) -> PyResult<String> {
+        self.0.check_force("its scales follow from a force").map_err(raised)?;
+        Ok(serde_json::to_string(&self.0.hertz()).expect("scales are plain data"))
     }
 
     /// W, S_l and L_r.
-    fn factors(&self) -> [f64; 3] {
+    fn factors(&self) -> PyResult<[f64; 3]> {
+        self.0.check_force("its factors follow from a force").map_err(raised)?;
         let factors = self.0.factors();
-        [factors.load, factors.slenderness, factors.length_ratio]
+        Ok([factors.load, factors.slenderness, factors.length_ratio])
     }
 }
 

@@ -59,6 +59,7 @@ impl Solution {
                     case.accuracy.tolerance = checked_tolerance(tolerance)?;
                 }
                 let solved = SolvedCase::new(&case, &options)?;
+                case = solved.case().clone();
                 let found = solved.solution();
                 Solved::Line(Box::new((solved, found)))
             }

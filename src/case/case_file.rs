@@ -110,6 +110,7 @@ pub(super) fn entries<'d>(
         let same = keys.iter().filter(|key| key.table() == name).map(|key| key.leaf());
         let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
         table.only(&known)?;
+        check_one_of_several(&table, of_table)?;
         for &key in of_table {
             let leaf = key.leaf();
             let entry = match key.is_required() {
@@ -120,6 +121,24 @@ pub(super) fn entries<'d>(
         }
     }
     Ok(found)
+}
+
+/// Refuses a table with none of the keys of which it takes exactly one, and one with several.
+fn check_one_of_several(table: &Table, keys: &[&'static Key]) -> Result<()> {
+    let several = || keys.iter().filter(|key| key.is_one_of_several());
+    let Some(usual) = several().next() else { return Ok(()) };
+    let mut given = several().filter_map(|key| Some((key.leaf(), table.get(key.leaf())?)));
+    match (given.next(), given.next()) {
+        (None, _) => {
+            let leaf = usual.leaf();
+            table.require(leaf, &format!("{leaf} = {}", usual.example)).map(drop)
+        }
+        (Some((first, _)), Some((second, entry))) => Err(entry.refuse(
+            format!("{first} gives the load already"),
+            format!("remove {first} or {second}"),
+        )),
+        _ => Ok(()),
+    }
 }
 
 /// Takes the kinds and the files of the bodies' profiles; files are looked for beside the case file,

@@ -12,6 +12,8 @@ pub enum Presence {
     Always,
     /// Required if the load and the lengths are given in this form, and refused otherwise.
     With(Form),
+    /// Exactly one of the numbers of this kind, if the load and the lengths are given in this form.
+    OneOf(Form),
     /// Not required; it has a default.
     Optional,
     /// Never; where the load and the lengths are given in the other form it must not stand.
@@ -79,7 +81,7 @@ impl Key {
     /// Whether a case with the load and the lengths in this form may contain it.
     pub fn is_of(&self, form: Form) -> bool {
         let own = match self.presence {
-            Presence::With(own) | Presence::OptionalWith(own) => own,
+            Presence::With(own) | Presence::OneOf(own) | Presence::OptionalWith(own) => own,
             Presence::Always | Presence::Optional | Presence::Profile => form,
         };
         own == form
@@ -88,6 +90,11 @@ impl Key {
     /// Whether a file of its form has to give it.
     pub fn is_required(&self) -> bool {
         matches!(self.presence, Presence::Always | Presence::With(_))
+    }
+
+    /// Whether it belongs to the numbers of which a file gives exactly one.
+    pub fn is_one_of_several(&self) -> bool {
+        matches!(self.presence, Presence::OneOf(_))
     }
 
     /// Whether the draft has a place for it: a number of a profile needs the profile.
@@ -218,6 +225,9 @@ const DROPS: (f64, f64) = (1e-12, 1.0);
 /// Legal range of forces (N).
 const FORCES: (f64, f64) = (1e-12, 1e15);
 
+/// Legal range of approaches (m).
+const APPROACHES: (f64, f64) = (1e-12, 1.0);
+
 /// Legal range of tilts (rad): beyond, the slope is not small.
 const TILTS: (f64, f64) = (-0.1, 0.1);
 
@@ -229,6 +239,7 @@ const ECCENTRICITY: &str = "y of the load's line of action from the roller's mid
 const ALWAYS: Presence = Presence::Always;
 const OPTIONAL: Presence = Presence::Optional;
 const WITH_LOAD: Presence = Presence::With(Form::Load);
+const GIVES_LOAD: Presence = Presence::OneOf(Form::Load);
 const WITH_FACTORS: Presence = Presence::With(Form::Factors);
 
 /// A number of a body's profile.
@@ -273,7 +284,7 @@ macro_rules! profile_key {
 
 /// All numbers of a case, in the order of its file. The keys of a table stand side by side.
 #[rustfmt::skip]
-pub static KEYS: [Key; 41] = [
+pub static KEYS: [Key; 42] = [
     key!("roller.radius_m", "radius_m", "the roller's radius in metres", LENGTHS, "10e-3", ALWAYS,
         case.roller.radius_m),
     key!("roller.length_m", "roller_length_m", "the roller's length in metres", LENGTHS, "10e-3",
@@ -318,8 +329,19 @@ pub static KEYS: [Key; 41] = [
         .ruled("L_r = L1 / L2 lies between 1e-3 and 1e3", "write 1 for flush ends"),
     key!("dimensionless.eccentricity_m", "dimensionless_eccentricity_m", ECCENTRICITY, PLACES, "0.0",
         Presence::OptionalWith(Form::Factors), some .load.eccentricity_m),
-    key!("load.force_n", "force_n", "the load in newtons", FORCES, "1000.0", WITH_LOAD,
-        case.load.force_n),
+    key!("load.force_n", "force_n", "the load in newtons", FORCES, "1000.0", GIVES_LOAD,
+        |draft| Some(draft.case.load.force_n).filter(|_| draft.case.load.approach_m.is_none()),
+        |draft, value| {
+            draft.case.load.force_n = value;
+            draft.case.load.approach_m = None;
+        }),
+    key!("load.approach_m", "approach_m",
+        "the approach of points one roller radius below the surfaces, in metres,", APPROACHES, "5e-6",
+        GIVES_LOAD, |draft| draft.case.load.approach_m,
+        |draft, value| {
+            draft.case.load.force_n = f64::NAN;
+            draft.case.load.approach_m = Some(value);
+        }),
     key!("load.eccentricity_m", "eccentricity_m", ECCENTRICITY, PLACES, "0.0",
         Presence::OptionalWith(Form::Load), some .load.eccentricity_m),
     key!("pose.tilt_rad", "tilt_rad", "the tilt in radians", TILTS, "0.0", OPTIONAL,

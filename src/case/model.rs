@@ -37,15 +37,37 @@ pub struct Block {
     pub profile: Option<ProfileSpec>,
 }
 
-/// The load that presses the roller on the block.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// The load that presses the roller on the block: a force, or the approach that it is to cause.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
 pub struct Load {
-    /// Force (N), of the whole roller.
+    /// Force (N), of the whole roller; not a number where `approach_m` gives the load.
+    #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub force_n: f64,
+    /// Approach (m) of points one roller radius below the surfaces at the roller's middle, in place of
+    /// the force.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub approach_m: Option<f64>,
     /// y of the force's line of action from the roller's middle (m). The roller is then free to tilt;
     /// without it the tilt is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eccentricity_m: Option<f64>,
+}
+
+fn unknown() -> f64 {
+    f64::NAN
+}
+
+fn is_unknown(v: &f64) -> bool {
+    v.is_nan()
+}
+
+impl PartialEq for Load {
+    /// Forces that are not known are equal.
+    fn eq(&self, other: &Self) -> bool {
+        let Self { force_n, approach_m, eccentricity_m } = self;
+        let same_force = *force_n == other.force_n || force_n.is_nan() && other.force_n.is_nan();
+        same_force && *approach_m == other.approach_m && *eccentricity_m == other.eccentricity_m
+    }
 }
 
 /// How the bodies stand to each other.
@@ -211,7 +233,7 @@ impl Case {
             name: name.into(),
             roller: Roller { radius_m, length_m: f64::NAN, material: roller, profile: None },
             block: Block { length_m: f64::NAN, material: block, radius_m: None, profile: None },
-            load: Load { force_n: f64::NAN, eccentricity_m: None },
+            load: Load { force_n: f64::NAN, approach_m: None, eccentricity_m: None },
             pose: Pose::default(),
             sliding: Sliding::default(),
             fatigue: Fatigue::default(),
@@ -238,6 +260,14 @@ impl Case {
         self.roller.length_m = if ratio > 1.0 { shorter_m * ratio } else { shorter_m };
         self.block.length_m = if ratio > 1.0 { shorter_m } else { shorter_m / ratio };
         self.load.force_n = factors.load * e_star * radius_m * shorter_m;
+        self.load.approach_m = None;
+    }
+
+    /// The same case under another force (N), which takes the place of an approach.
+    #[must_use]
+    pub fn with_force(self, force_n: f64) -> Self {
+        let load = Load { force_n, approach_m: None, ..self.load };
+        Self { load, ..self }
     }
 
     /// E* (Pa).

@@ -86,7 +86,12 @@ fn form(form: Form) -> Value {
         if !asked.is_empty() {
             required.push(table);
         }
-        if !asked.is_empty() || !left.is_empty() {
+        let several = of_table.iter().filter(|key| key.is_of(form) && key.is_one_of_several());
+        let several: Vec<Value> = several.map(|key| json!({ "required": [key.leaf()] })).collect();
+        if !several.is_empty() {
+            required.push(table);
+            properties.insert(table.into(), json!({ "oneOf": several, "properties": left }));
+        } else if !asked.is_empty() || !left.is_empty() {
             properties.insert(table.into(), json!({ "required": asked, "properties": left }));
         }
     }

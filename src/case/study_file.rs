@@ -5,7 +5,7 @@ use super::case_file::{entries, name, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, read_text};
 use super::draft::{Draft, Form};
-use super::keys::{KEYS, Key, Presence};
+use super::keys::{KEYS, Key};
 use super::model::{Case, Factors};
 use crate::base::{Error, Result};
 use std::collections::BTreeSet;
@@ -126,6 +126,7 @@ impl Study {
         let mut names: BTreeSet<String> = self.cases().map(|c| c.name.clone()).collect();
         for entry in files {
             let case = listed_case(entry, folder)?;
+            entry.placed(case.check_force("every model would find another force"))?;
             if !names.insert(case.name.clone()) {
                 let reason = format!("the study has another case called {}", case.name);
                 return Err(entry.refuse(reason, "rename one of them"));
@@ -143,9 +144,8 @@ impl Study {
 
 /// The values that all cases of the design share.
 fn read_base(root: &Table, path: &Path) -> Result<Draft> {
-    let of_form =
-        |key: &&Key| matches!(key.presence, Presence::With(_) | Presence::OptionalWith(_));
-    let keys: Vec<&'static Key> = KEYS.iter().filter(|key| !of_form(key)).collect();
+    let of_both = |key: &&Key| key.is_of(Form::Load) && key.is_of(Form::Factors);
+    let keys: Vec<&'static Key> = KEYS.iter().filter(of_both).collect();
     let mut draft = Draft::new("base", Form::Factors);
     read_profiles(root, path, &mut draft)?;
     for (key, entry) in entries(root, &keys)? {

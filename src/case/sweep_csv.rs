@@ -2,7 +2,7 @@
 
 use super::document::nearest;
 use super::draft::{Draft, Form};
-use super::keys::{KEYS, Key, Presence};
+use super::keys::{KEYS, Key};
 use super::levels::MAX_ROWS;
 use super::model::Case;
 use super::sweep::{Column, Rows, Sweep};
@@ -54,7 +54,7 @@ impl Sweep {
             .collect::<Finding<Vec<_>>>()
             .map_err(in_header)?;
         let given = given_once(&columns).map_err(in_header)?;
-        let form = form_of(&given).map_err(in_header)?;
+        let form = form_of(&given, base).map_err(in_header)?;
         let base = match base {
             Some(case) => Draft::of(case, form),
             None => {
@@ -115,17 +115,26 @@ fn given_once(columns: &[Column]) -> Finding<Vec<&'static Key>> {
     Ok(given)
 }
 
-/// The form in which the columns give the load; factors if the base gives it.
-fn form_of(given: &[&Key]) -> Finding<Form> {
+/// The form in which the columns give the load; factors if the base gives it by a force.
+fn form_of(given: &[&Key], base: Option<&Case>) -> Finding<Form> {
+    let several: Vec<&str> =
+        given.iter().filter(|key| key.is_one_of_several()).map(|key| key.path).collect();
+    if let [first, second, ..] = several[..] {
+        let message = format!("gives the load twice, by {first} and by {second}");
+        return Err((message, "remove one of them".into()));
+    }
     let any_of = |form: Form| {
-        given.iter().any(|key| matches!(key.presence, Presence::With(own) | Presence::OptionalWith(own) if own == form))
+        let other = if form == Form::Load { Form::Factors } else { Form::Load };
+        given.iter().any(|key| key.is_of(form) && !key.is_of(other))
     };
+    let approached = base.is_some_and(|case| case.load.approach_m.is_some());
     match (any_of(Form::Factors), any_of(Form::Load)) {
         (true, true) => Err((
             "gives the load twice, by W, S_l, L_r and by force_n and lengths".into(),
             "keep the columns of one of the two".into(),
         )),
         (false, true) => Ok(Form::Load),
+        (false, false) if approached => Ok(Form::Load),
         _ => Ok(Form::Factors),
     }
 }
@@ -133,8 +142,11 @@ fn form_of(given: &[&Key]) -> Finding<Form> {
 /// Refuses a table without a base that lacks a required number.
 fn nothing_missing(given: &[&Key], form: Form) -> Finding<()> {
     let needed = |key: &&Key| key.is_of(form) && key.is_required();
-    let missing: Vec<&str> =
+    let mut missing: Vec<&str> =
         KEYS.iter().filter(needed).filter(|key| !given.contains(key)).map(|key| key.path).collect();
+    if form == Form::Load && !given.iter().any(|key| key.is_one_of_several()) {
+        missing.push("load.force_n");
+    }
     if missing.is_empty() {
         return Ok(());
     }

@@ -103,7 +103,9 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
         {
             Study::read(path)?.cases().cloned().collect()
         } else {
-            vec![Case::find(path)?]
+            let case = Case::find(path)?;
+            case.check_force("every model would find another force")?;
+            vec![case]
         };
         all.extend(found);
     }

@@ -102,6 +102,7 @@ impl StatedOptions {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
+    case.check_force("every model would find another force")?;
     let stated = arguments.stated.statements()?;
     let thresholds = match &arguments.gates {
         Some(path) => gate::parse(&read(path)?, path)?,

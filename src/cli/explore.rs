@@ -23,7 +23,9 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    let explorer = serve(Case::find(&arguments.case)?, arguments.port)?;
+    let case = Case::find(&arguments.case)?;
+    case.check_force("the page changes forces")?;
+    let explorer = serve(case, arguments.port)?;
     print(&format!("{}\n", explorer.link()))?;
     say(
         "open this link in the browser of this machine; Ctrl-C or closing the page ends the program",

@@ -58,6 +58,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let counts = places(&arguments)?;
     let _lock = Lock::claim(&arguments.out)?;
+    if case.load.approach_m.is_some() {
+        // Half-spaces are judged under the same force.
+        case = SolvedCase::new(&case, &Options::new(arguments.method))?.case().clone();
+    }
     let passages = |method: EdgeModel| -> Result<Passages> {
         let solved = SolvedCase::new(&case, &Options::new(method))?;
         let bodies = BodyKind::ALL.map(|body| Passage::new(&solved, body, counts)).to_vec();

@@ -131,19 +131,23 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if !arguments.cells.is_empty() {
         return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
     }
+    if arguments.uncertain.is_given() {
+        case.check_force("an uncertain case has a force")?;
+    }
     arguments.uncertain.inputs(&case)?;
     let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &options)?;
+    let case = solved.case();
     let mut more = match counts {
         Some(counts) => field::contents(&solved, counts)?,
         None => Vec::new(),
     };
     let found = solved.solution();
-    more.extend(pictures(&case, &found, &arguments)?);
-    more.extend(arguments.uncertain.contents(&case, arguments.method, &found.curves)?);
+    more.extend(pictures(case, &found, &arguments)?);
+    more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     solution::write(&found, &options, more, &arguments.out)?;
-    tell(&case, &found, &arguments)
+    tell(case, &found, &arguments)
 }
 
 /// The same on uniform cells.

@@ -35,7 +35,9 @@ pub fn case(body: &[u8], is_json: bool, own: &Case) -> Result<Case> {
         let own: Table = own.to_toml().parse().expect("a case writes TOML");
         only_own_texts("", &Value::Table(tables), &own)?;
     }
-    Case::parse(&text, path)
+    let case = Case::parse(&text, path)?;
+    case.check_force("the page changes forces")?;
+    Ok(case)
 }
 
 /// The same without members that are null: what is not given.

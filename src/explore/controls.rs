@@ -20,7 +20,7 @@ pub fn controls(own: &Case) -> Value {
         BUILTIN_CASES.iter().filter_map(|(name, text)| Case::parse(text, Path::new(name)).ok());
     json!({
         "version": env!("CARGO_PKG_VERSION"),
-        "keys": KEYS.iter().map(key).collect::<Vec<_>>(),
+        "keys": KEYS.iter().filter(|key| is_shown(key)).map(key).collect::<Vec<_>>(),
         "profiles": ProfileKind::ALL.map(|kind| json!({ "kind": kind.name(), "keys": kind.keys() })),
         "models": EdgeModel::ALL.map(|model| json!({ "name": model.name(), "misses": misses(model) })),
         "bodies": BodyKind::ALL.map(BodyKind::name),
@@ -37,6 +37,11 @@ pub fn controls(own: &Case) -> Value {
 /// The tolerance while a slider moves.
 const QUICK: f64 = 5e-3;
 
+/// Whether the page has a field for a key. Of those that exclude each other it has the force.
+fn is_shown(key: &Key) -> bool {
+    !key.is_one_of_several() || key.path == "load.force_n"
+}
+
 fn key(key: &Key) -> Value {
     let example: f64 = key.example.parse().expect("an example is a number");
     json!({
@@ -47,7 +52,7 @@ fn key(key: &Key) -> Value {
         "range": [key.range.0, key.range.1],
         "slider": slider(key, example),
         "example": example,
-        "required": key.is_required(),
+        "required": key.is_required() || key.is_one_of_several(),
         "forms": { "load": key.is_of(Form::Load), "factors": key.is_of(Form::Factors) },
     })
 }

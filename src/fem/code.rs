@@ -68,6 +68,7 @@ impl Code {
     /// # Errors
     /// [`Error::Value`] with the key of the case.
     pub fn check(self, case: &Case) -> Result<()> {
+        case.check_force("finite elements take a force")?;
         let refuse = |key: &str, value: String, reason: &str, remedy: &str| {
             let (reason, remedy) = (reason.to_string(), remedy.to_string());
             Err(Error::Value { key: key.to_string(), value, reason, remedy })

@@ -86,6 +86,7 @@ impl Default for CellOptions {
 /// # Errors
 /// [`Error::Value`] with what to do.
 pub fn check_cells(case: &Case) -> Result<()> {
+    case.check_force("cells take a force")?;
     let scene = Scene::new(case, EdgeModel::HalfSpace, None);
     if scene.slides {
         return Err(Error::Value {
@@ -119,8 +120,8 @@ pub fn solve_on_cells(
     progress: &dyn Fn(usize, f64),
 ) -> Result<CellSolution> {
     options.check(case)?;
-    let scene = Scene::new(case, options.method, options.psi);
     check_cells(case)?;
+    let scene = Scene::new(case, options.method, options.psi);
     let start = Instant::now();
     let half_width = case.cells.map(|cells| cells.half_width_m / case.hertz().c_m);
     let first = grid(&scene, cells.counts, half_width.unwrap_or(FIRST_WIDTH))?;

@@ -1,6 +1,7 @@
 //! From a case and an edge model to a solved case, its solution, and the main results of many
 //! cases.
 
+mod approached;
 mod cell_case;
 mod cells;
 pub mod edge;

@@ -116,7 +116,7 @@ impl Scene {
         } = case;
         let Roller { radius_m, length_m: roller_m, material: roller_material, profile: _ } = roller;
         let Block { length_m: block_m, material: block_material, radius_m: _, profile: _ } = block;
-        let Load { force_n: _, eccentricity_m } = load;
+        let Load { force_n: _, approach_m: _, eccentricity_m } = load;
         let Pose { tilt_rad, offset_m } = pose;
         let hertz = case.hertz();
         let c_m = hertz.c_m;

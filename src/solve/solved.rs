@@ -1,6 +1,7 @@
 //! A solved case: the scene's solution with the case's own scales and roller. It gives pressures
 //! and stresses at any points.
 
+use super::approached::{approach_m, with_force};
 use super::cells::{PressureCell, largest, pressure_cells};
 use super::edge::{Side, edge_strength};
 use super::extent::Extent;
@@ -67,12 +68,13 @@ impl SolvedCase {
     /// Solves the contact of `case`.
     ///
     /// # Errors
-    /// [`Error::Value`] when `options` name an unknown curve or a point outside its body;
-    /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`].
+    /// [`Error::Value`] when `options` name an unknown curve or a point outside its body, or where no legal
+    /// force causes the approach that the case asks for; [`Error::NotConverged`] and [`Error::Unsound`] as
+    /// [`SolvedScene::new`].
     pub fn new(case: &Case, options: &Options) -> Result<Self> {
         options.check(case)?;
-        let scene = SolvedScene::new(&Scene::new(case, options.method, options.psi))?;
-        Ok(Self::of_scene(case, options, Arc::new(scene)))
+        let (case, scene) = with_force(case, options)?;
+        Ok(Self::of_scene(&case, options, Arc::new(scene)))
     }
 
     /// A case whose scene is already solved.
@@ -81,7 +83,7 @@ impl SolvedCase {
         Self { case: case.clone(), options: options.clone(), hertz, scene }
     }
 
-    /// The case.
+    /// The case; with the force that was found, if the approach was given.
     pub fn case(&self) -> &Case {
         &self.case
     }
@@ -319,10 +321,4 @@ pub(super) fn most_stressed(curves: &[StressCurve], span: &Span) -> Option<Criti
     let values =
         away.map(|(body, (at, stress))| Critical { body, value: stress.von_mises(), at: *at });
     values.reduce(|best, next| if next.value > best.value { next } else { best })
-}
-
-/// Approach of points one roller radius below the surfaces (m).
-pub(super) fn approach_m(scene: &SolvedScene, case: &Case) -> f64 {
-    let (c_m, radius_m) = (case.hertz().c_m, case.roller.radius_m);
-    scene.approach(radius_m / c_m) * (c_m * c_m / (2.0 * case.equivalent_radius_m()))
 }

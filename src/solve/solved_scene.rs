@@ -111,6 +111,22 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
+        let soundness = SOUNDNESS * scene.tolerance.max(Resolution::FINEST);
+        Self::within(scene, resolution, soundness)
+    }
+
+    /// Solves a scene on the way to another one: it need not be sound.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`], but for the laws of contact.
+    pub(super) fn roughly(scene: &Scene) -> Result<Self> {
+        let end = scene.end(BodyKind::Block);
+        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
+        Self::within(scene, &resolution, f64::INFINITY)
+    }
+
+    /// Solves a scene that may violate the laws of contact by `soundness`.
+    fn within(scene: &Scene, resolution: &Resolution, soundness: f64) -> Result<Self> {
         let start = Instant::now();
         let unit = scene.own_unit();
         let (asked, scene) = (scene, &scene.scaled(1.0 / unit));
@@ -127,9 +143,7 @@ impl SolvedScene {
             let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices };
             line = search.settled(line)?.line;
         }
-        let tolerance = scene.tolerance;
-        let soundness = SOUNDNESS * tolerance.max(Resolution::FINEST);
-        let accuracy = Accuracy { tolerance, soundness };
+        let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
         let trial = Trial { scene, resolution, accuracy, gap: &gap, slices };
         let Settled { line, parts, contact, setup } = trial.settled(line)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;

@@ -100,10 +100,12 @@ fn case_of(sweep: &dyn Cases, i: usize, settings: &Settings) -> std::result::Res
 /// A shard has every n-th problem with all of its rows, so that no two shards solve the same
 /// problem.
 pub fn groups(sweep: &dyn Cases, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
-    let key = |case: Case| Scene::new(&case, settings.method, None).key();
+    // A force that has to be found first is found for a row alone.
+    let known = |case: &Case| case.load.approach_m.is_none();
+    let key = |case: Case| known(&case).then(|| Scene::new(&case, settings.method, None).key());
     let keys: Vec<Option<SceneKey>> = (0..sweep.rows())
         .into_par_iter()
-        .map(|i| case_of(sweep, i, settings).ok().map(key))
+        .map(|i| case_of(sweep, i, settings).ok().and_then(key))
         .collect();
     let groups = scenes(keys).into_iter().map(|rows| Group { rows }).collect::<Vec<_>>();
     let Some(shard) = shard else { return groups };
@@ -183,7 +185,9 @@ fn solve_rows(
         key_results(&cases, settings.method, |i, results| {
             if fault.is_ok() {
                 handed = i + 1;
-                fault = done(of[i], Ok((cases[i].clone(), results)));
+                // A force that was found becomes the case's.
+                let case = cases[i].clone().with_force(results.load_n);
+                fault = done(of[i], Ok((case, results)));
             }
         })
     }));

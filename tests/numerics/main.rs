@@ -1,6 +1,7 @@
 //! Tests of the numerics, which need the library alone.
 
 mod analytic;
+mod approached;
 mod benchmarks;
 mod cells;
 mod common;

@@ -78,6 +78,41 @@ fn bad_case_files_exit_with_two_and_leave_nothing() {
 }
 
 #[test]
+fn an_approach_gives_the_load_and_is_refused_where_a_force_is_needed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let good = include_str!("../../examples/crowned-eccentric.toml");
+    let text = good.replace("force_n = 5000.0", "approach_m = 8e-6");
+    std::fs::write(path.join("a.toml"), text).unwrap();
+    for (arguments, wanted) in [
+        (&["solve", "a.toml", "--engine", "cells"][..], "cells take a force"),
+        (&["solve", "a.toml", "--uncertain", "load_n=5%"], "an uncertain case has a force"),
+        (&["fem", "a.toml"], "finite elements take a force"),
+        (&["deck", "a.toml"], "finite elements take a force"),
+        (&["compare", "a.toml", "none.csv"], "every model would find another force"),
+        (&["explore", "a.toml"], "the page changes forces"),
+    ] {
+        let said = refused(path, arguments);
+        assert!(said.contains(wanted) && said.contains("give force_n instead"), "{said}");
+    }
+    assert_eq!(files(path), ["a.toml"]);
+    let solve = ["solve", "a.toml", "--tolerance", "5e-3", "--json"];
+    let run = edgeline(path, &solve).output().unwrap();
+    let found: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let of = |key: &str| found[key].as_f64().unwrap();
+    assert!((of("approach_m") / 8e-6 - 1.0).abs() < 5e-9, "{found}");
+    assert!(of("load_n") > 1e3 && of("load_n") < 1e4 && of("load_error_rel") < 1e-9, "{found}");
+    let sweep = "name,load.approach_m\na,8e-6\nb,4e-6\n";
+    std::fs::write(path.join("s.csv"), sweep).unwrap();
+    let arguments =
+        ["sweep", "s.csv", "--base", "a.toml", "--tolerance", "5e-3", "--out", "s.out.csv"];
+    assert!(edgeline(path, &arguments).output().unwrap().status.success());
+    let rows = rows(&path.join("s.out.csv"));
+    assert!((number(&rows[0], "load_n") / of("load_n") - 1.0).abs() < 1e-5, "{rows:?}");
+    assert!(number(&rows[1], "load_n") < 0.6 * number(&rows[0], "load_n"));
+}
+
+#[test]
 fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

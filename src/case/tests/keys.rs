@@ -22,7 +22,7 @@ fn every_field() -> Case {
             radius_m: Some(-0.05),
             profile: Some(every_number()),
         },
-        load: Load { force_n: 1e3, eccentricity_m: Some(1e-3) },
+        load: Load { force_n: 1e3, approach_m: None, eccentricity_m: Some(1e-3) },
         pose: Pose { tilt_rad: Some(1e-4), offset_m: 2e-3 },
         sliding: Sliding { friction: 0.2 },
         fatigue: Fatigue {
@@ -78,6 +78,10 @@ fn legal_with(key: &Key) -> Case {
         "tilt_rad" => case.load.eccentricity_m = None,
         _ => case.pose.tilt_rad = None,
     }
+    if key.path == "load.approach_m" {
+        case.load.approach_m = Some(5e-6);
+        case.load.force_n = f64::NAN;
+    }
     case.check().unwrap();
     case
 }
@@ -105,8 +109,9 @@ fn file_of(case: &Case) -> BTreeMap<String, f64> {
 fn every_number_of_a_case_file_is_a_key() {
     let case = every_field();
     let file = file_of(&case);
-    let mut keys: Vec<&str> =
-        KEYS.iter().filter(|key| key.is_of(Form::Load)).map(|key| key.path).collect();
+    // An approach takes the place of the force.
+    let of_file = |key: &&Key| key.is_of(Form::Load) && key.path != "load.approach_m";
+    let mut keys: Vec<&str> = KEYS.iter().filter(of_file).map(|key| key.path).collect();
     keys.sort_unstable();
     assert_eq!(keys, file.keys().map(String::as_str).collect::<Vec<_>>());
     for (path, value) in &file {
@@ -117,6 +122,38 @@ fn every_number_of_a_case_file_is_a_key() {
         let mut wanted = file.clone();
         wanted.insert(path.clone(), 1.01 * value);
         assert_eq!(file_of(&draft.case), wanted, "{path}");
+    }
+}
+
+#[test]
+fn force_and_approach_take_each_others_place() {
+    let [force, approach] =
+        ["load.force_n", "load.approach_m"].map(|path| Key::find(path).unwrap());
+    let mut draft = Draft::of(&every_field(), Form::Load);
+    assert_eq!((force.get(&draft), approach.get(&draft)), (Some(1e3), None));
+    approach.set(&mut draft, 4e-6);
+    assert_eq!((force.get(&draft), approach.get(&draft)), (None, Some(4e-6)));
+    let file = file_of(&draft.case);
+    assert_eq!((file.get("load.force_n"), file.get("load.approach_m")), (None, Some(&4e-6)));
+    force.set(&mut draft, 2e3);
+    assert_eq!((force.get(&draft), approach.get(&draft)), (Some(2e3), None));
+}
+
+#[test]
+fn forces_are_legal_between_their_limits_and_not_beyond() {
+    for radius_m in [None, Some(-0.0101), Some(1.0)] {
+        let mut case = legal_with(Key::find("load.force_n").unwrap());
+        case.block.radius_m = radius_m;
+        case.fatigue = Fatigue::default();
+        let [least, most] = case.legal_forces_n();
+        for (force_n, legal) in [
+            (least * 1.0001, true),
+            (most * 0.9999, true),
+            (least * 0.99, false),
+            (most * 1.01, false),
+        ] {
+            assert_eq!(case.clone().with_force(force_n).check().is_ok(), legal, "{force_n:e} N");
+        }
     }
 }
 

@@ -158,6 +158,13 @@ const LOADED_MISTAKES: &[Mistake] = &[
         "force_n = 1000\nunit = 1",
         "f.toml:13: unknown key load.unit; did you mean force_n?",
     ),
+    (
+        "force_n = 1000",
+        "force_n = 1000\napproach_m = 5e-6",
+        "f.toml:13: load.approach_m = 5e-6 is not valid: force_n gives the load already; remove force_n or",
+    ),
+    ("force_n = 1000", "eccentricity_m = 0", "f.toml:11: load.force_n is missing; add for example"),
+    ("force_n = 1000", "approach_m = -5e-6", "f.toml:12: load.approach_m = -5e-6 is not valid"),
 ];
 
 #[test]

@@ -1,0 +1,99 @@
+//! Loads that are given by the approach they cause.
+
+use crate::common::{case as plain, small};
+use edgeline::base::Result;
+use edgeline::body::EdgeModel;
+use edgeline::case::{Case, Load, ProfileKind, ProfileSpec};
+use edgeline::solve::{Options, Solution, solve};
+
+fn crowned(case: Case, radius_m: f64) -> Case {
+    let mut profile = ProfileSpec::new(ProfileKind::Crown);
+    profile.radius_m = Some(radius_m);
+    let mut case = case;
+    case.roller.profile = Some(profile);
+    case
+}
+
+/// The case whose load is the approach.
+fn approached(case: &Case, approach_m: f64) -> Case {
+    let load = Load { force_n: f64::NAN, approach_m: Some(approach_m), ..case.load };
+    let case = Case { load, ..case.clone() };
+    case.check().unwrap();
+    case
+}
+
+fn solved(case: &Case, method: EdgeModel) -> Result<Solution> {
+    solve(case, &Options { curves: Vec::new(), ..Options::new(method) })
+}
+
+/// The approach of a force gives the force: straight, longer than the block, crowned with ends inside, eccentric, tilted,
+/// offset, sliding, by several models and tolerances. Where rounding decides between two solutions of the contact, they
+/// are up to 4e-9 apart.
+#[test]
+fn the_approach_of_a_force_gives_the_force() {
+    let quarter = EdgeModel::QuarterSpace;
+    let coarse = || plain(5e-4, 5.0, 0.8).with_tolerance(5e-3);
+    let with = |case: Case, change: fn(&mut Case)| {
+        let mut case = case;
+        change(&mut case);
+        case
+    };
+    for (name, case, method) in [
+        ("straight", plain(5e-4, 5.0, 1.0), quarter),
+        ("half-space", coarse(), EdgeModel::HalfSpace),
+        ("a longer roller", plain(1e-4, 8.0, 1.5).with_tolerance(5e-3), EdgeModel::Guilbault),
+        ("ends inside", crowned(coarse(), 0.05), quarter),
+        (
+            "one end inside",
+            with(crowned(coarse(), 0.3), |case| case.load.eccentricity_m = Some(4e-4)),
+            quarter,
+        ),
+        ("eccentric", with(coarse(), |case| case.load.eccentricity_m = Some(2e-4)), quarter),
+        ("tilted", with(coarse(), |case| case.pose.tilt_rad = Some(2e-4)), EdgeModel::Mirror),
+        (
+            "offset and sliding",
+            with(coarse(), |case| {
+                case.pose.offset_m = 3e-4;
+                case.load.eccentricity_m = Some(1e-4);
+                case.sliding.friction = 0.2;
+            }),
+            quarter,
+        ),
+    ] {
+        let forward = solved(&case, method).unwrap().summary;
+        let back = solved(&approached(&case, forward.approach_m), method).unwrap().summary;
+        small(name, (back.load_n / case.load.force_n - 1.0).abs(), 5e-9);
+        small(name, (back.approach_m / forward.approach_m - 1.0).abs(), 5e-9);
+        small(name, (back.p_max_pa / forward.p_max_pa - 1.0).abs(), 1e-6);
+        small(name, (back.tilt_rad - forward.tilt_rad).abs() / 1e-4, 1e-5);
+    }
+}
+
+/// Hertz's elliptic contact far from the ends: the approach of its bodies grows with the force to the power 2/3, and a
+/// line contact's with nearly its first power. Between points at one depth the exponent is a little more.
+#[test]
+fn a_given_approach_is_met_over_decades() {
+    let case = crowned(plain(5e-4, 5.0, 1.0).with_tolerance(1e-2), 0.05);
+    let mut last: Option<[f64; 2]> = None;
+    for approach_m in [1e-7, 1e-6, 1e-5, 1e-4] {
+        let found = solved(&approached(&case, approach_m), EdgeModel::QuarterSpace).unwrap();
+        small("approach", (found.summary.approach_m / approach_m - 1.0).abs(), 5e-9);
+        let load = found.summary.load_n;
+        if let Some([was, at]) = last {
+            let power = (approach_m / at).ln() / (load / was).ln();
+            assert!((0.6..0.95).contains(&power), "{power} at {approach_m}");
+        }
+        last = Some([load, approach_m]);
+    }
+}
+
+#[test]
+fn an_approach_that_no_legal_force_causes_is_refused() {
+    let case = plain(5e-4, 5.0, 1.0).with_tolerance(1e-2);
+    for (approach_m, wanted) in [(0.5, "under the largest legal force"), (1e-12, "under the least")]
+    {
+        let said = solved(&approached(&case, approach_m), EdgeModel::Mirror).unwrap_err();
+        let said = said.to_string();
+        assert!(said.starts_with("load.approach_m = ") && said.contains(wanted), "{said}");
+    }
+}
