@@ -6,6 +6,7 @@ use super::keys::{KEYS, Key, others_of};
 use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::profile_table::read_profile_table;
+use super::surface::read_surface;
 use crate::base::{BodyKind, Result};
 use std::path::Path;
 use std::sync::Arc;
@@ -44,6 +45,7 @@ impl Case {
         let (form, load) = form(&root)?;
         let mut draft = Draft::new(name(&root)?, form);
         read_profiles(&root, path, &mut draft)?;
+        read_surface(&root, path, &mut draft)?;
         for (key, entry) in entries(&root, &keys_of(form))? {
             key.set(&mut draft, entry.number()?);
         }

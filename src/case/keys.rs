@@ -18,8 +18,8 @@ pub enum Presence {
     Optional,
     /// Never; where the load and the lengths are given in the other form it must not stand.
     OptionalWith(Form),
-    /// By its kind of profile, which may be without it.
-    Profile,
+    /// By its table, which need not be there: a number of a profile by its kind, which may be without it.
+    Table,
 }
 
 /// A number of a case.
@@ -52,6 +52,7 @@ pub(super) fn others_of(table: &str) -> &'static [&'static str] {
     match table {
         "roller" | "block" => &["profile"],
         "roller.profile" | "block.profile" => &["kind", "file"],
+        "surface" => &["heights", "detrend"],
         _ => &[],
     }
 }
@@ -82,7 +83,7 @@ impl Key {
     pub fn is_of(&self, form: Form) -> bool {
         let own = match self.presence {
             Presence::With(own) | Presence::OneOf(own) | Presence::OptionalWith(own) => own,
-            Presence::Always | Presence::Optional | Presence::Profile => form,
+            Presence::Always | Presence::Optional | Presence::Table => form,
         };
         own == form
     }
@@ -102,6 +103,7 @@ impl Key {
         let profile = match self.table() {
             "roller.profile" => &draft.case.roller.profile,
             "block.profile" => &draft.case.block.profile,
+            "surface" => return draft.case.surface.is_some(),
             _ => return self.is_of(draft.form()),
         };
         profile.as_ref().is_some_and(|p| p.kind.keys().contains(&self.leaf()))
@@ -248,7 +250,7 @@ macro_rules! profile_key {
         key!(
             concat!(stringify!($body), ".profile.", stringify!($field)),
             concat!(stringify!($body), "_profile_", stringify!($field)),
-            $what, $range, $example, Presence::Profile, some $body.profile.$field
+            $what, $range, $example, Presence::Table, some $body.profile.$field
         )
     };
     ($body:ident, radius_m) => {
@@ -282,9 +284,25 @@ macro_rules! profile_key {
     };
 }
 
+/// A number of the rough surface.
+macro_rules! surface_key {
+    ($field:ident, $what:literal) => {
+        key!(
+            concat!("surface.", stringify!($field)),
+            concat!("surface_", stringify!($field)),
+            $what,
+            LENGTHS,
+            "1e-6",
+            Presence::Table,
+            |draft| Some(draft.case.surface.as_ref()?.$field),
+            |draft, value| draft.case.surface.iter_mut().for_each(|s| s.$field = value)
+        )
+    };
+}
+
 /// All numbers of a case, in the order of its file. The keys of a table stand side by side.
 #[rustfmt::skip]
-pub static KEYS: [Key; 42] = [
+pub static KEYS: [Key; 44] = [
     key!("roller.radius_m", "radius_m", "the roller's radius in metres", LENGTHS, "10e-3", ALWAYS,
         case.roller.radius_m),
     key!("roller.length_m", "roller_length_m", "the roller's length in metres", LENGTHS, "10e-3",
@@ -350,6 +368,8 @@ pub static KEYS: [Key; 42] = [
         "0.0", OPTIONAL, case.pose.offset_m),
     key!("sliding.friction", "friction", "the friction, traction over pressure,", (0.0, 1.0), "0.1",
         OPTIONAL, case.sliding.friction),
+    surface_key!(dx_m, "the distance of the heights across the contact in metres"),
+    surface_key!(dy_m, "the distance of the heights along the contact in metres"),
     key!("fatigue.dang_van_alpha", "dang_van_alpha", "Dang Van's factor alpha", (0.0, 10.0), "0.3",
         OPTIONAL, some .fatigue.dang_van_alpha),
     key!("fatigue.dang_van_beta_pa", "dang_van_beta_pa", "Dang Van's limit beta in pascals", MODULI,

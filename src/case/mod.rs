@@ -16,6 +16,7 @@ mod profiles;
 mod schema;
 #[cfg(feature = "cli")]
 mod study_file;
+mod surface;
 #[cfg(feature = "cli")]
 mod sweep;
 #[cfg(feature = "cli")]
@@ -30,6 +31,7 @@ pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
 pub use profile::{ProfileKind, ProfileSpec};
+pub use surface::Surface;
 #[cfg(feature = "cli")]
 pub use {
     schema::case_schema,

@@ -2,6 +2,7 @@
 //! and each field is declared once. `keys.rs` lists their numbers.
 
 use super::profile::ProfileSpec;
+use super::surface::Surface;
 use crate::base::{BodyKind, HertzScales, Material};
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
@@ -181,6 +182,9 @@ pub struct Case {
     /// What measures of fatigue need to know.
     #[serde(default, skip_serializing_if = "Fatigue::is_none")]
     pub fatigue: Fatigue,
+    /// The rough surface, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub surface: Option<Surface>,
     /// The accuracy.
     pub accuracy: Accuracy,
     /// The cells, where the case says anything of them.
@@ -237,6 +241,7 @@ impl Case {
             pose: Pose::default(),
             sliding: Sliding::default(),
             fatigue: Fatigue::default(),
+            surface: None,
             accuracy: Accuracy::default(),
             cells: None,
         };

@@ -5,6 +5,7 @@ use super::draft::Form;
 use super::keys::{KEYS, Key, Presence};
 use super::profile::ProfileKind;
 use crate::base::BodyKind;
+use crate::cells::Detrend;
 use serde_json::{Map, Value, json};
 
 /// The schema of a case file, JSON Schema of 2020-12. It does not say what several numbers have to meet
@@ -33,8 +34,19 @@ pub fn case_schema() -> Value {
         push(&mut profile["required"], "kind");
         tables[body]["properties"]["profile"] = profile;
     }
+    let surface = &mut tables["surface"];
+    surface["properties"]["heights"] = json!({
+        "description": "The file of the heights, .npy or .csv, beside the case file.",
+        "type": "string",
+    });
+    surface["properties"]["detrend"] = json!({
+        "description": "What is taken off the heights; nothing without it.",
+        "enum": Detrend::ALL.map(Detrend::name),
+    });
+    ["heights", "dx_m", "dy_m"].iter().for_each(|key| push(&mut surface["required"], key));
     let needed = |(_, table): &(&String, &Value)| table["required"] != json!([]);
     let names = tables.iter().filter(needed).map(|(name, _)| name.as_str());
+    let names = names.filter(|name| *name != "surface");
     let required: Vec<&str> = std::iter::once("name").chain(names).collect();
     let mut properties = Map::from_iter([("name".to_string(), name())]);
     properties.extend(tables.clone());

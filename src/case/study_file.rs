@@ -200,7 +200,12 @@ fn listed_case(entry: &Entry, folder: &Path) -> Result<Case> {
     let listed = entry.string()?;
     let path: PathBuf = folder.join(listed);
     if path.is_file() {
-        return Case::read(&path);
+        let case = Case::read(&path)?;
+        if case.surface.is_some() {
+            let reason = "it has a [surface], and a study compares smooth contacts";
+            return Err(entry.refuse(reason, "remove it, and solve it by `edgeline solve`"));
+        }
+        return Ok(case);
     }
     builtin_case(listed).unwrap_or_else(|| {
         let reason = format!("there is no file {}", path.display());

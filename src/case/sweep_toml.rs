@@ -36,6 +36,12 @@ impl Sweep {
         let document = Document::parse(path, text)?;
         let root = document.root();
         only_tables(&root, &["name", "sweep"])?;
+        if let Some(surface) = root.get("surface") {
+            let reason = "a sweep solves contacts along a line, which are smooth";
+            return Err(
+                surface.refuse(reason, "remove it, and solve rough cases by `edgeline solve`")
+            );
+        }
         if let Some(entry) = root.get("name") {
             // The name is only for readers, but must be legal.
             entry.string()?;

@@ -5,13 +5,15 @@ use super::pressure::CellPressure;
 use crate::base::Panels;
 use crate::kernels::strip;
 use crate::stress::Load;
+use crate::stress::round::LocalContact;
 use nalgebra::DMatrix;
 
-/// The pressure of cells, even in x and y, at the nodes of an axis along the contact: uniform across each cell, and along the line the
-/// polynomials next to it by least squares.
+/// The part of the pressure of cells that is even in x, at the nodes of an axis along the contact: uniform across each cell,
+/// and along the line the polynomials next to it by least squares.
 #[derive(Debug)]
 pub struct Columns<'a> {
     axis: &'a Panels,
+    symmetric: bool,
     /// Outer edges x > 0 of the cells across.
     edges: Vec<f64>,
     /// The pressure as a sum of uniform ones up to each edge: a row for each node.
@@ -19,24 +21,41 @@ pub struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    /// The pressures of `cells`, even in x and y and in number, at the nodes of `axis`, which ends where they do.
-    pub fn new(cells: &CellPressure, axis: &'a Panels) -> Self {
-        let grid = &cells.grid;
-        let (a, b) = grid.half_sides();
-        let (nx, ny) = (grid.nx / 2, grid.ny / 2);
-        let mut steps = DMatrix::zeros(axis.len(), nx);
-        for (j, means) in means(axis, grid).iter().enumerate() {
-            let row = &cells.pressure[(ny + j) * grid.nx + nx..][..nx];
-            for &(node, mean) in means {
-                let share = 2.0 * b * mean / axis.weights()[node];
-                for (i, p) in row.iter().enumerate() {
-                    steps[(node, i)] += share * (p - row.get(i + 1).unwrap_or(&0.0));
-                }
-            }
-        }
-        let edges = (1..=nx).map(|i| 2.0 * a * i as f64).collect();
-        Self { axis, edges, steps }
+    /// The pressures of `cells` at the nodes of `axis`, which ends where they do; of a `symmetric` contact, with even numbers of cells, the
+    /// axis is the half y > 0.
+    pub fn new(cells: &CellPressure, axis: &'a Panels, symmetric: bool) -> Self {
+        let nx = cells.grid.nx;
+        let a = cells.grid.half_sides().0;
+        let count = nx - nx / 2;
+        let nodal =
+            at_nodes(cells, axis, symmetric, |row, i| 0.5 * (row[nx / 2 + i] + row[count - 1 - i]));
+        let next = |node: usize, i: usize| if i < count { nodal[(node, i)] } else { 0.0 };
+        let steps =
+            DMatrix::from_fn(axis.len(), count, |node, i| nodal[(node, i)] - next(node, i + 1));
+        let edges = (1..=count).map(|i| a * (2 * i - nx % 2) as f64).collect();
+        Self { axis, symmetric, edges, steps }
     }
+}
+
+/// What `of` makes of the rows of cells for each place across the right half, at the nodes of an axis.
+pub(super) fn at_nodes(
+    cells: &CellPressure,
+    axis: &Panels,
+    symmetric: bool,
+    of: impl Fn(&[f64], usize) -> f64,
+) -> DMatrix<f64> {
+    let grid = &cells.grid;
+    let (b, count) = (grid.half_sides().1, grid.nx - grid.nx / 2);
+    let first = if symmetric { grid.ny / 2 } else { 0 };
+    let mut nodal = DMatrix::zeros(axis.len(), count);
+    let rows = cells.pressure.chunks_exact(grid.nx).skip(first);
+    for (row, means) in rows.zip(means(axis, grid, symmetric)) {
+        for (node, mean) in means {
+            let share = 2.0 * b * mean / axis.weights()[node];
+            (0..count).for_each(|i| nodal[(node, i)] += share * of(row, i));
+        }
+    }
+    nodal
 }
 
 impl Load for Columns<'_> {
@@ -44,10 +63,26 @@ impl Load for Columns<'_> {
         self.axis
     }
 
+    fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// That of Hertz under the load at `y`.
+    fn local_contact(&self, y: f64) -> LocalContact {
+        let load = |j: usize| -> f64 {
+            self.edges
+                .iter()
+                .zip(self.steps.row(j).iter())
+                .map(|(edge, step)| 2.0 * edge * step)
+                .sum()
+        };
+        LocalContact::carrying(self.neighbours(y).into_iter().map(|(j, w)| w * load(j)).sum())
+    }
+
     fn at(&self, x: f64, y: f64) -> f64 {
         let i = self.edges.partition_point(|edge| *edge <= x.abs());
         let own = |(j, share): (usize, f64)| share * self.steps.row(j).iter().skip(i).sum::<f64>();
-        self.neighbours(y.abs()).into_iter().map(own).sum()
+        self.neighbours(y).into_iter().map(own).sum()
     }
 
     fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
@@ -76,9 +111,9 @@ mod tests {
         let grid = Grid::new(6, 8, 1.5, 4.0).unwrap();
         let across = [0.0, 0.25, 1.0, 1.0, 0.25, 0.0];
         let pressure = across.repeat(grid.ny);
-        let cells = CellPressure { grid, pressure, approach: 0.0, iterations: 0, residual: 0.0 };
+        let cells = CellPressure::of(grid, pressure);
         let axis = Panels::new(vec![0.0, 2.3, 3.5, 4.0], 4);
-        let columns = Columns::new(&cells, &axis);
+        let columns = Columns::new(&cells, &axis, true);
         let k = 1.3f64;
         let want = 2.0 * (0.75 * (0.5 * k).sin() + 0.25 * (1.0 * k).sin()) / k;
         for got in columns.transforms(&[k]).iter() {

@@ -10,9 +10,17 @@
 //! which is symmetric as R W^-1 is. R fades within a few 1/k of the ends, so few shapes along the line make up all of it: the
 //! eigenvectors of the sum of W^1/2 R W^-1/2 squared over the wavenumbers. Across the contact R is a convolution with r(x) = (1/pi^2) int_0^inf R(k) cos(k x) dk,
 //! taken at the cells' distances: it fades too slowly for a sum over the grid's own wavenumbers.
+//!
+//! Towards k = 0 R grows like 1 / k, too fast to be interpolated, for the two shapes of a rigid motion: a body of half-length H and of a
+//! plane wave's width is a plate, loaded on its edge. What it does is taken out in closed form, faded beyond 1 / H, and put
+//! back at all wavenumbers: uniform pressure displaces by pi / (k H) between any two places, and a moment turns the plate
+//! by 3 pi / (k H^3 (1 - nu) (3 + nu)) (Kirchhoff's plate w = (A + B k z) e^(-k z) cos k x under the moment M cos k x on its edge
+//! without shear, whose slope is 2 M / (D k (1 - nu) (3 + nu)) with the plate's stiffness D).
 
+use super::columns::Columns;
 use super::grid::Grid;
-use super::influence::EvenTransform;
+use super::influence::HalfTransform;
+use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
 use crate::contact;
@@ -20,12 +28,15 @@ use crate::stress::{Field, Load};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::f64::consts::PI;
+use std::ops::{AddAssign, Mul};
 
 /// A body with free end faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct FreeBody {
     /// Half-length H (C).
     pub half: f64,
+    /// Place y of its middle (C), from that of the cells.
+    pub middle: f64,
     /// Poisson's ratio.
     pub nu: f64,
     /// Share of the compliance.
@@ -44,92 +55,120 @@ const TOLERANCE: f64 = 1e-4;
 /// Shapes along the line that displace less than this part of the largest one are left out.
 const NEGLIGIBLE: f64 = 1e-5;
 
-/// A body with free ends at the coarse wavenumbers.
+/// A body with free ends at the coarse wavenumbers, and the same as a mirrored half-space.
 #[derive(Debug)]
 struct Freed {
     stack: Stack,
-    /// Share of the compliance of all bodies like this one.
-    share: f64,
+    mirrored: Stack,
+    /// What [`FreeEnds::long`] has of it, times k e^(k H).
+    long: DMatrix<f64>,
 }
 
-/// R(k) of all bodies together at some wavenumbers, on the nodes of panels along half of the contact.
+/// R(k) of all bodies together at some wavenumbers, on the nodes of panels along the contact.
 #[derive(Debug)]
 pub struct FreeEnds {
     axis: Panels,
+    /// Whether pressures are even in x and y, and the axis lies along half of the contact.
+    symmetric: bool,
     wavenumbers: Wavenumbers,
-    /// Bodies of one length and one Poisson's ratio are one.
+    /// Bodies of one place, one length and one Poisson's ratio are one.
     bodies: Vec<Freed>,
-    /// B, a column for each of the few shapes along the line that R consists of.
+    /// B, a column for each of the few shapes along the line that R consists of: those of rigid motions, then the others.
     basis: DMatrix<f64>,
-    /// r at the coarse wavenumbers, with (R - [`FreeEnds::uniform`]) W^-1 = B r B^T.
+    /// r at the coarse wavenumbers, with (R - [`FreeEnds::long`]) W^-1 = B r B^T.
     matrices: Vec<DMatrix<f64>>,
 }
 
 impl FreeEnds {
-    /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free ends.
-    pub fn new(half_length: f64, bodies: &[FreeBody]) -> Self {
+    /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free ends, under pressures that are even
+    /// in x and y if it is `symmetric`.
+    pub fn new(half_length: f64, bodies: &[FreeBody], symmetric: bool) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
-        let axis = resolution.contact_axis(half_length);
+        let axis = match symmetric {
+            true => resolution.contact_axis(half_length),
+            false => resolution.line_axis([-half_length, half_length]),
+        };
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest);
-        let mut distinct: Vec<FreeBody> = Vec::new();
-        for body in bodies {
-            match distinct.iter_mut().find(|b| b.half == body.half && b.nu == body.nu) {
-                Some(like) => like.share += body.share,
-                None => distinct.push(*body),
-            }
-        }
+        let distinct = distinct(bodies);
         let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
-        let pairs = distinct.iter().map(|&FreeBody { half, nu, share }| {
-            let (place, coarse) = ((0.0, Shape { half, nu }), wavenumbers.coarse().nodes());
-            let [stack, mirrored] = [FREED, MIRRORED]
-                .map(|end| Stack::new(&axis, (true, false), place, end, (&resolution, coarse)));
+        let bodies = distinct.iter().map(|own| {
+            let coarse = wavenumbers.coarse().nodes();
+            let place = (own.middle, Shape { half: own.half, nu: own.nu });
+            let [stack, mirrored] = [FREED, MIRRORED].map(|end| {
+                Stack::new(&axis, (symmetric, false), place, end, (&resolution, coarse))
+            });
             for (i, sum) in sums.iter_mut().enumerate() {
-                stack.add_compliance(i, share, sum);
-                mirrored.add_compliance(i, -share, sum);
+                stack.add_compliance(i, own.share, sum);
+                mirrored.add_compliance(i, -own.share, sum);
             }
-            Freed { stack, share }
+            Freed { stack, mirrored, long: long(own, symmetric) }
         });
-        let bodies = pairs.collect();
-        let basis = DMatrix::zeros(0, 0);
-        let mut ends = Self { bodies, axis, wavenumbers, basis, matrices: Vec::new() };
-        let roots =
-            DVector::from_iterator(ends.axis.len(), ends.axis.weights().iter().map(|w| w.sqrt()));
-        let nodes = ends.wavenumbers.coarse().nodes().iter();
-        let all: Vec<_> = nodes.zip(sums).map(|(k, sum)| ends.remainder(*k, sum, &roots)).collect();
-        let shapes = shapes(&all, ends.wavenumbers.coarse().weights());
-        ends.matrices = all.par_iter().map(|matrix| shapes.tr_mul(&(matrix * &shapes))).collect();
-        ends.basis = scaled(shapes, &roots, |value, root| value / root);
+        let bodies = bodies.collect();
+        let basis = rigid(&axis, symmetric);
+        let mut ends = Self { bodies, axis, symmetric, wavenumbers, basis, matrices: Vec::new() };
+        ends.compress(sums);
         ends
     }
 
-    /// W^1/2 (R - [`FreeEnds::uniform`]) W^-1/2 of the compliance `r` at `k`, with the square `roots` of the weights.
+    /// Finds the shapes that R(k), given at the coarse wavenumbers, consists of.
+    fn compress(&mut self, all: Vec<DMatrix<f64>>) {
+        let roots =
+            DVector::from_iterator(self.axis.len(), self.axis.weights().iter().map(|w| w.sqrt()));
+        let nodes = self.wavenumbers.coarse().nodes().iter();
+        let all: Vec<_> = nodes.zip(all).map(|(k, r)| self.remainder(*k, r, &roots)).collect();
+        let shapes = shapes(&all, self.wavenumbers.coarse().weights());
+        let (rigid, rank) = (self.basis.ncols(), self.basis.ncols() + shapes.ncols());
+        let matrix = |own: &DMatrix<f64>| {
+            let mut whole = DMatrix::zeros(rank, rank);
+            let own = shapes.tr_mul(&(own * &shapes));
+            whole.view_mut((rigid, rigid), own.shape()).copy_from(&own);
+            whole
+        };
+        self.matrices = all.par_iter().map(matrix).collect();
+        let mut basis = self.basis.clone().resize_horizontally(rank, 0.0);
+        let others = scaled(shapes, &roots, |value, root| value / root);
+        basis.columns_mut(rigid, others.ncols()).copy_from(&others);
+        self.basis = basis;
+    }
+
+    /// W^1/2 (R - [`FreeEnds::long`]) W^-1/2 of the compliance `r` at `k`, with the square `roots` of the weights.
     fn remainder(&self, k: f64, r: DMatrix<f64>, roots: &DVector<f64>) -> DMatrix<f64> {
         let columns = scaled(r.transpose(), roots, |value, root| value / root);
         let sum = scaled(columns.transpose(), roots, |value, root| value * root);
-        let uniform = roots * roots.transpose() * self.uniform(k);
+        let rigid = scaled(self.basis.clone(), roots, |value, root| value * root);
+        let long = &rigid * self.long(k) * rigid.transpose();
         // R is symmetric, but the strips in the place of far images carry the mean of a pressure: right
         // at the place that moves, not at the one that is pressed. The symmetric part therefore gets
         // the displacement by a uniform pressure.
         let symmetric = (&sum + sum.transpose()) * 0.5;
         let missing = (&sum - &symmetric) * roots / roots.norm_squared();
         let both = &missing * roots.transpose() + roots * missing.transpose();
-        symmetric + both - uniform
+        symmetric + both - long
     }
 
     /// Memory of the correction on `grid` (bytes).
     pub(super) fn bytes(&self, grid: &Grid) -> f64 {
-        8.0 * grid.nx as f64 * (self.matrices.len() + self.basis.ncols().pow(2)) as f64
+        let padded = if self.symmetric { 1.0 } else { 2.0 } * grid.nx as f64;
+        8.0 * padded * (self.matrices.len() + self.basis.ncols().pow(2)) as f64
     }
 
-    /// What long waves of uniform pressure displace in bodies that end, 2 pi / (k H) between any two places of the contact, faded beyond
-    /// 1/H: it grows too fast towards k = 0 to be interpolated.
-    fn uniform(&self, k: f64) -> f64 {
-        let of = |freed: &Freed| {
-            let half = freed.stack.body().half;
-            freed.share * 2.0 * PI / (k * half) * (-k * half).exp()
-        };
-        self.bodies.iter().map(of).sum()
+    /// Axis along the contact, or along its half.
+    pub(super) fn axis(&self) -> &Panels {
+        &self.axis
+    }
+
+    /// Whether pressures are even in x and y.
+    pub fn is_symmetric(&self) -> bool {
+        self.symmetric
+    }
+
+    /// What long waves displace in bodies that end, over the shapes of rigid motions.
+    fn long(&self, k: f64) -> DMatrix<f64> {
+        let rigid = self.bodies[0].long.nrows();
+        self.bodies
+            .iter()
+            .fold(DMatrix::zeros(rigid, rigid), |sum, own| sum + &own.long * own.fading(k))
     }
 
     /// The wavenumbers for fields over the cells of `grid`, which are padded to twice their extent.
@@ -137,14 +176,14 @@ impl FreeEnds {
         self.wavenumbers.resolving(4.0 * grid.half_width)
     }
 
-    /// Axis along half of the contact.
-    pub fn axis(&self) -> &Panels {
-        &self.axis
+    /// The pressures of `cells` on the nodes.
+    pub fn columns(&self, cells: &CellPressure) -> Columns<'_> {
+        Columns::new(cells, &self.axis, self.symmetric)
     }
 
-    /// Wavenumbers across the contact.
-    pub fn wavenumbers(&self) -> &Wavenumbers {
-        &self.wavenumbers
+    /// The moments of `pressure`, see [`Load::moments`].
+    pub fn moments(&self, pressure: &dyn Load) -> DMatrix<f64> {
+        pressure.moments(&self.wavenumbers)
     }
 
     /// Whether all bodies are alike.
@@ -152,30 +191,34 @@ impl FreeEnds {
         self.bodies.len() == 1
     }
 
-    /// The stresses in the body of half-length `half` (C) and Poisson's ratio `nu`, one of those given, under `pressure` with its
-    /// [`Load::moments`] over [`FreeEnds::wavenumbers`]; contributions below `tolerance` (p0) are neglected.
-    pub fn field<'a>(
+    /// The stresses in the body of half-length `half` (C), Poisson's ratio `nu` and its middle at `middle` (C), one of those given, under
+    /// `pressure` with its [`FreeEnds::moments`], by free ends and by mirrored ones; contributions below
+    /// `tolerance` (p0) are neglected.
+    pub fn fields<'a>(
         &'a self,
-        (half, nu): (f64, f64),
+        (half, nu, middle): (f64, f64, f64),
         pressure: &'a dyn Load,
         moments: &DMatrix<f64>,
         tolerance: f64,
-    ) -> Field<'a> {
+    ) -> [Field<'a>; 2] {
         let own = |freed: &&Freed| {
-            let body = freed.stack.body();
-            body.half == half && body.nu == nu
+            let (stack, body) = (&freed.stack, freed.stack.body());
+            body.half == half && body.nu == nu && stack.middle == middle
         };
         let freed = self.bodies.iter().find(own).expect("one of the bodies");
-        Field::new(&freed.stack, &self.wavenumbers, pressure, moments, None, tolerance)
+        [&freed.stack, &freed.mirrored]
+            .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance))
     }
 
     /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on
     /// `grid` has it; see [`contact::reference`].
     pub(super) fn reference(&self, pressure: &dyn Load, grid: &Grid, depth: f64) -> f64 {
         let wavenumbers = self.resolving(grid);
+        let rigid = self.bodies[0].long.nrows();
         let compliance = |(matrix, k): (&DMatrix<f64>, &f64)| {
-            let remainder = &self.basis * matrix * self.basis.transpose();
-            let mut whole = remainder.add_scalar(self.uniform(*k));
+            let mut own = matrix.clone();
+            own.view_mut((0, 0), (rigid, rigid)).copy_from(&self.long(*k));
+            let mut whole = &self.basis * own * self.basis.transpose();
             for (mut column, weight) in whole.column_iter_mut().zip(self.axis.weights()) {
                 column *= *weight;
             }
@@ -188,16 +231,18 @@ impl FreeEnds {
         contact::reference(&compliance, transform, depth)
     }
 
-    /// On the quarter of the cells of `grid`, for cosine transforms of length `mx` across the contact.
+    /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to
+    /// `mx` cells on either side.
     pub(super) fn on_cells(&self, grid: &Grid, mx: usize) -> EndCorrection {
         let (a, b) = grid.half_sides();
-        let rank = self.basis.ncols();
+        let (rank, rigid) = (self.basis.ncols(), self.bodies[0].long.nrows());
         let wavenumbers = self.resolving(grid);
-        // Of each coarse wavenumber, and each of the cells' own, the share in the latter's matrix.
+        // Of each coarse wavenumber, and of each body's long waves, the share in the matrix of each of
+        // the cells' own wavenumbers.
         let fine = wavenumbers.fine();
         let mut shares = vec![vec![0.0; mx + 1]; self.matrices.len()];
-        let mut uniform_shares = vec![0.0; mx + 1];
-        let mut transform = EvenTransform::new(mx);
+        let mut long_shares = vec![vec![0.0; mx + 1]; self.bodies.len()];
+        let mut transform = HalfTransform::new(mx);
         let add = |share: f64, wave: &[f64], into: &mut [f64]| {
             into.iter_mut().zip(wave).for_each(|(into, wave)| *into += share * wave);
         };
@@ -206,20 +251,29 @@ impl FreeEnds {
             let mut wave: Vec<f64> = (0..=mx)
                 .map(|d| (k * 2.0 * a * d as f64).cos() * weight * width / (PI * PI))
                 .collect();
-            transform.apply(&mut wave);
-            add(self.uniform(*k), &wave, &mut uniform_shares);
+            transform.even(&mut wave);
+            for (own, into) in self.bodies.iter().zip(&mut long_shares) {
+                add(own.fading(*k), &wave, into);
+            }
             let (first, interpolation) = wavenumbers.interpolation(i);
             for (share, into) in interpolation.iter().zip(&mut shares[first..]) {
                 add(*share, &wave, into);
             }
         }
-        // The transform back across the contact is mx times the sequence.
-        let scale = 2.0 * b / mx as f64;
-        let mut matrices = vec![0.0; mx * rank * rank];
+        let mut parts: Vec<(&[f64], DMatrix<f64>)> =
+            shares.iter().map(Vec::as_slice).zip(self.matrices.iter().cloned()).collect();
+        for (own, shares) in self.bodies.iter().zip(&long_shares) {
+            let mut matrix = DMatrix::zeros(rank, rank);
+            matrix.view_mut((0, 0), (rigid, rigid)).copy_from(&own.long);
+            parts.push((shares, matrix));
+        }
+        // The cosine transforms both ways across the contact make mx times the sequence, others 2 mx.
+        let (waves, both_ways) = if self.symmetric { (mx, mx) } else { (mx + 1, 2 * mx) };
+        let scale = 2.0 * b / both_ways as f64;
+        let mut matrices = vec![0.0; waves * rank * rank];
         matrices.par_chunks_mut(rank * rank).enumerate().for_each(|(k, into)| {
-            for (share, matrix) in shares.iter().zip(&self.matrices) {
-                let share = scale * share[k];
-                into.iter_mut().zip(matrix.as_slice()).for_each(|(sum, m)| *sum += share * m);
+            for (shares, matrix) in &parts {
+                add(scale * shares[k], matrix.as_slice(), into);
             }
         });
         let of_cell = |means: &Vec<(usize, f64)>| -> Vec<f64> {
@@ -227,13 +281,49 @@ impl FreeEnds {
                 |i: usize| means.iter().map(|(node, mean)| mean * self.basis[(*node, i)]).sum();
             (0..rank).map(shape).collect()
         };
-        EndCorrection {
-            shapes: means(&self.axis, grid).iter().flat_map(of_cell).collect(),
-            rank,
-            matrices,
-            uniform: uniform_shares.iter().map(|share| scale * share).collect(),
+        let means = means(&self.axis, grid, self.symmetric);
+        EndCorrection { shapes: means.iter().flat_map(of_cell).collect(), rank, matrices }
+    }
+}
+
+impl Freed {
+    /// e^(-k H) / k.
+    fn fading(&self, k: f64) -> f64 {
+        (-k * self.stack.body().half).exp() / k
+    }
+}
+
+/// The bodies that differ, with the shares of those like them.
+fn distinct(bodies: &[FreeBody]) -> Vec<FreeBody> {
+    let mut distinct: Vec<FreeBody> = Vec::new();
+    for body in bodies {
+        let like = |b: &&mut FreeBody| FreeBody { share: body.share, ..**b } == *body;
+        match distinct.iter_mut().find(like) {
+            Some(like) => like.share += body.share,
+            None => distinct.push(*body),
         }
     }
+    distinct
+}
+
+/// The shapes of rigid motions on the nodes of `axis`: 1, and y where pressures are not even.
+fn rigid(axis: &Panels, symmetric: bool) -> DMatrix<f64> {
+    let count = if symmetric { 1 } else { 2 };
+    DMatrix::from_fn(axis.len(), count, |node, i| if i == 0 { 1.0 } else { axis.nodes()[node] })
+}
+
+/// What a body's long waves displace over the shapes of rigid motions, times k.
+fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
+    let FreeBody { half, middle, nu, share } = *body;
+    let uniform = share * PI / half;
+    if symmetric {
+        // A node acts on both sides of the middle.
+        return DMatrix::from_element(1, 1, 2.0 * uniform);
+    }
+    let turned = 3.0 * share * PI / (half.powi(3) * (1.0 - nu) * (3.0 + nu));
+    let first = uniform + turned * middle * middle;
+    let mixed = -turned * middle;
+    DMatrix::from_row_slice(2, 2, &[first, mixed, mixed, turned])
 }
 
 /// The eigenvectors that all of the symmetric `matrices` consist of, those of the sum of their squares.
@@ -263,46 +353,50 @@ fn scaled(
     matrix
 }
 
-/// [`FreeEnds`] on the cells of a quarter, in the wavenumbers of their transform.
+/// [`FreeEnds`] on cells, in the wavenumbers of their transform.
 #[derive(Debug, Clone)]
 pub(super) struct EndCorrection {
     /// E B: for each cell along the line the mean of each shape.
     shapes: Vec<f64>,
     rank: usize,
-    /// For each wavenumber 2 b r.
+    /// For each wavenumber 2 b r, the long waves in it.
     matrices: Vec<f64>,
-    /// For each wavenumber 2 b times [`FreeEnds::uniform`].
-    uniform: Vec<f64>,
 }
+
+/// Numbers of a transform, real or complex.
+pub(super) trait Amplitude: Copy + Default + AddAssign + Mul<f64, Output = Self> {}
+
+impl<T: Copy + Default + AddAssign + Mul<f64, Output = T>> Amplitude for T {}
 
 impl EndCorrection {
     /// Adds the displacement that the pressures `p(j)` of wavenumber `k` cause to `out`.
-    pub(super) fn add(&self, k: usize, p: impl Fn(usize) -> f64, out: &mut [f64]) {
+    pub(super) fn add<T: Amplitude>(&self, k: usize, p: impl Fn(usize) -> T, out: &mut [T]) {
         let rank = self.rank;
-        let (mut loads, mut moved) = (vec![0.0; rank], vec![0.0; rank]);
-        let mut total = 0.0;
+        let (mut loads, mut moved) = (vec![T::default(); rank], vec![T::default(); rank]);
         for (j, shapes) in self.shapes.chunks_exact(rank).enumerate() {
             let p = p(j);
-            total += p;
-            loads.iter_mut().zip(shapes).for_each(|(load, shape)| *load += shape * p);
+            loads.iter_mut().zip(shapes).for_each(|(load, shape)| *load += p * *shape);
         }
         let matrix = &self.matrices[k * rank * rank..][..rank * rank];
         for (column, load) in matrix.chunks_exact(rank).zip(&loads) {
-            moved.iter_mut().zip(column).for_each(|(sum, m)| *sum += m * load);
+            moved.iter_mut().zip(column).for_each(|(sum, m)| *sum += *load * *m);
         }
-        let uniform = self.uniform[k] * total;
         for (out, shapes) in out.iter_mut().zip(self.shapes.chunks_exact(rank)) {
-            *out += uniform + shapes.iter().zip(&moved).map(|(shape, m)| shape * m).sum::<f64>();
+            shapes.iter().zip(&moved).for_each(|(shape, m)| *out += *m * *shape);
         }
     }
 }
 
-/// The means of the polynomials of `axis` over the cells on its half of the line.
-pub(super) fn means(axis: &Panels, grid: &Grid) -> Vec<Vec<(usize, f64)>> {
+/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact over those on the axis's half.
+pub(super) fn means(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<(usize, f64)>> {
     let length = 2.0 * grid.half_sides().1;
     let order = axis.order();
+    let (from, count) = match symmetric {
+        true => (0.0, grid.ny / 2),
+        false => (-grid.half_length, grid.ny),
+    };
     let of_cell = |j: usize| {
-        let cell = [length * j as f64, length * (j + 1) as f64];
+        let cell = [j, j + 1].map(|j| from + length * j as f64);
         let mut all = Vec::new();
         for panel in 0..axis.panel_count() {
             let [from, to] = axis.panel(panel);
@@ -320,7 +414,7 @@ pub(super) fn means(axis: &Panels, grid: &Grid) -> Vec<Vec<(usize, f64)>> {
         }
         all
     };
-    (0..grid.ny / 2).map(of_cell).collect()
+    (0..count).map(of_cell).collect()
 }
 
 #[cfg(test)]
@@ -331,7 +425,7 @@ mod tests {
     fn means_over_cells_are_those_of_polynomials() {
         let axis = Panels::new(vec![0.0, 1.7, 2.6, 3.0], 4);
         let grid = Grid::new(4, 10, 1.0, 3.0).unwrap();
-        let all = means(&axis, &grid);
+        let all = means(&axis, &grid, true);
         let cubic = |y: f64| y * (1.0 - 0.3 * y * y);
         let integral = |y: f64| 0.5 * y * y - 0.075 * y.powi(4);
         for (j, means) in all.iter().enumerate() {

@@ -44,10 +44,19 @@ struct RowCorners {
 pub struct FieldEnd {
     /// Half-length H of the body (C).
     pub half: f64,
+    /// Place y of its middle (C), from that of the cells.
+    pub middle: f64,
     /// Whether every cell has its image, of full weight, in both faces.
     pub mirrored: bool,
     /// Factor gamma of the [`transition`] with which the normal stress of a face is taken off; none without.
     pub gamma: Option<f64>,
+}
+
+impl FieldEnd {
+    /// y of both faces.
+    fn faces(&self) -> [f64; 2] {
+        [self.middle + self.half, self.middle - self.half]
+    }
 }
 
 impl CellField {
@@ -63,19 +72,20 @@ impl CellField {
             let corners = Arc::new(corners);
             let own = Row { y, sign: 1.0, corners };
             // On an end face a corner and its image cancel.
-            let on_face = |face: f64| (face - y).abs() <= SAME * half;
+            let on_face = |face: &f64| (face - y).abs() <= SAME * half;
+            let faces = end.faces();
             if !mirrored {
                 rows.push(own);
                 continue;
             }
-            if !on_face(half) && !on_face(-half) {
+            if !faces.iter().any(on_face) {
                 rows.push(own.clone());
             }
-            let faces = [half, -half].into_iter().filter(|face| !on_face(*face));
+            let faces = faces.into_iter().filter(|face| !on_face(face));
             rows.extend(faces.map(|face| Row { y: 2.0 * face - y, sign: -1.0, ..own.clone() }));
         }
         let pressures = solution.pressure.chunks_exact(grid.nx);
-        let even = pressures.clone().eq(pressures.rev());
+        let even = end.middle == 0.0 && pressures.clone().eq(pressures.rev());
         Self { rows, unit: (a * b).sqrt(), end, nu, even }
     }
 
@@ -87,18 +97,18 @@ impl CellField {
     pub fn at(&self, x: f64, y: f64, z: f64) -> StressTensor {
         let mut stress = self.mirrored(x, y, z);
         let Some(gamma) = self.end.gamma else { return stress };
-        let half = self.end.half;
-        let shares = [half, -half].map(|face| transition((face - y).abs(), z, gamma));
+        let faces = self.end.faces();
+        let shares = faces.map(|face| transition((face - y).abs(), z, gamma));
         let mut take = |share: f64, face: f64| {
             if share > 0.0 {
                 stress.yy -= share * self.mirrored(x, face, z).yy;
             }
         };
         if self.even {
-            take(shares[0] + shares[1], half);
+            take(shares[0] + shares[1], faces[0]);
         } else {
-            take(shares[0], half);
-            take(shares[1], -half);
+            take(shares[0], faces[0]);
+            take(shares[1], faces[1]);
         }
         stress
     }
@@ -153,11 +163,11 @@ mod tests {
     fn solution() -> CellPressure {
         let grid = Grid::new(6, 8, 1.2, 4.0).unwrap();
         let pressure = (0..grid.len()).map(|i| ((i * i) as f64).sin().max(0.0)).collect();
-        CellPressure { grid, pressure, approach: 0.0, iterations: 0, residual: 0.0 }
+        CellPressure::of(grid, pressure)
     }
 
     fn field(mirrored: bool, gamma: Option<f64>) -> CellField {
-        CellField::new(&solution(), FieldEnd { half: 4.0, mirrored, gamma }, 0.3)
+        CellField::new(&solution(), FieldEnd { half: 4.0, middle: 0.0, mirrored, gamma }, 0.3)
     }
 
     /// Love's rectangles, one by one.
@@ -183,8 +193,13 @@ mod tests {
         even.pressure = (0..48).map(|cell| p(cell % 6, cell / 6)).collect();
         for solution in [&skew, &even] {
             // Flush ends, a longer body, no images.
-            for (half, faces) in [(4.0, &[4.0, -4.0][..]), (5.3, &[5.3, -5.3]), (4.0, &[])] {
-                let end = FieldEnd { half, mirrored: !faces.is_empty(), gamma: None };
+            for (half, middle, faces) in [
+                (4.0, 0.0, &[4.0, -4.0][..]),
+                (5.3, 0.0, &[5.3, -5.3]),
+                (5.3, 0.7, &[6.0, -4.6]),
+                (4.0, 0.0, &[]),
+            ] {
+                let end = FieldEnd { half, middle, mirrored: !faces.is_empty(), gamma: None };
                 let field = CellField::new(solution, end, 0.3);
                 for at in [
                     [0.31, 3.4, 0.57],
@@ -207,7 +222,7 @@ mod tests {
         let mut even = solution();
         even.pressure =
             (0..48).map(|cell| ((cell / 6).min(7 - cell / 6) + cell % 6) as f64).collect();
-        let end = FieldEnd { half: 4.0, mirrored: true, gamma: Some(2.03) };
+        let end = FieldEnd { half: 4.0, middle: 0.0, mirrored: true, gamma: Some(2.03) };
         let both = CellField::new(&even, end, 0.3);
         let each = CellField { even: false, ..both.clone() };
         assert!(both.even && !field(true, None).even);

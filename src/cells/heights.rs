@@ -3,6 +3,8 @@
 use super::grid::Grid;
 use crate::base::{Error, Result};
 use crate::contact::Gap;
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 
 /// Heights of a surface over a regular grid, positive out of the body: sample (i, j) lies at x = (i - (nx - 1) / 2) dx and y
 /// alike, so that the middle of the samples is that of the contact.
@@ -12,16 +14,30 @@ pub struct Heights {
     /// dx and dy (m).
     steps_m: [f64; 2],
     /// Heights (m), y fastest.
-    values_m: Vec<f64>,
+    values_m: Arc<[f64]>,
 }
 
 /// What is taken off heights before they are used.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Detrend {
     /// Their mean.
     Mean,
     /// The plane that fits them best (least squares).
     Plane,
+}
+
+impl Detrend {
+    /// All of them.
+    pub const ALL: [Detrend; 2] = [Detrend::Mean, Detrend::Plane];
+
+    /// The name in case files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Detrend::Mean => "mean",
+            Detrend::Plane => "plane",
+        }
+    }
 }
 
 impl Heights {
@@ -58,7 +74,13 @@ impl Heights {
             let remedy = "fill holes before, for example with SurfaceTopography";
             return refuse("heights", value, "a finite height belongs here", remedy);
         }
-        Ok(Self { shape, steps_m, values_m })
+        Ok(Self { shape, steps_m, values_m: values_m.into() })
+    }
+
+    /// The same heights `steps_m` apart (m).
+    #[must_use]
+    pub fn with_steps(&self, steps_m: [f64; 2]) -> Self {
+        Self { steps_m, ..self.clone() }
     }
 
     /// Samples across and along.
@@ -88,7 +110,7 @@ impl Heights {
 
     /// The same heights without their mean or their plane.
     #[must_use]
-    pub fn without(mut self, what: Detrend) -> Self {
+    pub fn without(self, what: Detrend) -> Self {
         let [nx, ny] = self.shape;
         let count = (nx * ny) as f64;
         let mean = self.values_m.iter().sum::<f64>() / count;
@@ -104,10 +126,8 @@ impl Heights {
             Detrend::Mean => [0.0; 2],
             Detrend::Plane => [slope(&x), slope(&y)],
         };
-        for (at, height) in self.values_m.iter_mut().enumerate() {
-            *height -= mean + across * x(at) + along * y(at);
-        }
-        self
+        let rest = |(at, h): (usize, &f64)| h - (mean + across * x(at) + along * y(at));
+        Self { values_m: self.values_m.iter().enumerate().map(rest).collect(), ..self }
     }
 }
 
@@ -124,7 +144,7 @@ impl<'a> RoughGap<'a> {
     /// the unit of gaps, C^2 / (2 R) (m).
     ///
     /// # Errors
-    /// [`Error::Value`] where the samples do not reach the centres of all cells.
+    /// As [`Heights::check_covers`].
     pub fn new(
         smooth: &'a dyn Gap,
         heights: &'a Heights,
@@ -132,20 +152,32 @@ impl<'a> RoughGap<'a> {
         c_m: f64,
         unit_m: f64,
     ) -> Result<Self> {
+        heights.check_covers(grid, c_m)?;
+        Ok(Self { smooth, heights, c_m, unit_m })
+    }
+}
+
+impl Heights {
+    /// Refuses cells, in units of `c_m` (m), whose centres are not all within the samples.
+    ///
+    /// # Errors
+    /// [`Error::Value`] that names the direction.
+    pub fn check_covers(&self, grid: &Grid, c_m: f64) -> Result<()> {
         let (a, b) = grid.half_sides();
         let wanted = [grid.half_width - a, grid.half_length - b].map(|half| half * c_m);
-        let spans = heights.half_spans_m().into_iter().zip(wanted).zip(["x", "y"]);
+        let spans = self.half_spans_m().into_iter().zip(wanted).zip(["x", "y"]);
         for ((span, wanted), axis) in spans {
             if span < wanted * (1.0 - 1e-9) {
                 return Err(Error::Value {
-                    key: "heights".into(),
+                    key: "surface.heights".into(),
                     value: format!("{span:.3e} m on either side of the middle along {axis}"),
                     reason: format!("the cells reach {wanted:.3e} m"),
-                    remedy: "give more samples, or a smaller region of cells".into(),
+                    remedy: "give more samples, or check dx_m and dy_m; along x, [cells] half_width_m makes the region smaller"
+                        .into(),
                 });
             }
         }
-        Ok(Self { smooth, heights, c_m, unit_m })
+        Ok(())
     }
 }
 

@@ -5,6 +5,9 @@ use crate::base::{Error, Result};
 use crate::host::check_memory;
 use std::path::Path;
 
+/// Larger files are refused unread (bytes): more samples than cells can be.
+const MOST_BYTES: u64 = 1 << 30;
+
 /// Bytes for each byte of a file: itself and the numbers in it.
 const COPIES: f64 = 3.0;
 
@@ -20,11 +23,19 @@ impl Heights {
     /// x. Other formats go through SurfaceTopography, whose `Topography.heights()` numpy saves.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be read, [`Error::Memory`] before a file is read that is too large, [`Error::File`] when it has
+    /// [`Error::Io`] when it cannot be read, [`Error::File`] and [`Error::Memory`] before a file is read that is too large, [`Error::File`] when it has
     /// another format, and [`Error::Value`] as [`Heights::new`].
     pub fn read(path: &Path, steps_m: [f64; 2]) -> Result<Self> {
         let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
         let bytes = std::fs::metadata(path).map_err(io)?.len();
+        if bytes > MOST_BYTES {
+            return Err(Error::File {
+                path: path.to_path_buf(),
+                line: None,
+                message: format!("has {bytes} bytes; at most {MOST_BYTES} are read"),
+                remedy: "cut out the part within the contact, or keep every second sample".into(),
+            });
+        }
         check_memory(
             &format!("the surface {}", path.display()),
             COPIES * bytes as f64,

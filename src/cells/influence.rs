@@ -1,6 +1,7 @@
 //! What a cell and its images in the end faces displace, and the spectra of these kernels.
 
 use super::grid::Grid;
+use crate::base::Parity;
 use crate::kernels::deflection;
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
@@ -13,11 +14,21 @@ const SAME: f64 = 1e-9;
 /// Images of every cell in the two end faces of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Images {
-    /// Half-length H of the body (C): the end faces are at y = +-H.
+    /// Half-length H of the body (C): the end faces are H from its middle.
     pub half: f64,
+    /// Place y of its middle (C), from that of the cells.
+    pub middle: f64,
     /// Weight of an image in the displacement: the body's share of the compliance times psi, Eq. 3's
     /// (1 - nu^2) / E in parts of 1 / E*.
     pub weight: f64,
+}
+
+impl Images {
+    /// Twice the places of both faces: the image in the face at H of what acts at y' is at 2 H - y'. Each
+    /// with the weight.
+    pub(super) fn shifts(&self) -> [(f64, f64); 2] {
+        [1.0, -1.0].map(|side| (2.0 * (self.middle + side * self.half), self.weight))
+    }
 }
 
 /// Eq. 3: displacement u at the distance (`x`, `y`) from the centre of a cell of half-sides `a` and `b` under the unit
@@ -40,17 +51,26 @@ impl Table {
         Self::sum(grid, mx, my, &[(0.0, 1.0)])
     }
 
-    /// The displacements by a pressure that is mirrored in y = 0 and shifted to both faces of every body: an image
-    /// in the face at H of what acts at y' is at 2 H - y'.
-    pub(super) fn images(grid: &Grid, mx: usize, my: usize, images: &[Images]) -> Self {
-        let both = |i: &Images| [(2.0 * i.half, i.weight), (-2.0 * i.half, i.weight)];
-        Self::sum(grid, mx, my, &images.iter().flat_map(both).collect::<Vec<_>>())
+    /// The part that is even, or odd, in y of the displacements by a pressure that is mirrored in y = 0 and shifted to both
+    /// faces of every body. Without bodies off the cells' middle there is no odd part.
+    pub(super) fn images(
+        grid: &Grid,
+        mx: usize,
+        my: usize,
+        images: &[Images],
+        parity: Parity,
+    ) -> Self {
+        let both = |(shift, weight): (f64, f64)| {
+            [(shift, 0.5 * weight), (-shift, 0.5 * parity.sign() * weight)]
+        };
+        let shifts = images.iter().flat_map(Images::shifts).flat_map(both);
+        Self::sum(grid, mx, my, &shifts.collect::<Vec<_>>())
     }
 
     /// The displacement by an even pressure, whose images are shifted only.
     pub(super) fn even(grid: &Grid, mx: usize, my: usize, images: &[Images]) -> Self {
         let mut all = Self::direct(grid, mx, my);
-        let images = Self::images(grid, mx, my, images);
+        let images = Self::images(grid, mx, my, images, Parity::Even);
         all.values.iter_mut().zip(images.values).for_each(|(sum, image)| *sum += image);
         all
     }
@@ -79,35 +99,39 @@ impl Table {
         Self { mx, my, values }
     }
 
-    /// The transform of the table continued evenly to the periods 2 mx and 2 my, times `scale`: real, and even too. For
-    /// each wavenumber k <= mx in x those l <= my in y.
-    pub(super) fn spectrum(&self, scale: f64) -> Vec<f64> {
+    /// The transform of the table continued to the periods 2 mx and 2 my, times `scale`: evenly in x, in y with its own
+    /// `parity`. It has that parity too; that of an odd table is imaginary, and this its imaginary part. For each
+    /// wavenumber k <= mx in x those l <= my in y.
+    pub(super) fn spectrum(&self, parity: Parity, scale: f64) -> Vec<f64> {
         let (nx, ny) = (self.mx + 1, self.my + 1);
         let mut along_x = self.values.clone();
         along_x
             .par_chunks_mut(nx)
-            .for_each_init(|| EvenTransform::new(self.mx), |t, row| t.apply(row));
+            .for_each_init(|| HalfTransform::new(self.mx), |t, row| t.even(row));
         let mut spectrum = vec![0.0; nx * ny];
         spectrum.par_chunks_mut(ny).enumerate().for_each_init(
-            || EvenTransform::new(self.my),
+            || HalfTransform::new(self.my),
             |transform, (k, row)| {
                 row.iter_mut().enumerate().for_each(|(j, v)| *v = scale * along_x[j * nx + k]);
-                transform.apply(row);
+                match parity {
+                    Parity::Even => transform.even(row),
+                    Parity::Odd => transform.odd(row),
+                }
             },
         );
         spectrum
     }
 }
 
-/// The transform of real sequences x_0 to x_m that are continued evenly to the period 2 m (DCT-I).
-pub(super) struct EvenTransform {
+/// The transforms of real sequences x_0 to x_m that are continued to the period 2 m.
+pub(super) struct HalfTransform {
     plan: std::sync::Arc<dyn realfft::RealToComplex<f64>>,
     period: Vec<f64>,
     spectrum: Vec<Complex<f64>>,
     work: Vec<Complex<f64>>,
 }
 
-impl EvenTransform {
+impl HalfTransform {
     /// Of sequences up to x_m.
     pub(super) fn new(m: usize) -> Self {
         let plan = RealFftPlanner::new().plan_fft_forward(2 * m);
@@ -116,15 +140,27 @@ impl EvenTransform {
         Self { plan, period, spectrum, work }
     }
 
-    /// The transform of `x`, in place.
-    pub(super) fn apply(&mut self, x: &mut [f64]) {
+    /// The transform of `x` continued evenly (DCT-I), in place.
+    pub(super) fn even(&mut self, x: &mut [f64]) {
+        self.transform(x, 1.0);
+        x.iter_mut().zip(&self.spectrum).for_each(|(x, s)| *x = s.re);
+    }
+
+    /// The imaginary part of the transform of `x` continued oddly (DST-I), in place; x_0 and x_m count as zero.
+    pub(super) fn odd(&mut self, x: &mut [f64]) {
+        let m = x.len() - 1;
+        (x[0], x[m]) = (0.0, 0.0);
+        self.transform(x, -1.0);
+        x.iter_mut().zip(&self.spectrum).for_each(|(x, s)| *x = s.im);
+    }
+
+    fn transform(&mut self, x: &[f64], sign: f64) {
         let m = x.len() - 1;
         self.period[..=m].copy_from_slice(x);
-        (1..m).for_each(|i| self.period[2 * m - i] = x[i]);
+        (1..m).for_each(|i| self.period[2 * m - i] = sign * x[i]);
         self.plan
             .process_with_scratch(&mut self.period, &mut self.spectrum, &mut self.work)
             .expect("lengths are the plan's");
-        x.iter_mut().zip(&self.spectrum).for_each(|(x, s)| *x = s.re);
     }
 }
 
@@ -137,24 +173,28 @@ mod tests {
         let grid = Grid::new(4, 6, 1.2, 3.0).unwrap();
         let cell = grid.half_sides();
         // One body whose ends are the contact's, one that is not a whole number of cells long.
-        let images = [Images { half: 3.0, weight: 0.7 }, Images { half: 4.17, weight: 0.6 }];
-        let table = Table::images(&grid, 4, 6, &images);
+        let images = [
+            Images { half: 3.0, middle: 0.0, weight: 0.7 },
+            Images { half: 4.17, middle: 0.4, weight: 0.6 },
+        ];
+        let [even, odd] = Parity::BOTH.map(|parity| Table::images(&grid, 4, 6, &images, parity));
         for (i, j, k) in [(0, 0, 0), (3, 2, 5), (1, 5, 5)] {
             // From (x, y) = cell (0, k) to cell (i, j).
             let (x, y, from) = (grid.x(i) - grid.x(0), grid.y(j), grid.y(k));
             let image = |i: &Images| {
-                let face = |h: f64| influence(x, y - (2.0 * h - from), cell);
+                let face = |h: f64| influence(x, y - (2.0 * (i.middle + h) - from), cell);
                 i.weight * (face(i.half) + face(-i.half))
             };
             let want: f64 = images.iter().map(image).sum();
             // Mirrored in y = 0 it is at -from, in cell ny - 1 - k.
-            let apart = j.abs_diff(grid.ny - 1 - k);
-            let got = table.values[apart * 5 + i];
+            let mirrored = grid.ny - 1 - k;
+            let (at, sign) = (j.abs_diff(mirrored) * 5 + i, if j < mirrored { -1.0 } else { 1.0 });
+            let got = even.values[at] + sign * odd.values[at];
             assert!((got / want - 1.0).abs() < 1e-13, "{got} {want}");
         }
-        let even = Table::even(&grid, 4, 6, &images);
+        let both = Table::even(&grid, 4, 6, &images);
         let direct = influence(grid.x(3) - grid.x(0), grid.y(4) - grid.y(0), cell);
-        let want = direct + table.values[4 * 5 + 3];
-        assert!((even.values[4 * 5 + 3] / want - 1.0).abs() < 1e-14);
+        let want = direct + even.values[4 * 5 + 3];
+        assert!((both.values[4 * 5 + 3] / want - 1.0).abs() < 1e-14);
     }
 }

@@ -14,6 +14,8 @@ pub struct CellPressure {
     pub pressure: Vec<f64>,
     /// Approach of far points (C^2 / (2 R)).
     pub approach: f64,
+    /// Tilt of far points (C / (2 R)): that which is held, or the one that the load's arm causes.
+    pub tilt: f64,
     /// Applications of the compliance on the finest grid.
     pub iterations: usize,
     /// Relative residual.
@@ -21,6 +23,12 @@ pub struct CellPressure {
 }
 
 impl CellPressure {
+    /// Pressures without a contact that they belong to.
+    #[cfg(test)]
+    pub(super) fn of(grid: Grid, pressure: Vec<f64>) -> Self {
+        Self { grid, pressure, approach: 0.0, tilt: 0.0, iterations: 0, residual: 0.0 }
+    }
+
     /// Real contact area (C^2): that of the cells under pressure.
     pub fn contact_area(&self) -> f64 {
         let (a, b) = self.grid.half_sides();
@@ -60,7 +68,7 @@ mod tests {
         let grid = Grid::new(4, 4, 1.0, 2.0).unwrap();
         let mut pressure = vec![0.0; 16];
         (pressure[1], pressure[5], pressure[6], pressure[11]) = (0.1, 0.4, 0.9, 1.0);
-        let cells = CellPressure { grid, pressure, approach: 0.0, iterations: 0, residual: 0.0 };
+        let cells = CellPressure::of(grid, pressure);
         assert_eq!((cells.contact_area(), cells.histogram(4)), (2.0, vec![0.25, 0.25, 0.0, 0.5]));
         assert_eq!(cells.at(0.2, 0.9), 0.0);
         assert_eq!(

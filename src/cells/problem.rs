@@ -1,6 +1,5 @@
 //! A contact on a grid of cells, from the gap to the pressures.
 
-use super::columns::Columns;
 use super::convolution::EvenConvolution;
 use super::cosine::good_length;
 use super::depth;
@@ -11,7 +10,7 @@ use super::linear::Linear;
 use super::pressure::CellPressure;
 use super::solver::{Complementarity, State};
 use super::whole::WholeConvolution;
-use crate::base::{Error, Result};
+use crate::base::{Error, Parity, Result};
 use crate::contact::Gap;
 use crate::host::check_memory;
 use std::f64::consts::PI;
@@ -36,14 +35,25 @@ pub struct CellProblem {
     pub grid: Grid,
     /// The images of every cell, for each body that has some.
     pub images: Vec<Images>,
-    /// What ends that are free of traction add to images of full weight. Symmetric contacts only.
+    /// What ends that are free of traction add to images of full weight.
     pub free: Option<Arc<FreeEnds>>,
     /// Load (C^2 p0); (pi / 2) times the length of the contact for the Hertz pressure p0.
     pub load: f64,
+    /// The tilt.
+    pub tilt: CellTilt,
     /// Relative residual of the iteration.
     pub tolerance: f64,
     /// Most applications of the compliance on the finest grid.
     pub most_iterations: usize,
+}
+
+/// What is known of the bodies' tilt, of far points as the approach is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum CellTilt {
+    /// It is held (C / (2 R)).
+    Held(f64),
+    /// It is free, and the load's line of action lies at this y (C).
+    Free(f64),
 }
 
 /// Whether a field is even in x and y, so that a quarter of it tells all.
@@ -89,19 +99,21 @@ impl CellProblem {
             BYTES * 4.0 * grid.len() as f64 + ends,
             "ask for fewer cells",
         )?;
+        let gap = &Tilted { gap, tilt: self.tilt };
         let gaps = grid.sample(|x, y| gap.at(x, y));
-        let symmetry = symmetry(grid, &gaps);
-        if symmetry == Symmetry::None && self.free.is_some() {
+        let symmetry = self.symmetry(&gaps);
+        let quarter = self.free.as_ref().is_some_and(|free| free.is_symmetric());
+        if symmetry == Symmetry::None && quarter {
             return Err(Error::Value {
-                key: "method".into(),
-                value: "quarter-space".into(),
-                reason: "on cells it takes contacts that are symmetric in x and y only".into(),
-                remedy: "take even numbers of cells, or another method".into(),
+                key: "free ends".into(),
+                value: "those of a symmetric contact".into(),
+                reason: "the contact is not symmetric in x and y".into(),
+                remedy: "build them for any pressure".into(),
             });
         }
         let level = Level { gap, symmetry, ends: self.free.as_deref(), progress };
         let state = self.solve_level(&level, gaps, *grid, self.tolerance)?;
-        let State { pressure, approach, residual, iterations } = state;
+        let State { pressure, motion, residual, iterations } = state;
         if residual.is_nan() || residual > self.tolerance {
             return Err(Error::NotConverged {
                 iterations,
@@ -111,7 +123,21 @@ impl CellProblem {
         }
         let pressure = unfold(grid, symmetry, pressure);
         check_covered(grid, &pressure)?;
-        Ok(CellPressure { grid: *grid, pressure, approach, iterations, residual })
+        let tilt = match self.tilt {
+            CellTilt::Held(tilt) => tilt,
+            CellTilt::Free(_) => motion.tilt,
+        };
+        let approach = motion.approach;
+        Ok(CellPressure { grid: *grid, pressure, approach, tilt, iterations, residual })
+    }
+
+    /// The symmetry of a contact with these `gaps`.
+    fn symmetry(&self, gaps: &[f64]) -> Symmetry {
+        let apart = |images: &Images| images.middle != 0.0;
+        let skew = self.images.iter().any(apart)
+            || matches!(self.tilt, CellTilt::Free(_))
+            || self.free.as_ref().is_some_and(|free| !free.is_symmetric());
+        if skew { Symmetry::None } else { symmetry(&self.grid, gaps) }
     }
 
     /// Solves on `grid`, from what a grid of half as many cells in each direction gives.
@@ -142,13 +168,22 @@ impl CellProblem {
                 inverse(&grid, [nx / 2, ny / 2], 0.5),
                 0.25,
             ),
-            Symmetry::None => (Box::new(self.whole(&grid)), inverse(&grid, [nx, ny], 1.0), 1.0),
+            Symmetry::None => {
+                let whole = self.whole(&grid, level.ends);
+                (Box::new(whole), inverse(&grid, [nx, ny], 1.0), 1.0)
+            }
+        };
+        let total = share * self.load / (4.0 * a * b);
+        let arms = match self.tilt {
+            CellTilt::Held(_) => None,
+            CellTilt::Free(arm) => Some((grid.sample(|_, y| y), arm * total)),
         };
         let mut problem = Complementarity {
             displacement: &mut *displacement,
             inverse: &mut inverse,
             gap: &fold(&grid, symmetry, gaps),
-            total: share * self.load / (4.0 * a * b),
+            total,
+            arms: arms.as_ref().map(|(arms, moment)| (&arms[..], *moment)),
         };
         let start = fold(&grid, symmetry, start);
         Ok(problem.solve(start, tolerance, self.most_iterations, level.progress))
@@ -157,11 +192,11 @@ impl CellProblem {
     /// Mean displacement along the line (C^2 / (2 R)) that `solution` and its images cause at `depth` (C): the approach
     /// less this is that of points at the depth.
     pub fn mean_displacement(&self, solution: &CellPressure, depth: f64) -> f64 {
-        let both = |i: &Images| [(2.0 * i.half, i.weight), (-2.0 * i.half, i.weight)];
-        let shifts: Vec<(f64, f64)> = self.images.iter().flat_map(both).collect();
-        let ends = self.free.as_ref().map_or(0.0, |free| {
-            free.reference(&Columns::new(solution, free.axis()), &self.grid, depth)
-        });
+        let shifts: Vec<(f64, f64)> = self.images.iter().flat_map(Images::shifts).collect();
+        let ends = self
+            .free
+            .as_ref()
+            .map_or(0.0, |free| free.reference(&free.columns(solution), &self.grid, depth));
         depth::mean(solution, &shifts, depth) + ends
     }
 
@@ -169,21 +204,40 @@ impl CellProblem {
     fn even(&self, grid: &Grid, ends: Option<&FreeEnds>) -> EvenConvolution {
         let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
         let scale = 1.0 / (mx * my) as f64;
-        let spectrum = Table::even(grid, mx, my, &self.images).spectrum(scale);
+        let spectrum = Table::even(grid, mx, my, &self.images).spectrum(Parity::Even, scale);
         let ends = ends.map(|ends| ends.on_cells(grid, mx));
         EvenConvolution::new([grid.nx / 2, grid.ny / 2], [mx, my], spectrum, ends)
     }
 
     /// Eq. 2 for any pressure.
-    fn whole(&self, grid: &Grid) -> WholeConvolution {
+    fn whole(&self, grid: &Grid, ends: Option<&FreeEnds>) -> WholeConvolution {
         let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
         let scale = 1.0 / (4 * mx * my) as f64;
-        let direct = Table::direct(grid, mx, my).spectrum(scale);
-        let images = match self.images.is_empty() {
-            true => Vec::new(),
-            false => Table::images(grid, mx, my, &self.images).spectrum(scale),
+        let direct = Table::direct(grid, mx, my).spectrum(Parity::Even, scale);
+        let apart = self.images.iter().any(|images| images.middle != 0.0);
+        let images = Parity::BOTH.map(|parity| match parity {
+            Parity::Even if self.images.is_empty() => Vec::new(),
+            Parity::Odd if !apart => Vec::new(),
+            _ => Table::images(grid, mx, my, &self.images, parity).spectrum(parity, scale),
+        });
+        let ends = ends.map(|ends| ends.on_cells(grid, mx));
+        WholeConvolution::new([grid.nx, grid.ny], [mx, my], direct, images, ends)
+    }
+}
+
+/// A gap with a tilt that is held.
+struct Tilted<'a> {
+    gap: &'a dyn Gap,
+    tilt: CellTilt,
+}
+
+impl Gap for Tilted<'_> {
+    fn at(&self, x: f64, y: f64) -> f64 {
+        let closed = match self.tilt {
+            CellTilt::Held(tilt) => tilt * y,
+            CellTilt::Free(_) => 0.0,
         };
-        WholeConvolution::new([grid.nx, grid.ny], [mx, my], direct, images)
+        self.gap.at(x, y) - closed
     }
 }
 
@@ -286,13 +340,25 @@ mod tests {
     fn problem(nx: usize, ny: usize, images: Vec<Images>) -> CellProblem {
         let grid = Grid::new(nx, ny, 1.6, 3.0).unwrap();
         let load = 0.5 * PI * 2.0 * grid.half_length;
-        CellProblem { grid, images, free: None, load, tolerance: 1e-12, most_iterations: 500 }
+        let tilt = CellTilt::Held(0.0);
+        CellProblem { grid, images, free: None, load, tilt, tolerance: 1e-12, most_iterations: 500 }
     }
 
     /// One body that ends with the contact, one that goes on for a while, by Guilbault's psi.
     fn guilbault() -> Vec<Images> {
         [(3.0, 0.3, 0.55), (4.37, 0.2, 0.45)]
-            .map(|(half, nu, share)| Images { half, weight: share * guilbault_psi(nu) })
+            .map(|(half, nu, share)| Images {
+                half,
+                middle: 0.0,
+                weight: share * guilbault_psi(nu),
+            })
+            .to_vec()
+    }
+
+    /// Two bodies beside each other.
+    fn offset() -> Vec<Images> {
+        [(3.5, 0.5, 0.8), (4.2, -0.7, 0.6)]
+            .map(|(half, middle, weight)| Images { half, middle, weight })
             .to_vec()
     }
 
@@ -302,25 +368,30 @@ mod tests {
         let at = |cell: usize| (grid.x(cell % grid.nx), grid.y(cell / grid.nx));
         DMatrix::from_fn(grid.len(), grid.len(), |row, column| {
             let ((x, y), (from_x, from_y)) = (at(row), at(column));
-            let faces =
-                problem.images.iter().flat_map(|i| [(i.half, i.weight), (-i.half, i.weight)]);
-            let image = |(h, weight): (f64, f64)| {
-                weight * influence(x - from_x, y - (2.0 * h - from_y), cell)
+            let faces = problem.images.iter().flat_map(|i| [(i, i.half), (i, -i.half)]);
+            let image = |(i, half): (&Images, f64)| {
+                let image = 2.0 * (i.middle + half) - from_y;
+                i.weight * influence(x - from_x, y - image, cell)
             };
             influence(x - from_x, y - from_y, cell) + faces.map(image).sum::<f64>()
         })
     }
 
     /// The contact by elimination on sets of cells that change until they are right.
-    fn dense_solution(problem: &CellProblem, gap: &dyn Gap) -> (Vec<f64>, f64) {
+    fn dense_solution(problem: &CellProblem, gap: &dyn Gap) -> (Vec<f64>, [f64; 2]) {
         let matrix = dense(problem);
         let gaps = problem.grid.sample(|x, y| gap.at(x, y));
         let (a, b) = problem.grid.half_sides();
         let mut set: Vec<usize> = (0..gaps.len()).collect();
         loop {
             let n = set.len();
-            let mut system = DMatrix::zeros(n + 1, n + 1);
-            let mut right = DMatrix::zeros(n + 1, 1);
+            let free = match problem.tilt {
+                CellTilt::Held(_) => None,
+                CellTilt::Free(arm) => Some(arm),
+            };
+            let size = n + 1 + usize::from(free.is_some());
+            let mut system = DMatrix::zeros(size, size);
+            let mut right = DMatrix::zeros(size, 1);
             for (i, &row) in set.iter().enumerate() {
                 set.iter()
                     .enumerate()
@@ -328,17 +399,26 @@ mod tests {
                 (system[(i, n)], system[(n, i)], right[i]) = (-1.0, 1.0, -gaps[row]);
             }
             right[n] = problem.load / (4.0 * a * b);
+            let y = |cell: usize| problem.grid.y(cell / problem.grid.nx);
+            if let Some(arm) = free {
+                for (i, &row) in set.iter().enumerate() {
+                    (system[(i, n + 1)], system[(n + 1, i)]) = (-y(row), y(row));
+                }
+                right[n + 1] = arm * right[n];
+            }
             let solution = linear::solve(system, right).unwrap();
             let mut p = vec![0.0; gaps.len()];
             set.iter().zip(solution.iter()).for_each(|(cell, value)| p[*cell] = *value);
             let u = &matrix * DMatrix::from_column_slice(p.len(), 1, &p);
+            let tilt = free.map_or(0.0, |_| solution[n + 1]);
+            let moved = |cell: usize| solution[n] + tilt * y(cell);
             let inside = |cell: &usize| match set.binary_search(cell) {
                 Ok(_) => p[*cell] > 0.0,
-                Err(_) => u[*cell] + gaps[*cell] < solution[n] - 1e-13,
+                Err(_) => u[*cell] + gaps[*cell] < moved(*cell) - 1e-13,
             };
             let next: Vec<usize> = (0..gaps.len()).filter(inside).collect();
             if next == set {
-                return (p, solution[n]);
+                return (p, [solution[n], tilt]);
             }
             set = next;
         }
@@ -350,11 +430,11 @@ mod tests {
 
     #[test]
     fn convolutions_are_the_flexibility_matrix() {
-        for (nx, ny) in [(10, 14), (11, 7)] {
-            let problem = problem(nx, ny, guilbault());
+        for (nx, ny, images) in [(10, 14, guilbault()), (11, 7, guilbault()), (10, 9, offset())] {
+            let problem = problem(nx, ny, images);
             let skew: Vec<f64> = (0..nx * ny).map(|i| (1.0 + (i * i) as f64).sin()).collect();
             let mut got = vec![f64::NAN; skew.len()];
-            problem.whole(&problem.grid).apply(&skew, &mut got);
+            problem.whole(&problem.grid, None).apply(&skew, &mut got);
             let want = dense(&problem) * DMatrix::from_column_slice(nx * ny, 1, &skew);
             assert!(largest_difference(&got, want.as_slice()) < 1e-12);
         }
@@ -370,14 +450,20 @@ mod tests {
 
     #[test]
     fn contacts_are_those_of_the_dense_equations() {
-        for images in [Vec::new(), guilbault()] {
-            for gap in [&Straight as &dyn Gap, &Skew] {
-                let problem = problem(18, 16, images.clone());
+        for images in [Vec::new(), guilbault(), offset()] {
+            for (gap, tilt) in [
+                (&Straight as &dyn Gap, CellTilt::Held(0.0)),
+                (&Skew, CellTilt::Held(0.0)),
+                (&Skew, CellTilt::Free(-0.2)),
+                (&Straight, CellTilt::Free(0.3)),
+            ] {
+                let problem = CellProblem { tilt, ..problem(18, 16, images.clone()) };
                 let got = problem.solve(gap).unwrap();
-                let (pressure, approach) = dense_solution(&problem, gap);
+                let (pressure, [approach, tilt]) = dense_solution(&problem, gap);
                 let off = largest_difference(&got.pressure, &pressure);
                 assert!(off < 1e-10, "{off:e} {got:?}");
                 assert!((got.approach - approach).abs() < 1e-10);
+                assert!((got.tilt - tilt).abs() < 1e-10);
             }
         }
     }

@@ -2,7 +2,8 @@
 
 use super::linear::Linear;
 
-/// The complementarity problem of a contact over n cells: u + gap = D where p > 0, u + gap >= D elsewhere, sum p given.
+/// The complementarity problem of a contact over n cells: u + gap = D where p > 0, u + gap >= D elsewhere, sum p given. With
+/// arms y, D + T y takes the place of D, and sum y p is given too.
 pub(super) struct Complementarity<'a> {
     /// Displacement u of a pressure.
     pub(super) displacement: &'a mut dyn Linear,
@@ -12,6 +13,24 @@ pub(super) struct Complementarity<'a> {
     pub(super) gap: &'a [f64],
     /// Sum of the pressures.
     pub(super) total: f64,
+    /// Of bodies that are free to tilt the arm of each cell, and the sum of arms times pressures.
+    pub(super) arms: Option<(&'a [f64], f64)>,
+}
+
+/// A rigid motion of the bodies towards each other.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(super) struct Motion {
+    /// Approach D.
+    pub(super) approach: f64,
+    /// Tilt T; zero where it is not free.
+    pub(super) tilt: f64,
+}
+
+impl Motion {
+    /// The motion of cell `i`.
+    fn at(&self, arms: Option<(&[f64], f64)>, i: usize) -> f64 {
+        self.approach + arms.map_or(0.0, |(arms, _)| self.tilt * arms[i])
+    }
 }
 
 /// A solution of [`Complementarity`], or what an iteration has come to.
@@ -19,8 +38,8 @@ pub(super) struct Complementarity<'a> {
 pub(super) struct State {
     /// Pressures.
     pub(super) pressure: Vec<f64>,
-    /// Approach D.
-    pub(super) approach: f64,
+    /// The motion that the load causes.
+    pub(super) motion: Motion,
     /// What the conditions of contact are missed by, in parts of the displacement (both root mean
     /// squares over the contact).
     pub(super) residual: f64,
@@ -36,7 +55,7 @@ impl Complementarity<'_> {
     /// `most` applications of the displacement. Tells `progress` of their number and of the residual.
     ///
     /// On the set of cells in contact the pressure solves linear equations with one constraint, its sum, whose
-    /// multiplier is D: conjugate gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual
+    /// multiplier is D, and with arms another one, whose multiplier is T: conjugate gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual
     /// on the set has fallen, cells that pull leave the set and cells that penetrate enter it. The
     /// pressures are set to the prescribed load, and the displacement is taken anew, whenever cells were cut off, not
     /// carried along with what the step does: that is what the published iteration leaves inexact.
@@ -57,22 +76,22 @@ impl Complementarity<'_> {
         let mut set = self.set(pressure.iter().map(|p| *p > 0.0).collect());
         let mut looked_at = f64::INFINITY;
         loop {
-            let (descent, approach) = self.descent(&set, &u);
-            let residual = Residual::new(&set.contact, &u, self.gap, approach);
+            let (descent, motion) = self.descent(&set, &u);
+            let (gap, arms) = (self.gap, self.arms);
+            let misfit: Vec<f64> = (0..n).map(|i| u[i] + gap[i] - motion.at(arms, i)).collect();
+            let residual = Residual::new(&set.contact, &u, &misfit);
             let (on_set, relative) = (residual.on_set.sqrt(), residual.relative());
             progress(iterations, relative);
             let pulled = pressure.iter().any(|p| *p < 0.0);
             if (relative <= tolerance && !pulled) || iterations >= most {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
-                return State { pressure, approach, residual: relative, iterations };
+                return State { pressure, motion, residual: relative, iterations };
             }
             if line.last.is_none() {
                 looked_at = on_set;
             } else if on_set <= SETTLED * looked_at || relative <= tolerance {
                 looked_at = on_set;
-                let gap = self.gap;
-                let (changed, cut) =
-                    change(&mut pressure, &mut set.contact, |i| u[i] + gap[i] < approach);
+                let (changed, cut) = change(&mut pressure, &mut set.contact, &misfit);
                 if cut {
                     self.rescale(&mut pressure);
                     self.displacement.apply(&pressure, &mut u);
@@ -84,8 +103,6 @@ impl Complementarity<'_> {
                     continue;
                 }
             }
-            let misfit: Vec<f64> =
-                u.iter().zip(self.gap).map(|(u, gap)| u + gap - approach).collect();
             line.turn(&descent, &misfit);
             self.displacement.apply(&line.step, &mut line.moved);
             iterations += 1;
@@ -93,41 +110,90 @@ impl Complementarity<'_> {
         }
     }
 
-    /// A set of cells, and what the preconditioner makes of a uniform misfit on it.
+    /// A set of cells, and what the preconditioner makes of rigid misfits on it.
     fn set(&mut self, contact: Vec<bool>) -> ContactSet {
-        let unit: Vec<f64> = contact.iter().map(|c| f64::from(u8::from(*c))).collect();
-        let mut ones = vec![0.0; contact.len()];
-        self.inverse.apply(&unit, &mut ones);
-        project(&mut ones, &contact);
-        ContactSet { ones_sum: ones.iter().sum(), contact, ones }
+        let n = contact.len();
+        let mut prepared = |misfit: &dyn Fn(usize) -> f64| {
+            let own: Vec<f64> = (0..n).map(|i| if contact[i] { misfit(i) } else { 0.0 }).collect();
+            let mut made = vec![0.0; n];
+            self.inverse.apply(&own, &mut made);
+            project(&mut made, &contact);
+            made
+        };
+        let ones = prepared(&|_| 1.0);
+        let arms = self.arms.map_or(Vec::new(), |(arms, _)| prepared(&|i| arms[i]));
+        let sums = self.sums(&ones);
+        let [_, second] = self.sums(&arms);
+        ContactSet { contact, products: [sums[0], sums[1], second], ones, arms }
     }
 
-    /// The change of pressure on the set that the preconditioner holds against the misfit u + gap - D, with D such
-    /// that it changes no sum; and this D.
-    fn descent(&mut self, set: &ContactSet, u: &[f64]) -> (Vec<f64>, f64) {
+    /// The sum of `values`, and that of the arms times them.
+    fn sums(&self, values: &[f64]) -> [f64; 2] {
+        [values.iter().sum(), self.arms.map_or(0.0, |(arms, _)| dot(arms, values))]
+    }
+
+    /// The change of pressure on the set that the preconditioner holds against the misfit u + gap - D - T y, with the
+    /// motion such that it changes no sum; and this motion.
+    fn descent(&mut self, set: &ContactSet, u: &[f64]) -> (Vec<f64>, Motion) {
         let mut misfit: Vec<f64> = u.iter().zip(self.gap).map(|(u, gap)| u + gap).collect();
         project(&mut misfit, &set.contact);
         let mut descent = vec![0.0; misfit.len()];
         self.inverse.apply(&misfit, &mut descent);
         project(&mut descent, &set.contact);
-        let approach = descent.iter().sum::<f64>() / set.ones_sum;
-        descent.iter_mut().zip(&set.ones).for_each(|(d, one)| *d = approach * one - *d);
-        (descent, approach)
+        let [sum, moment] = self.sums(&descent);
+        let [ones, both, arms] = set.products;
+        let motion = match self.arms {
+            None => Motion { approach: sum / ones, tilt: 0.0 },
+            Some(_) => {
+                let determinant = ones * arms - both * both;
+                let approach = (sum * arms - moment * both) / determinant;
+                Motion { approach, tilt: (moment * ones - sum * both) / determinant }
+            }
+        };
+        descent.iter_mut().zip(&set.ones).for_each(|(d, one)| *d = motion.approach * one - *d);
+        descent.iter_mut().zip(&set.arms).for_each(|(d, arm)| *d += motion.tilt * arm);
+        (descent, motion)
     }
 
-    /// Scales the pressures to their sum.
+    /// Scales the pressures to their sum; with arms by e^(s y) besides, which keeps them positive, for the sum of arms
+    /// times pressures.
     fn rescale(&self, pressure: &mut [f64]) {
+        if let Some((arms, moment)) = self.arms {
+            let wanted = moment / self.total;
+            let longest = arms.iter().fold(0.0, |m: f64, y| m.max(y.abs()));
+            // The centre of pressure grows with s: halving finds it.
+            let centre = |s: f64| {
+                let all =
+                    pressure.iter().zip(arms).map(|(p, y)| (p * (s * (y - longest)).exp(), y));
+                let [sum, turned] =
+                    all.fold([0.0; 2], |[sum, turned], (p, y)| [sum + p, turned + p * y]);
+                turned / sum
+            };
+            let [mut low, mut high] = [-1.0, 1.0].map(|side| side * STEEPEST / longest);
+            for _ in 0..HALVINGS {
+                let middle = 0.5 * (low + high);
+                if centre(middle) < wanted { low = middle } else { high = middle }
+            }
+            let s = 0.5 * (low + high);
+            pressure.iter_mut().zip(arms).for_each(|(p, y)| *p *= (s * y).exp());
+        }
         let scale = self.total / pressure.iter().sum::<f64>();
         pressure.iter_mut().for_each(|p| *p *= scale);
     }
 }
 
+/// Largest exponent of the factors that turn pressures, and how often its range is halved.
+const STEEPEST: f64 = 300.0;
+const HALVINGS: usize = 62;
+
 /// Cells in contact.
 struct ContactSet {
     contact: Vec<bool>,
-    /// The preconditioned uniform misfit, and its sum.
+    /// The preconditioned uniform misfit, and that which is as the arms.
     ones: Vec<f64>,
-    ones_sum: f64,
+    arms: Vec<f64>,
+    /// Products of 1 and 1, 1 and y, y and y by the preconditioner.
+    products: [f64; 3],
 }
 
 /// The line along which conjugate gradients search.
@@ -156,19 +222,15 @@ impl Line {
     }
 }
 
-/// Lets cells that pull leave the contact and those that penetrate enter it. Whether any did, and whether pull
-/// was cut off.
-fn change(
-    pressure: &mut [f64],
-    contact: &mut [bool],
-    penetrates: impl Fn(usize) -> bool,
-) -> (bool, bool) {
+/// Lets cells that pull leave the contact and those whose `misfit` says that they penetrate enter it. Whether any did, and
+/// whether pull was cut off.
+fn change(pressure: &mut [f64], contact: &mut [bool], misfit: &[f64]) -> (bool, bool) {
     let (mut changed, mut cut) = (false, false);
-    for (i, (p, contact)) in pressure.iter_mut().zip(contact).enumerate() {
+    for ((p, contact), misfit) in pressure.iter_mut().zip(contact).zip(misfit) {
         if *contact && *p <= 0.0 {
             cut |= *p < 0.0;
             (*p, *contact, changed) = (0.0, false, true);
-        } else if !*contact && penetrates(i) {
+        } else if !*contact && *misfit < 0.0 {
             (*contact, changed) = (true, true);
         }
     }
@@ -195,15 +257,14 @@ struct Residual {
 }
 
 impl Residual {
-    fn new(contact: &[bool], u: &[f64], gap: &[f64], approach: f64) -> Self {
+    fn new(contact: &[bool], u: &[f64], misfit: &[f64]) -> Self {
         let mut sums = Self { on_set: 0.0, elsewhere: 0.0, scale: 0.0 };
-        for ((contact, u), gap) in contact.iter().zip(u).zip(gap) {
-            let gap = u + gap - approach;
+        for ((contact, u), misfit) in contact.iter().zip(u).zip(misfit) {
             if *contact {
-                sums.on_set += gap * gap;
+                sums.on_set += misfit * misfit;
                 sums.scale += u * u;
-            } else if gap < 0.0 {
-                sums.elsewhere += gap * gap;
+            } else if *misfit < 0.0 {
+                sums.elsewhere += misfit * misfit;
             }
         }
         sums

@@ -1,6 +1,7 @@
-//! Convolutions of fields without symmetry, with their mirror images in y.
+//! Convolutions of fields without symmetry, with their mirror images in y, and what free ends add.
 
 use super::convolution::LINES;
+use super::ends::EndCorrection;
 use super::linear::Linear;
 use rayon::prelude::*;
 use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
@@ -9,7 +10,7 @@ use rustfft::{Fft, FftPlanner};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x and y. One transform of p
+/// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x, K in y too. One transform of p
 /// serves both: p' has the coefficient of the opposite wavenumber in y, turned by the phase of the mirror.
 pub(super) struct WholeConvolution {
     nx: usize,
@@ -20,9 +21,12 @@ pub(super) struct WholeConvolution {
     backward_x: Arc<dyn ComplexToReal<f64>>,
     forward_y: Arc<dyn Fft<f64>>,
     backward_y: Arc<dyn Fft<f64>>,
-    /// Of K and of M, as [`super::influence::Table::spectrum`] gives them.
+    /// Of K, and of the even and the odd part of M, as [`super::influence::Table::spectrum`] gives them.
     direct: Vec<f64>,
     images: Vec<f64>,
+    odd_images: Vec<f64>,
+    /// Added to what the kernels do, for each wavenumber in x.
+    ends: Option<EndCorrection>,
     /// e^(-2 pi i l (ny - 1) / period): the mirror of cell j is cell ny - 1 - j.
     mirror: Vec<Complex<f64>>,
     waves: Vec<Complex<f64>>,
@@ -30,13 +34,15 @@ pub(super) struct WholeConvolution {
 }
 
 impl WholeConvolution {
-    /// On `nx` x `ny` cells, padded to the periods 2 `mx` and 2 `my`. `direct` and `images` have the factors of the wavenumbers k <= mx
-    /// in x, for each of them those l <= my in y, and the scale 1 / (4 mx my) in them; `images` is empty without images.
+    /// On `nx` x `ny` cells, padded to the periods 2 `mx` and 2 `my`. `direct` and the even and the odd part of `images` have the factors of the
+    /// wavenumbers k <= mx in x, for each of them those l <= my in y, and the scale 1 / (4 mx my) in them; what is zero is
+    /// empty.
     pub(super) fn new(
         [nx, ny]: [usize; 2],
         [mx, my]: [usize; 2],
         direct: Vec<f64>,
-        images: Vec<f64>,
+        [images, odd_images]: [Vec<f64>; 2],
+        ends: Option<EndCorrection>,
     ) -> Self {
         let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let turn = |l| {
@@ -54,6 +60,8 @@ impl WholeConvolution {
             backward_y: complex.plan_fft_inverse(2 * my),
             direct,
             images,
+            odd_images,
+            ends,
             mirror: (0..2 * my).map(turn).collect(),
             waves: vec![zero; ny * (mx + 1)],
             filtered: vec![zero; (mx + 1) * ny],
@@ -71,14 +79,15 @@ impl WholeConvolution {
             high.iter_mut().rev().zip(&direct[1..]).for_each(|(v, d)| *v *= d);
             return;
         }
-        let images = &self.images[row];
+        let (images, odd) = (&self.images[row.clone()], self.odd_images.get(row));
         for l in 0..=my {
             let opposite = (2 * my - l) % (2 * my);
             let (own, other) = (transform[l], transform[opposite]);
             let [to_own, to_other] =
                 [(l, other), (opposite, own)].map(|(l, mirrored)| self.mirror[l] * mirrored);
-            transform[opposite] = direct[l] * other + images[l] * to_other;
-            transform[l] = direct[l] * own + images[l] * to_own;
+            let factor = Complex::new(images[l], odd.map_or(0.0, |odd| odd[l]));
+            transform[opposite] = direct[l] * other + factor.conj() * to_other;
+            transform[l] = direct[l] * own + factor * to_own;
         }
     }
 }
@@ -116,6 +125,9 @@ impl Linear for WholeConvolution {
                     this.filter(k, line);
                     this.backward_y.process_with_scratch(line, work);
                     filtered.copy_from_slice(&line[..ny]);
+                    if let Some(ends) = &this.ends {
+                        ends.add(k, |j| waves[j * count + k], filtered);
+                    }
                 }
             },
         );

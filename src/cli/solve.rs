@@ -40,9 +40,10 @@ pub(super) struct Arguments {
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
-    /// How the contact is discretised: modes across the line, or uniform cells (the published method)
-    #[arg(long, value_enum, default_value_t = Engine::Line)]
-    engine: Engine,
+    /// How the contact is discretised: modes across the line, or uniform cells (the published method); line by default,
+    /// cells for a case with a rough surface
+    #[arg(long, value_enum)]
+    engine: Option<Engine>,
     /// Numbers of cells across and along the contact; by its shape if absent
     #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = cell_count)]
     cells: Vec<usize>,
@@ -87,6 +88,14 @@ enum Engine {
     Cells,
 }
 
+impl Arguments {
+    /// The engine that is asked for; without, the one that takes the case.
+    fn engine(&self, case: &Case) -> Engine {
+        let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
+        self.engine.unwrap_or(own)
+    }
+}
+
 /// Parses a number of cells.
 fn cell_count(text: &str) -> std::result::Result<usize, String> {
     match text.parse::<usize>() {
@@ -122,7 +131,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if let Some(path) = &arguments.points {
         options.points = super::points::read(path, &case)?;
     }
-    if arguments.engine == Engine::Cells {
+    if arguments.engine(&case) == Engine::Cells {
         return run_on_cells(&case, &options, &arguments);
     }
     if let Some(tolerance) = arguments.tolerance {
@@ -131,6 +140,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if !arguments.cells.is_empty() {
         return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
     }
+    options.check_line(&case)?;
     if arguments.uncertain.is_given() {
         case.check_force("an uncertain case has a force")?;
     }
@@ -168,7 +178,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
-    check_cells(case)?;
+    check_cells(case, &cells)?;
     let _lock = Lock::claim(&arguments.out)?;
     let bar = progress_bar();
     // In tenths of a decade of the residual.
@@ -195,7 +205,7 @@ fn pictures<D>(
     if !arguments.plots {
         return Ok(Vec::new());
     }
-    let engine = if arguments.engine == Engine::Cells { " on uniform cells" } else { "" };
+    let engine = if arguments.engine(case) == Engine::Cells { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
         program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
@@ -297,7 +307,7 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
         duration(found.seconds.total)
     ));
     let points = if arguments.points.is_some() { ", points.csv" } else { "" };
-    let field = match (arguments.field, arguments.engine) {
+    let field = match (arguments.field, arguments.engine(case)) {
         (true, _) => ", the fields (*.vtr) and their contours",
         (false, Engine::Cells) => ", pressure.npy, axes.json",
         (false, Engine::Line) => "",

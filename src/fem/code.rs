@@ -83,6 +83,12 @@ impl Code {
                 remedy,
             );
         }
+        if let Some(surface) = &case.surface {
+            let value = format!("{:?}", surface.heights.display());
+            let reason = "finite elements take smooth surfaces only";
+            let remedy = "remove [surface], or solve the case with `edgeline solve`";
+            return refuse("surface.heights", value, reason, remedy);
+        }
         if self == Code::Fenicsx {
             return Ok(());
         }

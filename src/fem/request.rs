@@ -4,7 +4,7 @@
 use super::code::Code;
 use super::result::{wanted_curves, wanted_lines};
 use super::settings::FemSettings;
-use crate::case::{Accuracy, Block, Case, Cells, Fatigue, Load, Pose, Roller, Sliding};
+use crate::case::{Accuracy, Block, Case, Cells, Fatigue, Load, Pose, Roller, Sliding, Surface};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -12,7 +12,7 @@ use std::f64::consts::FRAC_PI_2;
 use std::path::Path;
 
 /// The form of a case in requests and records. It leaves out the accuracy and the cells, which are
-/// the models' own.
+/// the models' own, and the rough surface, which finite elements refuse.
 #[derive(Serialize, Deserialize)]
 #[serde(remote = "Case")]
 pub(super) struct Problem {
@@ -27,6 +27,8 @@ pub(super) struct Problem {
     sliding: Sliding,
     #[serde(skip)]
     fatigue: Fatigue,
+    #[serde(skip)]
+    surface: Option<Surface>,
     #[serde(skip)]
     accuracy: Accuracy,
     #[serde(skip)]

@@ -1,24 +1,19 @@
 //! A case solved on uniform cells of constant pressure.
 
-use super::cells::{PressureCell, largest};
-use super::lines;
+use super::cell_contact::CellContact;
+use super::cell_stress::Stressed;
+use super::cells::{PressureCell, contact_ends, largest, line_loads};
 use super::options::Options;
 use super::scene::Scene;
-use super::shaping::Shaping;
-use super::solved::{Solution, most_stressed, wanted_curves};
+use super::solved::{Solution, most_stressed};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::cells::{CellField, CellPressure, CellProblem, Columns, Grid};
+use crate::cells::{CellPressure, CellProblem, Grid};
 use crate::stress::curves::across_contact;
-use crate::stress::round::LocalContact;
-use crate::stress::{
-    BodyField, BodyKind, CurveSpec, Curves, LineLoad, Load, PressureLine, RoundStress, StressCurve,
-    Work, round,
-};
-use rayon::prelude::*;
+use crate::stress::{Curves, LineLoad, PressureLine, round};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -34,8 +29,8 @@ const FIRST_WIDTH: f64 = 1.25;
 const GROWTH: f64 = 1.25;
 const MOST_GROWTHS: usize = 8;
 
-/// Step of the difference quotient along x (C).
-const STEP: f64 = 1e-4;
+/// Most cells in a direction where heights ask for as many as they have.
+const MOST_SAMPLES: usize = 1024;
 
 /// How a case was solved on cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -81,11 +76,11 @@ impl Default for CellOptions {
     }
 }
 
-/// Refuses a case that cells do not take.
+/// Refuses a case that cells do not take, or not with these options.
 ///
 /// # Errors
 /// [`Error::Value`] with what to do.
-pub fn check_cells(case: &Case) -> Result<()> {
+pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<()> {
     case.check_force("cells take a force")?;
     let scene = Scene::new(case, EdgeModel::HalfSpace, None);
     if scene.slides {
@@ -96,16 +91,79 @@ pub fn check_cells(case: &Case) -> Result<()> {
             remedy: "solve this case with --engine line, or without friction".into(),
         });
     }
-    if scene.is_symmetric() && case.block.radius_m.is_none() {
-        return Ok(());
+    let region = Region::new(case, &scene, cells);
+    let grid = region.first()?;
+    let heights = case.heights();
+    heights.map_or(Ok(()), |heights| heights.check_covers(&grid, case.hertz().c_m))
+}
+
+/// The region of the cells.
+struct Region {
+    half_length: f64,
+    counts: Option<[usize; 2]>,
+    /// Half-width that is given (C).
+    given: Option<f64>,
+    /// Half-spans and distances of the heights across and along (C).
+    samples: Option<([f64; 2], [f64; 2])>,
+}
+
+impl Region {
+    fn new(case: &Case, scene: &Scene, cells: &CellOptions) -> Self {
+        let c_m = case.hertz().c_m;
+        let samples = case.surface.as_ref().zip(case.heights()).map(|(surface, heights)| {
+            let steps = [surface.dx_m, surface.dy_m];
+            (heights.half_spans_m().map(|v| v / c_m), steps.map(|v| v / c_m))
+        });
+        let given = case.cells.map(|cells| cells.half_width_m / c_m);
+        Self { half_length: scene.half_length, counts: cells.counts, given, samples }
     }
-    let reason = "cells take bodies with their middles at one place, parallel, on a flat block";
-    Err(Error::Value {
-        key: "--engine".into(),
-        value: "cells".into(),
-        reason: reason.into(),
-        remedy: "solve this case with --engine line".into(),
-    })
+
+    /// The first grid to try.
+    fn first(&self) -> Result<Grid> {
+        self.grid(self.given.unwrap_or(FIRST_WIDTH))
+    }
+
+    /// A wider grid; none where the half-width is given, and where there are no more heights.
+    fn wider(&self, grid: &Grid) -> Option<Result<Grid>> {
+        if self.given.is_some() {
+            return None;
+        }
+        let next = self.grid(grid.half_width * GROWTH);
+        let wider = |next: &Grid| next.half_width > grid.half_width * (1.0 + 1e-9);
+        match next {
+            Ok(next) if !wider(&next) => None,
+            next => Some(next),
+        }
+    }
+
+    /// Cells over the contact up to `half_width` (C), less where it is not given and the heights end before.
+    fn grid(&self, half_width: f64) -> Result<Grid> {
+        let [nx, ny] = self.counts.unwrap_or_else(|| self.counts(half_width));
+        let covered = |([span, _], _): ([f64; 2], _)| span * nx as f64 / (nx as f64 - 1.0);
+        let most = match self.given {
+            Some(_) => f64::INFINITY,
+            None => self.samples.map_or(f64::INFINITY, covered),
+        };
+        Grid::new(nx, ny, half_width.min(most), self.half_length)
+    }
+
+    /// Even numbers of cells twice as long as wide, longer only where there would be too many; with heights as many as samples.
+    fn counts(&self, half_width: f64) -> [usize; 2] {
+        let even = |n: f64| 2 * (0.5 * n).ceil() as usize;
+        if let Some((_, steps)) = self.samples {
+            let sides = [half_width, self.half_length];
+            let [nx, ny] = [0, 1].map(|i| {
+                even((2.0 * sides[i] / steps[i]).clamp(ACROSS as f64, MOST_SAMPLES as f64)) as f64
+            });
+            // As many in each direction as the slenderest cells ask for.
+            let ratio = self.half_length / half_width;
+            let across = nx.max(ny / (LONGEST * ratio));
+            return [even(across), even(ny.max(across * ratio / LONGEST))];
+        }
+        let square = ACROSS as f64 * self.half_length / half_width;
+        let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
+        [ACROSS, even(along).max(ACROSS)]
+    }
 }
 
 /// Solves `case` on cells; tells `progress` of the iteration's steps and its residual.
@@ -120,26 +178,30 @@ pub fn solve_on_cells(
     progress: &dyn Fn(usize, f64),
 ) -> Result<CellSolution> {
     options.check(case)?;
-    check_cells(case)?;
+    check_cells(case, cells)?;
     let scene = Scene::new(case, options.method, options.psi);
     let start = Instant::now();
-    let half_width = case.cells.map(|cells| cells.half_width_m / case.hertz().c_m);
-    let first = grid(&scene, cells.counts, half_width.unwrap_or(FIRST_WIDTH))?;
-    let mut problem = scene.on_cells(first, cells.tolerance);
+    let region = Region::new(case, &scene, cells);
+    let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
     let setup = start.elapsed().as_secs_f64();
-    let mut growths = if half_width.is_some() { 0 } else { MOST_GROWTHS };
-    let pressure = loop {
-        match problem.solve_telling(&scene.gap(), progress) {
-            Err(Error::Uncovered { .. }) if growths > 0 => growths -= 1,
+    let mut growths = MOST_GROWTHS;
+    let (pressure, tilt) = loop {
+        match contact.solve() {
+            Err(error @ Error::Uncovered { .. }) if growths > 0 => {
+                growths -= 1;
+                let wider = region.wider(&contact.problem.grid);
+                contact.problem.grid = wider.unwrap_or(Err(error))?;
+            }
             found => break found?,
         }
-        problem.grid = grid(&scene, cells.counts, problem.grid.half_width * GROWTH)?;
     };
+    let problem = contact.problem;
     let solved = start.elapsed().as_secs_f64();
     let stressed = Stressed::new(case, &scene, options, &problem, &pressure);
     let total = start.elapsed().as_secs_f64();
     let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
-    let solution = stressed.solution(case, &scene, &problem, &pressure, seconds);
+    let found = Found { case, scene: &scene, problem: &problem, pressure: &pressure, tilt };
+    let solution = found.solution(stressed, seconds);
     Ok(CellSolution { solution, pressure })
 }
 
@@ -158,187 +220,117 @@ pub fn stress_on_cells(
     Ok(Stressed::new(case, &scene, options, &problem, pressure).points)
 }
 
-/// Cells over the contact of `scene` up to `half_width` (C): `counts` of them, or in even numbers twice as long as
-/// wide, longer only where there would be too many.
-fn grid(scene: &Scene, counts: Option<[usize; 2]>, half_width: f64) -> Result<Grid> {
-    let [nx, ny] = counts.unwrap_or_else(|| {
-        let square = ACROSS as f64 * scene.half_length / half_width;
-        let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
-        [ACROSS, (2 * (0.5 * along).ceil() as usize).max(ACROSS)]
-    });
-    Grid::new(nx, ny, half_width, scene.half_length)
+/// What was found of a case.
+struct Found<'a> {
+    case: &'a Case,
+    scene: &'a Scene,
+    problem: &'a CellProblem,
+    pressure: &'a CellPressure,
+    /// Tilt at the depth of the roller's radius (C / (2 R)).
+    tilt: f64,
 }
 
-/// Curves and points with their stresses.
-struct Stressed {
-    curves: Vec<StressCurve>,
-    points: Vec<StressTensor>,
-}
-
-impl Stressed {
-    fn new(
-        case: &Case,
-        scene: &Scene,
-        options: &Options,
-        problem: &CellProblem,
-        pressure: &CellPressure,
-    ) -> Self {
-        let HertzScales { c_m, .. } = case.hertz();
-        let specs = wanted_curves(scene, options);
-        let places: Vec<(BodyKind, [f64; 3])> =
-            options.points.iter().map(|p| (p.body, p.at_m.map(|v| v / c_m))).collect();
-        let found = match &problem.free {
-            None => sums(scene, pressure, &specs, &places),
-            Some(free) => {
-                let columns = Columns::new(pressure, free.axis());
-                let moments = columns.moments(free.wavenumbers());
-                let field = |kind: BodyKind| {
-                    let body = &scene.bodies[kind];
-                    let own = (body.half, body.nu);
-                    let field = free.field(own, &columns, &moments, scene.tolerance);
-                    BodyField::new(field, 1.0)
-                };
-                lines::stresses(free.shared(), field, &specs, &places)
-            }
-        };
-        let shaping = Shaping::of(case);
-        let shaped = |body: BodyKind, stress: &RoundStress| shaping.stress(body, stress);
-        let curves = specs.into_iter().zip(&found.curves).map(|(spec, stresses)| StressCurve {
-            body: spec.body,
-            name: spec.name.to_string(),
-            stress: stresses.iter().map(|s| shaped(spec.body, s)).collect(),
-            at: spec.points,
-            own_error: None,
-        });
-        let points = options.points.iter().zip(&found.points);
-        let points = points.map(|(point, s)| shaped(point.body, s)).collect();
-        Self { curves: curves.collect(), points }
-    }
-
-    fn solution(
-        self,
-        case: &Case,
-        scene: &Scene,
-        problem: &CellProblem,
-        pressure: &CellPressure,
-        seconds: Seconds,
-    ) -> Solution<CellDetails> {
-        let hertz = case.hertz();
-        let HertzScales { c_m, p0_pa, .. } = hertz;
-        let (grid, radius_m) = (&pressure.grid, case.roller.radius_m);
+impl Found<'_> {
+    fn solution(&self, stressed: Stressed, seconds: Seconds) -> Solution<CellDetails> {
+        let (pressure, hertz) = (self.pressure, self.case.hertz());
+        let (grid, middle) = (&pressure.grid, self.scene.middle);
         let (a, b) = grid.half_sides();
         let cell = |(i, p): (usize, &f64)| PressureCell {
             x: grid.x(i % grid.nx),
-            y: grid.y(i / grid.nx),
+            y: grid.y(i / grid.nx) + middle,
             dx: 2.0 * a,
             dy: 2.0 * b,
             p: *p,
         };
         let cells: Vec<PressureCell> = pressure.pressure.iter().enumerate().map(cell).collect();
+        let line_loads = line_loads(pressure, middle);
+        let curves = Curves {
+            hertz,
+            pressure: pressure_lines(self.scene, pressure),
+            stress: stressed.curves,
+        };
+        let critical = most_stressed(&curves.stress, &self.scene.span());
+        let critical = critical.map(|critical| CriticalSummary::new(&critical, &hertz));
+        let summary = self.summary(&cells, &line_loads, critical, seconds);
+        Solution { summary, curves, cells, line_loads, points: stressed.points }
+    }
+
+    fn summary(
+        &self,
+        cells: &[PressureCell],
+        line_loads: &[LineLoad],
+        critical: Option<CriticalSummary>,
+        seconds: Seconds,
+    ) -> Summary<CellDetails> {
+        let (case, scene, pressure) = (self.case, self.scene, self.pressure);
+        let hertz = case.hertz();
+        let HertzScales { c_m, p0_pa, .. } = hertz;
+        let slope = c_m / (2.0 * case.equivalent_radius_m());
         let carried: f64 = cells.iter().map(|c| c.p * p0_pa * (c.dx * c_m) * (c.dy * c_m)).sum();
-        let top = largest(&cells);
-        let lines = pressure_lines(scene, pressure);
-        let critical = most_stressed(&self.curves, &scene.span());
-        let approach = pressure.approach - problem.mean_displacement(pressure, radius_m / c_m);
-        let summary = Summary {
+        let top = largest(cells);
+        // Mirror images have the same pressure.
+        let mirrored = |v: f64, even: bool| if even { v.abs() } else { v };
+        let even = scene.span().symmetric;
+        let depth = case.roller.radius_m / c_m;
+        // At the roller's middle, from which a tilt is counted.
+        let approach = pressure.approach
+            - pressure.tilt * scene.middle
+            - self.problem.mean_displacement(pressure, depth);
+        Summary {
             case: case.name.clone(),
             method: scene.model,
             hertz,
             load_n: case.load.force_n,
-            approach_m: approach * c_m * c_m / (2.0 * case.equivalent_radius_m()),
-            tilt_rad: 0.0,
-            p_centre_pa: pressure.at(0.0, 0.0) * p0_pa,
+            approach_m: approach * c_m * slope,
+            tilt_rad: self.tilt * slope,
+            p_centre_pa: pressure.at(0.0, scene.off_middle(scene.span().centre())) * p0_pa,
             p_max_pa: top.p * p0_pa,
-            p_max_at_m: [top.x, top.y].map(|v| (v * c_m).abs()),
-            centre_of_pressure_m: [0.0; 2],
-            contact_y_m: contact_ends(pressure).map(|y| y * c_m),
+            p_max_at_m: [mirrored(top.x, !scene.rough), mirrored(top.y, even)].map(|v| v * c_m),
+            centre_of_pressure_m: if even { [0.0; 2] } else { centre(cells).map(|v| v * c_m) },
+            contact_y_m: contact_ends(line_loads).map(|y| y * c_m),
             converged: true,
             iterations: pressure.iterations,
             load_error_rel: (carried / case.load.force_n - 1.0).abs(),
             seconds,
-            critical: critical.map(|critical| CriticalSummary::new(&critical, &hertz)),
-            details: CellDetails {
-                engine: "cells".into(),
-                cells: [grid.nx, grid.ny],
-                half_width_m: grid.half_width * c_m,
-                tolerance: problem.tolerance,
-                residual: pressure.residual,
-                approach_reference_m: radius_m,
-                roller_diametral_tension_pa: round::DIAMETRAL_TENSION * c_m / radius_m * p0_pa,
-            },
-        };
-        let curves = Curves { hertz, pressure: lines, stress: self.curves };
-        let line_loads = line_loads(pressure);
-        Solution { summary, curves, cells, line_loads, points: self.points }
+            critical,
+            details: self.details(),
+        }
+    }
+
+    fn details(&self) -> CellDetails {
+        let (case, grid) = (self.case, &self.pressure.grid);
+        let HertzScales { c_m, p0_pa, .. } = case.hertz();
+        let radius_m = case.roller.radius_m;
+        CellDetails {
+            engine: "cells".into(),
+            cells: [grid.nx, grid.ny],
+            half_width_m: grid.half_width * c_m,
+            tolerance: self.problem.tolerance,
+            residual: self.pressure.residual,
+            approach_reference_m: radius_m,
+            roller_diametral_tension_pa: round::DIAMETRAL_TENSION * c_m / radius_m * p0_pa,
+        }
     }
 }
 
-/// Love's sums on `curves` and at single `points` (C), where no end is free of traction.
-fn sums(
-    scene: &Scene,
-    pressure: &CellPressure,
-    curves: &[CurveSpec],
-    points: &[(BodyKind, [f64; 3])],
-) -> lines::Stresses {
-    let fields = BodyKind::ALL
-        .map(|kind| (kind, scene.cell_field(kind, pressure).expect("no end is free of traction")));
-    let at = |kind: BodyKind, at: &[f64; 3]| {
-        let (_, field) = fields.iter().find(|f| f.0 == kind).expect("one a body");
-        rounded(field, *at)
-    };
-    let curve = |spec: &CurveSpec| spec.points.par_iter().map(|p| at(spec.body, p)).collect();
-    lines::Stresses {
-        curves: curves.iter().map(curve).collect(),
-        points: points.par_iter().map(|(kind, p)| at(*kind, p)).collect(),
-        work: Work::default(),
-    }
-}
-
-/// The stress at `x`, `y`, `z`, with what a round surface adds.
-fn rounded(field: &CellField, [x, y, z]: [f64; 3]) -> RoundStress {
-    let flat = field.at(x, y, z);
-    // Nothing moves along x at x = 0, nor on the surface.
-    let slope = if x == 0.0 || z == 0.0 {
-        StressTensor::default()
-    } else {
-        (field.at(x + STEP, y, z) - field.at(x - STEP, y, z)) * (0.5 / STEP)
-    };
-    RoundStress::new(x, z, flat, &slope, &LocalContact::HERTZ)
-}
-
-/// The load per length of each row of cells.
-fn line_loads(pressure: &CellPressure) -> Vec<LineLoad> {
-    let grid = &pressure.grid;
-    let (a, b) = grid.half_sides();
-    let row = |(j, row): (usize, &[f64])| LineLoad {
-        y: grid.y(j),
-        weight: 2.0 * b,
-        load: 2.0 * a * row.iter().sum::<f64>(),
-        half_width: a * row.iter().filter(|p| **p > 0.0).count() as f64,
-    };
-    pressure.pressure.chunks_exact(grid.nx).enumerate().map(row).collect()
-}
-
-/// The ends along y of the cells that carry a pressure.
-fn contact_ends(pressure: &CellPressure) -> [f64; 2] {
-    let lines = line_loads(pressure);
-    let loaded = || lines.iter().filter(|line| line.load > 0.0);
-    let end =
-        |line: Option<&LineLoad>, side: f64| line.map_or(0.0, |l| l.y + side * 0.5 * l.weight);
-    [end(loaded().next(), -1.0), end(loaded().next_back(), 1.0)]
+/// x and y of the line of action of the pressures' resultant (C).
+fn centre(cells: &[PressureCell]) -> [f64; 2] {
+    let sum = |of: fn(&PressureCell) -> f64| cells.iter().map(|c| c.p * of(c)).sum::<f64>();
+    let total = sum(|_| 1.0);
+    [sum(|c| c.x) / total, sum(|c| c.y) / total]
 }
 
 /// The pressures of the cells that the two standard lines go through.
 fn pressure_lines(scene: &Scene, pressure: &CellPressure) -> Vec<PressureLine> {
     let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
         name: name.to_string(),
-        p: at.iter().map(|&[x, y]| pressure.at(x, y)).collect(),
+        p: at.iter().map(|&[x, y]| pressure.at(x, scene.off_middle(y))).collect(),
         at,
         own_error: None,
     };
-    let along = scene.span().contact_line();
+    let span = scene.span();
     vec![
-        line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
-        line("along-x", across_contact().into_iter().map(|x| [x, 0.0]).collect()),
+        line("along-y", span.contact_line().into_iter().map(|y| [0.0, y]).collect()),
+        line("along-x", across_contact().into_iter().map(|x| [x, span.centre()]).collect()),
     ]
 }

@@ -1,8 +1,9 @@
 //! The contact pressure in cells, whose sum is the load.
 
 use super::solved_scene::SolvedScene;
+use crate::cells::CellPressure;
 use crate::kernels::strip;
-use crate::stress::Load;
+use crate::stress::{LineLoad, Load};
 
 /// Cells of the written pressure across the contact (C).
 const CELL: f64 = 0.05;
@@ -53,4 +54,25 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
         }
     }
     cells
+}
+
+/// The load per length of each row of cells, whose middle is at `middle` (C).
+pub(super) fn line_loads(pressure: &CellPressure, middle: f64) -> Vec<LineLoad> {
+    let grid = &pressure.grid;
+    let (a, b) = grid.half_sides();
+    let row = |(j, row): (usize, &[f64])| LineLoad {
+        y: grid.y(j) + middle,
+        weight: 2.0 * b,
+        load: 2.0 * a * row.iter().sum::<f64>(),
+        half_width: a * row.iter().filter(|p| **p > 0.0).count() as f64,
+    };
+    pressure.pressure.chunks_exact(grid.nx).enumerate().map(row).collect()
+}
+
+/// The ends along y of the rows that carry a load.
+pub(super) fn contact_ends(lines: &[LineLoad]) -> [f64; 2] {
+    let loaded = || lines.iter().filter(|line| line.load > 0.0);
+    let end =
+        |line: Option<&LineLoad>, side: f64| line.map_or(0.0, |l| l.y + side * 0.5 * l.weight);
+    [end(loaded().next(), -1.0), end(loaded().next_back(), 1.0)]
 }

@@ -21,7 +21,7 @@ pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
     cases
         .iter()
         .map(|case| {
-            options.check(case)?;
+            options.check_line(case)?;
             let key = Scene::new(case, options.method, options.psi).key();
             // Extra points are in metres and therefore differ between cases; a force that has to be found is no
             // other case's.

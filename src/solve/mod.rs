@@ -3,6 +3,8 @@
 
 mod approached;
 mod cell_case;
+mod cell_contact;
+mod cell_stress;
 mod cells;
 pub mod edge;
 mod extent;

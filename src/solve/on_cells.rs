@@ -1,36 +1,77 @@
-//! A scene on uniform cells of constant pressure.
+//! A scene on uniform cells of constant pressure, whose middle is that of the bodies' overlap.
 
-use super::scene::{Scene, SceneBody};
+use super::scene::{Scene, SceneBody, Tilt};
 use crate::base::BodyKind;
 use crate::cells::{
-    CellField, CellPressure, CellProblem, FieldEnd, FreeBody, FreeEnds, Grid, Images,
+    CellField, CellPressure, CellProblem, CellTilt, FieldEnd, FreeBody, FreeEnds, Grid, Images,
 };
+use crate::contact::{Gap, Shaped};
 use std::sync::Arc;
 
 /// Most applications of the compliance.
 const MOST_ITERATIONS: usize = 1000;
 
+/// The smooth gap of a scene, from the overlap's middle.
+pub(super) struct Placed {
+    gap: Shaped,
+    middle: f64,
+}
+
+impl Gap for Placed {
+    fn at(&self, x: f64, y: f64) -> f64 {
+        self.gap.at(x, y + self.middle)
+    }
+}
+
 impl Scene {
     /// The scene's contact on the cells of `grid`, whose half-length is the scene's, to the
-    /// relative residual `tolerance`.
+    /// relative residual `tolerance`. A tilt that is held is that of far points.
     pub fn on_cells(&self, grid: Grid, tolerance: f64) -> CellProblem {
         let (mut images, mut free) = (Vec::new(), Vec::new());
         for kind in BodyKind::ALL {
             let (&SceneBody { half, nu, share, .. }, end) = (&self.bodies[kind], self.end(kind));
-            images.extend(end.image_weight.map(|weight| Images { half, weight: share * weight }));
-            free.extend(end.freed.then_some(FreeBody { half, nu, share }));
+            let middle = self.off_middle(self.bodies[kind].middle);
+            let of_weight = |weight| Images { half, middle, weight: share * weight };
+            images.extend(end.image_weight.map(of_weight));
+            free.extend(end.freed.then_some(FreeBody { half, middle, nu, share }));
         }
-        let load = self.load;
-        let free = (!free.is_empty()).then(|| Arc::new(FreeEnds::new(self.half_length, &free)));
-        CellProblem { grid, images, free, load, tolerance, most_iterations: MOST_ITERATIONS }
+        let even = grid.nx.is_multiple_of(2) && grid.ny.is_multiple_of(2);
+        let symmetric = self.span().symmetric && even;
+        let free =
+            (!free.is_empty()).then(|| Arc::new(FreeEnds::new(self.half_length, &free, symmetric)));
+        let tilt = match self.tilt {
+            Tilt::Held(tilt) => CellTilt::Held(tilt),
+            Tilt::Free(arm) => CellTilt::Free(self.off_middle(arm)),
+        };
+        let (load, most_iterations) = (self.load, MOST_ITERATIONS);
+        CellProblem { grid, images, free, load, tilt, tolerance, most_iterations }
+    }
+
+    /// The smooth gap over cells.
+    pub(super) fn gap_on_cells(&self) -> Placed {
+        Placed { gap: self.gap(), middle: self.middle }
+    }
+
+    /// A place along the contact, counted from the overlap's middle.
+    pub(super) fn off_middle(&self, y: f64) -> f64 {
+        y - self.middle
     }
 
     /// The stresses of a body under the pressures of cells; none where its ends are free of
     /// traction, which takes more than Love's sums.
     pub fn cell_field(&self, kind: BodyKind, pressure: &CellPressure) -> Option<CellField> {
+        (!self.end(kind).freed).then(|| self.mirrored_field(kind, pressure))
+    }
+
+    /// The stresses of a body under the pressures of cells and their images.
+    pub(super) fn mirrored_field(&self, kind: BodyKind, pressure: &CellPressure) -> CellField {
         let (body, end) = (&self.bodies[kind], self.end(kind));
-        let ends =
-            FieldEnd { half: body.half, mirrored: end.image_weight.is_some(), gamma: end.gamma };
-        (!end.freed).then(|| CellField::new(pressure, ends, body.nu))
+        let ends = FieldEnd {
+            half: body.half,
+            middle: self.off_middle(body.middle),
+            mirrored: end.image_weight.is_some(),
+            gamma: end.gamma,
+        };
+        CellField::new(pressure, ends, body.nu)
     }
 }

@@ -50,6 +50,22 @@ impl Options {
         self.curves.iter().any(|wanted| wanted == name || wanted == twin)
     }
 
+    /// Refuses what the line engine does not take: a rough surface, and what [`Options::check`] refuses.
+    ///
+    /// # Errors
+    /// [`Error::Value`].
+    pub fn check_line(&self, case: &Case) -> Result<()> {
+        if let Some(surface) = &case.surface {
+            return Err(Error::Value {
+                key: "surface.heights".into(),
+                value: format!("{:?}", surface.heights.display()),
+                reason: "contacts along a line are smooth; only cells carry heights".into(),
+                remedy: "solve this case on cells (`edgeline solve --engine cells`), or remove [surface]".into(),
+            });
+        }
+        self.check(case)
+    }
+
     /// Refuses curves that do not exist and points outside their body.
     ///
     /// # Errors

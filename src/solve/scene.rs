@@ -60,6 +60,8 @@ pub struct Scene {
     /// Whether the contact carries a traction along x. Of which friction does not matter: the stresses under
     /// a traction equal to the pressure are kept by themselves.
     pub slides: bool,
+    /// Whether measured heights come on top of the surfaces: nothing is symmetric then. Only the engine on cells takes them.
+    pub rough: bool,
     /// 2 R / C, R the equivalent radius, where a profile or a held tilt needs it, otherwise zero.
     pub steepness: f64,
     /// Depth (C) of the lines whose tilt is held; zero where none is, or where they are parallel by
@@ -92,6 +94,7 @@ impl Scene {
             load: PI * half_length,
             tilt: Tilt::Held(0.0),
             slides: false,
+            rough: false,
             steepness: 0.0,
             depth: 0.0,
             model,
@@ -111,6 +114,7 @@ impl Scene {
             pose,
             sliding: Sliding { friction },
             fatigue: _,
+            surface,
             accuracy: Accuracy { tolerance },
             cells: _,
         } = case;
@@ -162,6 +166,7 @@ impl Scene {
             bodies,
             tilt,
             slides: *friction != 0.0,
+            rough: surface.is_some(),
             model,
             psi,
             tolerance: *tolerance,
@@ -206,7 +211,7 @@ impl Scene {
         self.bodies.iter().all(aligned)
     }
 
-    /// Whether the contact is symmetric about y = 0.
+    /// Whether the contact is symmetric about y = 0, but for heights on top of it.
     pub fn is_symmetric(&self) -> bool {
         self.is_aligned() && self.tilt == Tilt::Held(0.0)
     }
@@ -223,7 +228,8 @@ impl Scene {
 
     /// The contact line, for the standard curves.
     pub fn span(&self) -> Span {
-        Span { ends: self.overlap(), symmetric: self.is_symmetric(), slides: self.slides }
+        let symmetric = self.is_symmetric() && !self.rough;
+        Span { ends: self.overlap(), symmetric, slides: self.slides || self.rough }
     }
 
     /// The gap between the bodies, parallel and without load.
@@ -246,6 +252,7 @@ impl Scene {
             load,
             tilt,
             slides,
+            rough: _,
             steepness,
             depth,
             model,

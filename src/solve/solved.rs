@@ -72,7 +72,7 @@ impl SolvedCase {
     /// force causes the approach that the case asks for; [`Error::NotConverged`] and [`Error::Unsound`] as
     /// [`SolvedScene::new`].
     pub fn new(case: &Case, options: &Options) -> Result<Self> {
-        options.check(case)?;
+        options.check_line(case)?;
         let (case, scene) = with_force(case, options)?;
         Ok(Self::of_scene(&case, options, Arc::new(scene)))
     }

@@ -256,7 +256,7 @@ impl SolvedScene {
         let [block, roller] = &fields;
         let own = &self.own;
         let ends = own.pressure.ends();
-        tilt::tilt(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
+        tilt::of_fields(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
     }
 }
 
@@ -476,7 +476,7 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        tilt::tilt(scene, [&block, &roller], pressure.ends(), scene.depth)
+        tilt::of_fields(scene, [&block, &roller], pressure.ends(), scene.depth)
     }
 }
 

@@ -1,9 +1,22 @@
 //! The tilt of the bodies, of lines at a depth below their surfaces.
 
 use super::scene::Scene;
-use crate::base::{BodyKind, Panels};
+use crate::base::{BodyKind, Panels, StressTensor};
 use crate::contact::Gap;
 use crate::stress::Field;
+
+/// Stresses of a body below (0, y), at each of some depths.
+pub(super) type Below<'a> = dyn Fn(BodyKind, f64, &[f64]) -> Vec<StressTensor> + 'a;
+
+/// [`tilt`] from the fields of the block and of the roller.
+pub(super) fn of_fields(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f64) -> f64 {
+    let below = |kind: BodyKind, y: f64, zs: &[f64]| {
+        let [block, roller] = fields;
+        let field = if kind == BodyKind::Block { block } else { roller };
+        field.down(&[0.0], y, zs).iter().map(|row| row[0].pressure).collect()
+    };
+    tilt(scene, &below, ends, depth)
+}
 
 /// Places along the contact.
 const PLACES: usize = 6;
@@ -13,12 +26,12 @@ const FIRST: f64 = 0.25;
 const ORDER: usize = 4;
 
 /// The tilt of the lines x = 0 at `depth` below both surfaces, in units of C / (2 R), by least squares over
-/// the contact from `ends` to end, from the stress fields of the block and of the roller.
+/// the contact from `ends` to end, from the stresses `below` the line.
 ///
 /// Where the bodies touch they have closed the gap. What the line approaches beyond that is the
 /// shortening of both bodies above it, the integral of the strain (sigma_zz - nu (sigma_xx +
 /// sigma_yy)) / E. No reference far away is needed, on which the tilt would depend.
-pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f64) -> f64 {
+pub(super) fn tilt(scene: &Scene, below: &Below, ends: [f64; 2], depth: f64) -> f64 {
     let gap = scene.gap();
     let along = Panels::new(ends.to_vec(), PLACES);
     let mut breaks = vec![0.0];
@@ -30,14 +43,11 @@ pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f6
     breaks.push(depth);
     let down = Panels::new(breaks, ORDER);
     let closed = |y: f64| -> f64 {
-        let bodies = BodyKind::ALL.into_iter().zip(fields);
-        let shortened = bodies.map(|(kind, field)| {
+        let shortened = BodyKind::ALL.into_iter().map(|kind| {
             let body = &scene.bodies[kind];
-            let column = field.down(&[0.0], y, down.nodes());
-            let strains = column.iter().zip(down.weights()).map(|(row, weight)| {
-                let s = row[0].pressure;
-                weight * (body.nu * (s.xx + s.yy) - s.zz)
-            });
+            let column = below(kind, y, down.nodes());
+            let strains = column.iter().zip(down.weights());
+            let strains = strains.map(|(s, weight)| weight * (body.nu * (s.xx + s.yy) - s.zz));
             // 1 / E in units of 1 / E*.
             strains.sum::<f64>() * body.share / (1.0 - body.nu * body.nu)
         });

@@ -2,7 +2,7 @@
 
 use super::field::{Field, Work};
 use super::flat::FlatStress;
-use super::round::RoundStress;
+use super::round::{DIAMETRAL_TENSION, RoundStress};
 use crate::base::StressTensor;
 
 /// A [`Field`] that is computed in a unit of length of its own, and so with a unit of pressure of its own:
@@ -75,10 +75,12 @@ impl<'a> BodyField<'a> {
     }
 
     fn round(&self, stresses: Vec<RoundStress>) -> Vec<RoundStress> {
-        // What the round shape adds is stated per C / R.
+        // What the round shape adds is stated per C / R. The tension of the squeezed roller is that of the
+        // mean load, whatever the unit.
+        let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
         let of = |RoundStress { flat, round }| RoundStress {
             flat: flat * self.unit,
-            round: round * (self.unit * self.unit),
+            round: (round - tension) * (self.unit * self.unit) + tension,
         };
         stresses.into_iter().map(of).collect()
     }

@@ -11,7 +11,7 @@ use super::flat::FlatStress;
 use super::load::{Load, Traction};
 use super::round::{LocalContact, RoundStress};
 use super::waves::{Influence, PartLoads, TractionLoads, Waves};
-use crate::base::{Panels, StressTensor, Wavenumbers};
+use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
 use crate::body::{Body, Stack, transition};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::wave::{WAVES, Wanted, WaveTable};
@@ -83,10 +83,6 @@ const ON_SURFACE: f64 = 1e-9;
 
 /// Depth (C) that stands for the surface under a traction along x, see [`below`].
 const UNDER_SURFACE: f64 = 1e-5;
-
-/// Distance from the contact's end (C) within which its local half-width is not that of the loads
-/// around.
-const END_REACH: f64 = 1.0;
 
 /// Step of the difference quotient along x (C).
 const STEP: f64 = 1e-4;
@@ -183,10 +179,7 @@ impl<'a> Field<'a> {
         if !self.follows_contact {
             return LocalContact::HERTZ;
         }
-        let [from, to] = self.pressure.ends();
-        // What is added depends on the loads within C: the steep ends themselves are no measure.
-        let inset = END_REACH.min(0.5 * (to - from));
-        self.pressure.local_contact(y.clamp(from + inset, to - inset))
+        self.pressure.local_contact(LocalContact::place(y, self.pressure.ends()))
     }
 
     /// Whether the contact is symmetric about y = 0.
@@ -511,6 +504,7 @@ impl<'a> Field<'a> {
         let mut target = Target::new(self, &waves, y, z);
         let mut sums = vec![[[0.0; 6]; 2]; xs.len()];
         let mut fading = 0;
+        let odd = self.pressure.parity_across() == Parity::Odd;
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
                 target.work.faded = ((waves.k.len() - i) * target.loads()) as u64;
@@ -524,7 +518,9 @@ impl<'a> Field<'a> {
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
-                add_wave(&mut sum[0], weight, &pressure, cos, sin);
+                // An odd pressure is an even one a quarter of the wave farther on.
+                let [others, shears] = if odd { [sin, -cos] } else { [cos, sin] };
+                add_wave(&mut sum[0], weight, &pressure, others, shears);
                 if let Some(traction) = &traction {
                     add_wave(&mut sum[1], weight, traction, sin, cos);
                 }

@@ -1,11 +1,11 @@
 //! What a stress field needs to know of the pressure on its body.
 
 use super::round::LocalContact;
-use crate::base::{Panels, Wavenumbers};
+use crate::base::{Panels, Parity, Wavenumbers};
 use nalgebra::DMatrix;
 use std::fmt::Debug;
 
-/// A pressure (p0) that is even in x, with a profile across the contact at each node of an axis along it.
+/// A pressure (p0) that is even in x, unless it says otherwise, with a profile across the contact at each node of an axis along it.
 pub trait Load: Debug + Sync {
     /// Axis along the contact: all of it, or the half from its middle to its end.
     fn axis(&self) -> &Panels;
@@ -13,6 +13,11 @@ pub trait Load: Debug + Sync {
     /// Whether the pressure is even in y, and the axis holds its half at y >= 0.
     fn is_symmetric(&self) -> bool {
         true
+    }
+
+    /// Whether the pressure is even or odd in x; the transforms of an odd one are those with sin(k x).
+    fn parity_across(&self) -> Parity {
+        Parity::Even
     }
 
     /// The contact's ends along y.

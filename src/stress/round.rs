@@ -36,6 +36,10 @@ const POINTS: usize = GROUPS * LANES;
 const GROUPS: usize = 5;
 const LANES: usize = 8;
 
+/// Distance from the contact's end (C) within which its local half-width is not that of the loads
+/// around.
+const END_REACH: f64 = 1.0;
+
 /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
 type Rule = [[[f64; LANES]; 2]; GROUPS];
 
@@ -63,6 +67,19 @@ pub struct LocalContact {
 impl LocalContact {
     /// The Hertz contact of the mean load.
     pub const HERTZ: LocalContact = LocalContact { half_width: 1.0, peak: 1.0 };
+
+    /// The place whose load counts at `y`, in a contact that has these `ends`: what is added depends on the loads within
+    /// C, of which the steep ends themselves are no measure.
+    pub fn place(y: f64, [from, to]: [f64; 2]) -> f64 {
+        let inset = END_REACH.min(0.5 * (to - from));
+        y.clamp(from + inset, to - inset)
+    }
+
+    /// The Hertz contact of a `load` per length (C p0), its half-width in units of C its pressure in units of p0; none pulls.
+    pub fn carrying(load: f64) -> Self {
+        let half_width = (2.0 / PI * load.max(0.0)).sqrt();
+        Self { half_width, peak: half_width }
+    }
 
     /// Contributions of the loads' tilt and of the surface's drop to xx, zz and xz at (`x`, `z`) (C).
     fn tilted(&self, x: f64, z: f64) -> [f64; 3] {

@@ -3,7 +3,7 @@
 
 use crate::base::Material;
 use crate::case::{
-    Accuracy, Block, Case, Cells, Fatigue, Load, Pose, ProfileSpec, Roller, Sliding,
+    Accuracy, Block, Case, Cells, Fatigue, Load, Pose, ProfileSpec, Roller, Sliding, Surface,
 };
 use serde::{Deserialize, Serialize};
 
@@ -24,6 +24,8 @@ pub(super) struct CaseForm {
     sliding: Sliding,
     #[serde(default, skip_serializing_if = "Fatigue::is_none")]
     fatigue: Fatigue,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    surface: Option<Surface>,
     #[serde(flatten)]
     accuracy: Accuracy,
     #[serde(default, skip_serializing_if = "Option::is_none")]

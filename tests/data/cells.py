@@ -3,8 +3,8 @@
     python3 tests/data/cells.py        (needs numpy; about a minute)
 
 writes cells.csv next to itself: along the line (x at the middle) and across it (y at the middle), the pressures of
-half-space and guilbault on 96 x 160 cells, S_l = 5, nu = 0.3, X = 1.5 C, the block as long as the roller or twice as long;
-and of each contact the sum of p and of p^2 over the cells and the approach.
+half-space and guilbault on 96 x 160 cells, S_l = 5, nu = 0.3, X = 1.5 C, the block as long as the roller or twice as long,
+the latter also with waves on its surface that are skew to the contact; and of each contact the sum of p and of p^2 over the cells and the approach.
 
 Nothing is shared with the program: the deflection is Love's textbook formula, the transforms are whole and complex, each
 image is a cell of its own at its own place (the grid is extended along y until it holds all of them), and the iteration is
@@ -33,6 +33,11 @@ def deflection(x, y):
     return (
         part(0, yp, ym, xp) - part(0, yp, ym, xm) + part(0, xp, xm, yp) - part(0, xp, xm, ym)
     ) / np.pi
+
+
+def waves(x, y):
+    """Heights in units of C^2 / (2 R)."""
+    return 0.15 * (np.sin(7 * x + 1) + 0.7 * np.cos(5.3 * x - 2.1 * y + 0.3))
 
 
 def operator(images):
@@ -97,11 +102,13 @@ def main():
         "guilbault-flush": [(h, 0.5 * psi) for h in (S, -S, S, -S)],
         "guilbault-half": [(h, 0.5 * psi) for h in (S, -S, 2 * S, -2 * S)],
     }
+    cases["rough-half"] = cases["guilbault-half"]
     with open(HERE / "cells.csv", "w", newline="") as file:
         out = csv.writer(file, lineterminator="\n")
         out.writerow(["case line", "index", "p"])
         for name, images in cases.items():
-            p, approach = solve(operator(images), gap, total)
+            rough = waves(x[:, None], y[None, :]) if name.startswith("rough") else 0
+            p, approach = solve(operator(images), gap - rough, total)
             out.writerow([f"{name} sum", 0, repr(float(p.sum()))])
             out.writerow([f"{name} squares", 0, repr(float((p**2).sum()))])
             out.writerow([f"{name} approach", 0, repr(float(approach))])

@@ -370,6 +370,68 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
     }
 }
 
+/// A two-dimensional array in numpy's format 1.0.
+fn npy([nx, ny]: [usize; 2], value: impl Fn(usize, usize) -> f64) -> Vec<u8> {
+    let header = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({nx}, {ny}), }}\n");
+    let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
+    bytes.extend((header.len() as u16).to_le_bytes());
+    bytes.extend(header.bytes());
+    (0..nx).for_each(|i| (0..ny).for_each(|j| bytes.extend(value(i, j).to_le_bytes())));
+    bytes
+}
+
+/// flush-short with `surface` in its case file.
+fn rough_case(surface: &str) -> String {
+    let case = edgeline::case::builtin_case("flush-short").unwrap().unwrap().to_toml();
+    format!("{case}\n[surface]\n{surface}\n")
+}
+
+#[test]
+fn a_measured_surface_is_pressed_on_cells() {
+    let folder = tempfile::tempdir().unwrap();
+    let write =
+        |name: &str, content: &[u8]| std::fs::write(folder.path().join(name), content).unwrap();
+    // C is 0.252 mm, the contact 2.52 mm long.
+    write("waves.npy", &npy([80, 90], |i, _| 2e-7 * (0.9 * i as f64).sin()));
+    write("holes.npy", &npy([80, 90], |i, j| if (i, j) == (3, 7) { f64::NAN } else { 0.0 }));
+    std::fs::File::create(folder.path().join("huge.npy")).unwrap().set_len(10 << 30).unwrap();
+    let steps = "dx_m = 1e-5\ndy_m = 3e-5\n";
+    let case = |name: &str, surface: &str| write(name, rough_case(surface).as_bytes());
+    case("rough.toml", &format!("heights = \"waves.npy\"\n{steps}detrend = \"mean\""));
+    let run = ["solve", "rough.toml", "--json", "--curve", "depth-centre", "--cells", "64,64"];
+    let output = edgeline(folder.path(), &run).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let summary: Value = serde_json::from_slice(&output.stdout).unwrap();
+    assert_eq!(summary["details"]["engine"], "cells");
+    assert_eq!(summary["method"], "quarter-space");
+    assert!(
+        summary["p_max_pa"].as_f64().unwrap() > 1.3 * summary["hertz"]["p0_pa"].as_f64().unwrap()
+    );
+    assert!(folder.path().join("out/pressure.npy").is_file());
+    let refusals = [
+        ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
+        ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
+        ("heights = \"none.npy\"", steps, "none.npy"),
+        ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
+        ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
+        ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
+        ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
+    ];
+    for (heights, steps, wanted) in refusals {
+        case("bad.toml", &format!("{heights}\n{steps}"));
+        let said = refused(folder.path(), &["solve", "bad.toml", "--out", "no"]);
+        assert!(said.contains(wanted), "{said}");
+    }
+    for arguments in [
+        &["solve", "rough.toml", "--engine", "line", "--out", "no"][..],
+        &["sweep", "rough.toml", "--out", "no"],
+    ] {
+        let said = refused(folder.path(), arguments);
+        assert!(said.contains("smooth"), "{said}");
+    }
+    assert!(!folder.path().join("no").exists());
+}
+
 #[test]
 fn uncertain_inputs_leave_bands() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,5 +1,6 @@
 use super::super::*;
 use crate::base::{Error, Material};
+use crate::cells::Detrend;
 use proptest::prelude::*;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,6 +34,13 @@ fn every_field() -> Case {
             residual_xx_pa: Some(-1.1e8),
             residual_yy_pa: Some(-1.2e8),
         },
+        surface: Some(Surface {
+            heights: "rough.npy".into(),
+            dx_m: 1.1e-6,
+            dy_m: 1.2e-6,
+            detrend: Some(Detrend::Plane),
+            samples: None,
+        }),
         accuracy: Accuracy { tolerance: 2e-3 },
         cells: Some(Cells { half_width_m: 4e-4 }),
     }
@@ -94,7 +102,12 @@ fn numbers(table: &Table, prefix: &str) -> BTreeMap<String, f64> {
         match value {
             Value::Float(number) => drop(found.insert(path, *number)),
             Value::Table(below) => found.extend(numbers(below, &format!("{path}."))),
-            Value::String(_) => assert!(path == "name" || key == "kind", "{path}"),
+            Value::String(_) => {
+                assert!(
+                    path == "name" || ["kind", "heights", "detrend"].contains(&key.as_str()),
+                    "{path}"
+                );
+            }
             other => panic!("{path} = {other} is neither a number nor a known text"),
         }
     }

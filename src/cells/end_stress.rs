@@ -1,0 +1,121 @@
+//! What free ends add to the stresses of a mirrored half-space under any pressures of cells.
+//!
+//! The cells themselves and their images are Love's ([`super::CellField`]), so that a rough pressure is summed as it is. What free ends
+//! add to that, the field by free ends less that by mirrored ones, is smooth but at the corner, and taken from the
+//! pressures on the nodes that carry the ends ([`super::FreeEnds`]), for their part that is even and for that which is odd in x.
+
+use super::columns::at_nodes;
+use super::ends::FreeEnds;
+use super::pressure::CellPressure;
+use crate::base::{Panels, Parity, StressTensor};
+use crate::stress::{Field, Load};
+use nalgebra::DMatrix;
+
+/// One part in x of the pressures of cells, as waves alone: of fields that only count as differences.
+#[derive(Debug)]
+struct Part<'a> {
+    axis: &'a Panels,
+    parity: Parity,
+    /// Half a cell's width, and the places of the cells across with x >= 0.
+    half: f64,
+    places: Vec<f64>,
+    /// The part at these places: a row for each node.
+    nodal: DMatrix<f64>,
+}
+
+/// Both parts in x of a pressure, with their moments.
+#[derive(Debug)]
+pub struct EndLoads<'a> {
+    ends: &'a FreeEnds,
+    parts: [(Part<'a>, DMatrix<f64>); 2],
+}
+
+/// The stresses of one body.
+#[derive(Debug)]
+pub struct EndStress<'a> {
+    /// By free and by mirrored ends, for each part.
+    fields: [[Field<'a>; 2]; 2],
+}
+
+impl<'a> EndLoads<'a> {
+    /// The pressures of `cells` on the nodes of `ends`, which are not those of a symmetric contact.
+    pub fn new(ends: &'a FreeEnds, cells: &CellPressure) -> Self {
+        let nx = cells.grid.nx;
+        let (half, count) = (cells.grid.half_sides().0, nx - nx / 2);
+        let parts = Parity::BOTH.map(|parity| {
+            let nodal = at_nodes(cells, ends.axis(), false, |row, i| {
+                // The cell in the middle of an odd number stands for both sides.
+                let share = if nx % 2 == 1 && i == 0 { 0.5 } else { 1.0 };
+                share * 0.5 * (row[nx / 2 + i] + parity.sign() * row[count - 1 - i])
+            });
+            let places = (0..count).map(|i| cells.grid.x(nx / 2 + i)).collect();
+            let part = Part { axis: ends.axis(), parity, half, places, nodal };
+            let moments = ends.moments(&part);
+            (part, moments)
+        });
+        Self { ends, parts }
+    }
+
+    /// The stresses that free ends add in the body of this half-length, Poisson's ratio and middle, see [`FreeEnds::fields`].
+    pub fn stress(&self, body: (f64, f64, f64), tolerance: f64) -> EndStress<'_> {
+        let fields = self
+            .parts
+            .each_ref()
+            .map(|(part, moments)| self.ends.fields(body, part, moments, tolerance));
+        EndStress { fields }
+    }
+}
+
+impl EndStress<'_> {
+    /// What is added at (x, `y`, `z`) for each x of `xs`. On an end face the tractions of the sum are zero, which only the
+    /// caller can tell.
+    pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        let mut sums = vec![StressTensor::default(); xs.len()];
+        for fields in &self.fields {
+            let [freed, mirrored] = fields.each_ref().map(|field| field.at(y, z, xs));
+            for (sum, (own, mirrored)) in sums.iter_mut().zip(freed.iter().zip(mirrored)) {
+                *sum += own.pressure - mirrored.pressure;
+            }
+        }
+        sums
+    }
+}
+
+impl Load for Part<'_> {
+    fn axis(&self) -> &Panels {
+        self.axis
+    }
+
+    fn is_symmetric(&self) -> bool {
+        false
+    }
+
+    fn parity_across(&self) -> Parity {
+        self.parity
+    }
+
+    fn at(&self, _x: f64, _y: f64) -> f64 {
+        0.0
+    }
+
+    fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
+        let wave = |i: usize, j: usize| {
+            let (k, x) = (k[j], self.places[i]);
+            let at = match self.parity {
+                Parity::Even => (k * x).cos(),
+                Parity::Odd => (k * x).sin(),
+            };
+            // On either side.
+            2.0 * at * 2.0 * (k * self.half).sin() / k
+        };
+        &self.nodal * DMatrix::from_fn(self.places.len(), k.len(), wave)
+    }
+
+    fn endless(&self, _j: usize, _x: f64, _z: f64) -> [f64; 3] {
+        [0.0; 3]
+    }
+
+    fn neighbours(&self, _y: f64) -> Vec<(usize, f64)> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,189 @@
+//! Stresses on curves and at points under the pressures of cells.
+
+use super::cells::{contact_ends, line_loads};
+use super::lines;
+use super::options::Options;
+use super::scene::Scene;
+use super::shaping::Shaping;
+use super::solved::wanted_curves;
+use crate::base::{HertzScales, PerBody, StressTensor};
+use crate::case::Case;
+use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
+use crate::stress::round::LocalContact;
+use crate::stress::{BodyField, BodyKind, CurveSpec, LineLoad, RoundStress, StressCurve, Work};
+use rayon::prelude::*;
+
+/// Step of the difference quotient along x (C).
+const STEP: f64 = 1e-4;
+
+/// Places closer to an end face than this part of a body's length are on it.
+const ON_FACE: f64 = 1e-9;
+
+/// Curves and points with their stresses.
+pub(super) struct Stressed {
+    pub curves: Vec<StressCurve>,
+    pub points: Vec<StressTensor>,
+}
+
+impl Stressed {
+    /// Those that `options` ask for, under the `pressure` of the `problem` that `scene` makes.
+    pub fn new(
+        case: &Case,
+        scene: &Scene,
+        options: &Options,
+        problem: &CellProblem,
+        pressure: &CellPressure,
+    ) -> Self {
+        let HertzScales { c_m, .. } = case.hertz();
+        let specs = wanted_curves(scene, options);
+        let placed = |[x, y, z]: [f64; 3]| [x, scene.off_middle(y), z];
+        let points: Vec<(BodyKind, [f64; 3])> =
+            options.points.iter().map(|p| (p.body, placed(p.at_m.map(|v| v / c_m)))).collect();
+        let curves: Vec<CurveSpec> = specs
+            .iter()
+            .map(|spec| CurveSpec {
+                points: spec.points.iter().map(|at| placed(*at)).collect(),
+                ..*spec
+            })
+            .collect();
+        let found = match &problem.free {
+            // The nodes that carry the ends carry a smooth pressure too.
+            Some(free) if !scene.rough => by_nodes(scene, free, pressure, &curves, &points),
+            free => sums(case, scene, free.as_deref(), pressure, &curves, &points),
+        };
+        let shaping = Shaping::of(case);
+        let shaped = |body: BodyKind, stress: &RoundStress| shaping.stress(body, stress);
+        let curves = specs.into_iter().zip(&found.curves).map(|(spec, stresses)| StressCurve {
+            body: spec.body,
+            name: spec.name.to_string(),
+            stress: stresses.iter().map(|s| shaped(spec.body, s)).collect(),
+            at: spec.points,
+            own_error: None,
+        });
+        let points = options.points.iter().zip(&found.points);
+        let points = points.map(|(point, s)| shaped(point.body, s)).collect();
+        Self { curves: curves.collect(), points }
+    }
+}
+
+/// What names a body of a scene among those with free ends.
+fn body_of(scene: &Scene, kind: BodyKind) -> (f64, f64, f64) {
+    let body = &scene.bodies[kind];
+    (body.half, body.nu, scene.off_middle(body.middle))
+}
+
+/// The fields of the line engine under the pressures of cells.
+fn by_nodes(
+    scene: &Scene,
+    free: &FreeEnds,
+    pressure: &CellPressure,
+    curves: &[CurveSpec],
+    points: &[(BodyKind, [f64; 3])],
+) -> lines::Stresses {
+    let columns = free.columns(pressure);
+    let moments = free.moments(&columns);
+    let field = |kind: BodyKind| {
+        let [field, _] = free.fields(body_of(scene, kind), &columns, &moments, scene.tolerance);
+        BodyField::new(field.following_contact(scene.may_end()), 1.0)
+    };
+    lines::stresses(free.shared(), field, curves, points)
+}
+
+/// The field of one body: Love's sums over cells and images, and what free ends add.
+struct Summed<'a> {
+    cells: CellField,
+    ends: Option<EndStress<'a>>,
+    /// y of the free end faces, and how close to them is on them.
+    faces: [f64; 2],
+    near: f64,
+    /// Whether the surface is flat, and whether pressures are even in x.
+    flat: bool,
+    even: bool,
+}
+
+/// Love's sums on `curves` and at single `points` (C), with what `free` ends add.
+fn sums(
+    case: &Case,
+    scene: &Scene,
+    free: Option<&FreeEnds>,
+    pressure: &CellPressure,
+    curves: &[CurveSpec],
+    points: &[(BodyKind, [f64; 3])],
+) -> lines::Stresses {
+    let loads = free.map(|free| EndLoads::new(free, pressure));
+    let field = |kind: BodyKind| {
+        let (half, _, middle) = body_of(scene, kind);
+        let ends = loads.as_ref();
+        Summed {
+            cells: scene.mirrored_field(kind, pressure),
+            ends: ends.map(|loads| loads.stress(body_of(scene, kind), scene.tolerance)),
+            faces: [middle - half, middle + half],
+            near: ON_FACE * half,
+            flat: Shaping::of(case).curvatures[kind] == 0.0,
+            even: !scene.rough,
+        }
+    };
+    let fields = PerBody { block: field(BodyKind::Block), roller: field(BodyKind::Roller) };
+    let lines = line_loads(pressure, 0.0);
+    let contact = |y: f64| local_contact(scene, &lines, y);
+    let curve = |spec: &CurveSpec| -> Vec<RoundStress> {
+        let rows: Vec<&[[f64; 3]]> =
+            spec.points.chunk_by(|a, b| a[1] == b[1] && a[2] == b[2]).collect();
+        let row = |row: &&[[f64; 3]]| fields[spec.body].row(row, &contact(row[0][1]));
+        rows.par_iter().flat_map_iter(row).collect()
+    };
+    let point = |(kind, at): &(BodyKind, [f64; 3])| {
+        fields[*kind].row(&[*at], &contact(at[1])).swap_remove(0)
+    };
+    lines::Stresses {
+        curves: curves.iter().map(curve).collect(),
+        points: points.par_iter().map(point).collect(),
+        work: Work::default(),
+    }
+}
+
+impl Summed<'_> {
+    /// Stresses at points that differ in x only, with what a round surface adds in the local `contact`.
+    fn row(&self, points: &[[f64; 3]], contact: &LocalContact) -> Vec<RoundStress> {
+        let [_, y, z] = points[0];
+        // Nothing moves along x on the surface, nor where it is flat, nor in a plane of symmetry.
+        let beside = |x: f64| {
+            if z == 0.0 || self.flat || (x == 0.0 && self.even) { 0.0 } else { STEP }
+        };
+        let xs = points.iter().flat_map(|[x, ..]| [*x, x + beside(*x), x - beside(*x)]);
+        let stresses = self.at(y, z, &xs.collect::<Vec<_>>());
+        let round = |([x, ..], at): (&[f64; 3], &[StressTensor])| {
+            let slope = match beside(*x) {
+                0.0 => StressTensor::default(),
+                step => (at[1] - at[2]) * (0.5 / step),
+            };
+            RoundStress::new(*x, z, at[0], &slope, contact)
+        };
+        points.iter().zip(stresses.chunks_exact(3)).map(round).collect()
+    }
+
+    /// The flat body's stresses at `y`, `z` for each x of `xs`, of which those in a row that are equal are computed once.
+    fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        let mut found: Vec<StressTensor> = Vec::with_capacity(xs.len());
+        for (i, x) in xs.iter().enumerate() {
+            let same = i > 0 && xs[i - 1] == *x;
+            found.push(if same { found[i - 1] } else { self.cells.at(*x, y, z) });
+        }
+        let Some(ends) = &self.ends else { return found };
+        found.iter_mut().zip(ends.at(y, z, xs)).for_each(|(sum, more)| *sum += more);
+        if self.faces.iter().any(|face| (face - y).abs() <= self.near) {
+            found.iter_mut().for_each(|s| (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0));
+        }
+        found
+    }
+}
+
+/// The plane contact under the load per length at `y`, where that varies.
+fn local_contact(scene: &Scene, lines: &[LineLoad], y: f64) -> LocalContact {
+    if !scene.may_end() {
+        return LocalContact::HERTZ;
+    }
+    let y = LocalContact::place(y, contact_ends(lines));
+    let nearest = lines.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs()));
+    LocalContact::carrying(nearest.map_or(0.0, |line| line.load))
+}
