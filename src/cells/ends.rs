@@ -154,7 +154,7 @@ impl FreeEnds {
     }
 
     /// Axis along the contact, or along its half.
-    pub(super) fn axis(&self) -> &Panels {
+    pub fn axis(&self) -> &Panels {
         &self.axis
     }
 

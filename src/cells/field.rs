@@ -54,7 +54,7 @@ pub struct FieldEnd {
 
 impl FieldEnd {
     /// y of both faces.
-    fn faces(&self) -> [f64; 2] {
+    pub(super) fn faces(&self) -> [f64; 2] {
         [self.middle + self.half, self.middle - self.half]
     }
 }

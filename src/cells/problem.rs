@@ -162,16 +162,10 @@ impl CellProblem {
             refine(&coarse, &pressure, &grid)
         };
         let (a, b) = grid.half_sides();
-        let (mut displacement, mut inverse, share): (Box<dyn Linear>, _, _) = match symmetry {
-            Symmetry::Quarter => (
-                Box::new(self.even(&grid, level.ends)),
-                inverse(&grid, [nx / 2, ny / 2], 0.5),
-                0.25,
-            ),
-            Symmetry::None => {
-                let whole = self.whole(&grid, level.ends);
-                (Box::new(whole), inverse(&grid, [nx, ny], 1.0), 1.0)
-            }
+        let mut displacement = self.displacement(&grid, symmetry, level.ends);
+        let (mut inverse, share) = match symmetry {
+            Symmetry::Quarter => (inverse(&grid, [nx / 2, ny / 2], 0.5), 0.25),
+            Symmetry::None => (inverse(&grid, [nx, ny], 1.0), 1.0),
         };
         let total = share * self.load / (4.0 * a * b);
         let arms = match self.tilt {
@@ -198,6 +192,33 @@ impl CellProblem {
             .as_ref()
             .map_or(0.0, |free| free.reference(&free.columns(solution), &self.grid, depth));
         depth::mean(solution, &shifts, depth) + ends
+    }
+
+    /// The gaps (C^2 / (2 R)) over the cells under the pressures of `solution`, those of the problem's contact with this `gap`.
+    pub fn gaps(&self, gap: &dyn Gap, solution: &CellPressure) -> Vec<f64> {
+        let grid = &self.grid;
+        let gap = &Tilted { gap, tilt: CellTilt::Held(solution.tilt) };
+        let gaps = grid.sample(|x, y| gap.at(x, y));
+        let symmetry = self.symmetry(&gaps);
+        let pressure = fold(grid, symmetry, solution.pressure.clone());
+        let mut moved = vec![0.0; pressure.len()];
+        let mut displacement = self.displacement(grid, symmetry, self.free.as_deref());
+        displacement.apply(&pressure, &mut moved);
+        let moved = unfold(grid, symmetry, moved);
+        gaps.iter().zip(moved).map(|(gap, u)| gap + u - solution.approach).collect()
+    }
+
+    /// Eq. 2 with free ends.
+    fn displacement(
+        &self,
+        grid: &Grid,
+        symmetry: Symmetry,
+        ends: Option<&FreeEnds>,
+    ) -> Box<dyn Linear> {
+        match symmetry {
+            Symmetry::Quarter => Box::new(self.even(grid, ends)),
+            Symmetry::None => Box::new(self.whole(grid, ends)),
+        }
     }
 
     /// Eq. 2 for an even pressure.

@@ -8,11 +8,12 @@ use super::values::{checked_residual, checked_tolerance, edge_model};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::Case;
+use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells, solve_on_cells,
+    CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells, check_layers,
+    layers_on_cells, loads_on_cells, solve_on_cells,
 };
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
@@ -31,7 +32,9 @@ use std::path::PathBuf;
 /// --uncertain that for each sample; with --field, or for a scene that is not symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
-/// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums.
+/// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums. For a rough
+/// surface also pressure_histogram.csv. With --loads load_gap.csv, with --layers layer-BODY-NUMBER.npy (numbers of cells,
+/// then xx, yy, zz, xy, xz, yz in Pa) and layers.json.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -47,6 +50,12 @@ pub(super) struct Arguments {
     /// Numbers of cells across and along the contact; by its shape if absent
     #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = cell_count)]
     cells: Vec<usize>,
+    /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact area
+    #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_negative_numbers = true)]
+    loads: Vec<f64>,
+    /// Also all stresses under every cell at these depths (m), on cells
+    #[arg(long, value_name = "Z,Z,...", value_delimiter = ',', allow_negative_numbers = true)]
+    layers: Vec<f64>,
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
@@ -140,6 +149,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if !arguments.cells.is_empty() {
         return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
     }
+    for (option, given) in [("loads", &arguments.loads), ("layers", &arguments.layers)] {
+        if !given.is_empty() {
+            let reason = "only the engine on cells computes them";
+            return Err(unsuited(option, reason, "add --engine cells"));
+        }
+    }
     options.check_line(&case)?;
     if arguments.uncertain.is_given() {
         case.check_force("an uncertain case has a force")?;
@@ -178,19 +193,38 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
-    check_cells(case, &cells)?;
+    let grid = check_cells(case, &cells)?;
+    for force in &arguments.loads {
+        Key::find("load.force_n").expect("a key of the list").check(*force)?;
+    }
+    check_layers(case, options, &arguments.layers, grid.len())?;
     let _lock = Lock::claim(&arguments.out)?;
     let bar = progress_bar();
     // In tenths of a decade of the residual.
     let tenths = |residual: f64| (-10.0 * residual.log10()).max(0.0) as usize;
     let all = tenths(cells.tolerance);
-    let found = solve_on_cells(case, options, &cells, &|step, residual| {
+    let progress = |step: usize, residual: f64| {
         let what = format!("step {step}, residual {residual:.0e}");
         show(&bar, tenths(residual).min(all), all, &what);
+    };
+    let found = solve_on_cells(case, options, &cells, &progress).and_then(|found| {
+        let loads = loads_on_cells(case, options, &cells, &arguments.loads, &progress)?;
+        Ok((found, loads))
     });
     bar.finish_and_clear();
-    let found = found?;
-    let mut more = cells::contents(&found.pressure, &found.solution.summary.hertz);
+    let (found, loads) = found?;
+    let hertz = &found.solution.summary.hertz;
+    let mut more = cells::contents(&found.pressure, hertz);
+    if case.surface.is_some() {
+        more.push(cells::histogram(&found.pressure, hertz));
+    }
+    if !loads.is_empty() {
+        more.push(cells::load_gap(&loads));
+    }
+    if !arguments.layers.is_empty() {
+        let layers = layers_on_cells(case, options, &found.pressure, &arguments.layers)?;
+        more.extend(cells::layers(&found.pressure.grid, &layers, hertz));
+    }
     more.extend(pictures(case, &found.solution, arguments)?);
     solution::write(&found.solution, options, more, &arguments.out)?;
     tell(case, &found.solution, arguments)

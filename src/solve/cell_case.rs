@@ -46,6 +46,12 @@ pub struct CellDetails {
     pub tolerance: f64,
     /// Relative residual reached.
     pub residual: f64,
+    /// Real contact area (m^2): that of the cells under pressure.
+    #[serde(default)]
+    pub contact_area_m2: f64,
+    /// Mean gap over the cells within C of the line x = 0 (m).
+    #[serde(default)]
+    pub mean_gap_m: f64,
     /// Depth of the points whose approach is given (m).
     pub approach_reference_m: f64,
     /// The even tension of the squeezed roller (Pa).
@@ -76,11 +82,11 @@ impl Default for CellOptions {
     }
 }
 
-/// Refuses a case that cells do not take, or not with these options.
+/// Refuses a case that cells do not take, or not with these options; the first grid that is tried for others.
 ///
 /// # Errors
 /// [`Error::Value`] with what to do.
-pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<()> {
+pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
     case.check_force("cells take a force")?;
     let scene = Scene::new(case, EdgeModel::HalfSpace, None);
     if scene.slides {
@@ -94,7 +100,8 @@ pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<()> {
     let region = Region::new(case, &scene, cells);
     let grid = region.first()?;
     let heights = case.heights();
-    heights.map_or(Ok(()), |heights| heights.check_covers(&grid, case.hertz().c_m))
+    heights.map_or(Ok(()), |heights| heights.check_covers(&grid, case.hertz().c_m))?;
+    Ok(grid)
 }
 
 /// The region of the cells.
@@ -184,25 +191,85 @@ pub fn solve_on_cells(
     let region = Region::new(case, &scene, cells);
     let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
     let setup = start.elapsed().as_secs_f64();
+    let (pressure, tilt) = covering(&mut contact, &region)?;
+    let mean_gap = contact.mean_gap(&pressure);
+    let problem = contact.problem;
+    let solved = start.elapsed().as_secs_f64();
+    let stressed = Stressed::new(case, &scene, options, &problem, &pressure);
+    let total = start.elapsed().as_secs_f64();
+    let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
+    let found =
+        Found { case, scene: &scene, problem: &problem, pressure: &pressure, tilt, mean_gap };
+    let solution = found.solution(stressed, seconds);
+    Ok(CellSolution { solution, pressure })
+}
+
+/// The pressures of `contact` and its tilt on cells of `region` that cover it.
+fn covering(contact: &mut CellContact, region: &Region) -> Result<(CellPressure, f64)> {
     let mut growths = MOST_GROWTHS;
-    let (pressure, tilt) = loop {
+    loop {
         match contact.solve() {
             Err(error @ Error::Uncovered { .. }) if growths > 0 => {
                 growths -= 1;
                 let wider = region.wider(&contact.problem.grid);
                 contact.problem.grid = wider.unwrap_or(Err(error))?;
             }
-            found => break found?,
+            found => return found,
         }
+    }
+}
+
+/// A contact under one of several loads.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LoadStep {
+    /// Load (N).
+    pub force_n: f64,
+    /// Approach of points one roller radius deep (m).
+    pub approach_m: f64,
+    /// Mean gap over the cells within C of the line x = 0, C that of the case's own load (m).
+    pub mean_gap_m: f64,
+    /// Real contact area (m^2).
+    pub contact_area_m2: f64,
+    /// Largest pressure (Pa).
+    pub p_max_pa: f64,
+}
+
+/// Solves the contact of `case` on cells under each of `forces` (N) in place of its own.
+///
+/// # Errors
+/// As [`solve_on_cells`].
+pub fn loads_on_cells(
+    case: &Case,
+    options: &Options,
+    cells: &CellOptions,
+    forces: &[f64],
+    progress: &dyn Fn(usize, f64),
+) -> Result<Vec<LoadStep>> {
+    check_cells(case, cells)?;
+    let scene = Scene::new(case, options.method, options.psi);
+    let region = Region::new(case, &scene, cells);
+    let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
+    let HertzScales { c_m, p0_pa, .. } = case.hertz();
+    let unit_m = c_m * c_m / (2.0 * case.equivalent_radius_m());
+    let step = |&force_n: &f64| {
+        contact.problem.load = scene.load * force_n / case.load.force_n;
+        let (pressure, _) = covering(&mut contact, &region)?;
+        let depth = case.roller.radius_m / c_m;
+        let approach = approach(&scene, &contact.problem, &pressure, depth);
+        Ok(LoadStep {
+            force_n,
+            approach_m: approach * unit_m,
+            mean_gap_m: contact.mean_gap(&pressure) * unit_m,
+            contact_area_m2: pressure.contact_area() * c_m * c_m,
+            p_max_pa: pressure.pressure.iter().fold(0.0, |m: f64, p| m.max(*p)) * p0_pa,
+        })
     };
-    let problem = contact.problem;
-    let solved = start.elapsed().as_secs_f64();
-    let stressed = Stressed::new(case, &scene, options, &problem, &pressure);
-    let total = start.elapsed().as_secs_f64();
-    let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
-    let found = Found { case, scene: &scene, problem: &problem, pressure: &pressure, tilt };
-    let solution = found.solution(stressed, seconds);
-    Ok(CellSolution { solution, pressure })
+    forces.iter().map(step).collect()
+}
+
+/// The approach (C^2 / (2 R)) of points at `depth` (C), at the roller's middle, from which a tilt is counted.
+fn approach(scene: &Scene, problem: &CellProblem, pressure: &CellPressure, depth: f64) -> f64 {
+    pressure.approach - pressure.tilt * scene.middle - problem.mean_displacement(pressure, depth)
 }
 
 /// Stresses (p0) at the points of `options` under the `pressure` that [`solve_on_cells`] found for `case`.
@@ -228,6 +295,8 @@ struct Found<'a> {
     pressure: &'a CellPressure,
     /// Tilt at the depth of the roller's radius (C / (2 R)).
     tilt: f64,
+    /// Mean gap (C^2 / (2 R)).
+    mean_gap: f64,
 }
 
 impl Found<'_> {
@@ -272,10 +341,7 @@ impl Found<'_> {
         let mirrored = |v: f64, even: bool| if even { v.abs() } else { v };
         let even = scene.span().symmetric;
         let depth = case.roller.radius_m / c_m;
-        // At the roller's middle, from which a tilt is counted.
-        let approach = pressure.approach
-            - pressure.tilt * scene.middle
-            - self.problem.mean_displacement(pressure, depth);
+        let approach = approach(scene, self.problem, pressure, depth);
         Summary {
             case: case.name.clone(),
             method: scene.model,
@@ -307,6 +373,8 @@ impl Found<'_> {
             half_width_m: grid.half_width * c_m,
             tolerance: self.problem.tolerance,
             residual: self.pressure.residual,
+            contact_area_m2: self.pressure.contact_area() * c_m * c_m,
+            mean_gap_m: self.mean_gap * c_m * c_m / (2.0 * case.equivalent_radius_m()),
             approach_reference_m: radius_m,
             roller_diametral_tension_pa: round::DIAMETRAL_TENSION * c_m / radius_m * p0_pa,
         }

@@ -105,6 +105,26 @@ impl<'a> CellContact<'a> {
         }
     }
 
+    /// Mean gap (C^2 / (2 R)) under `pressure` over the cells within C of the line x = 0.
+    pub fn mean_gap(&self, pressure: &CellPressure) -> f64 {
+        let grid = &pressure.grid;
+        let problem = CellProblem { grid: *grid, ..self.problem.clone() };
+        let gaps = match &self.heights {
+            None => problem.gaps(&self.smooth, pressure),
+            Some((heights, [c_m, unit_m])) => {
+                let gap = RoughGap::new(&self.smooth, heights, grid, *c_m, *unit_m);
+                problem.gaps(&gap.expect("the contact was solved with it"), pressure)
+            }
+        };
+        let near: Vec<f64> = gaps
+            .iter()
+            .enumerate()
+            .filter(|(i, _)| grid.x(i % grid.nx).abs() <= 1.0)
+            .map(|(_, gap)| gap.max(0.0))
+            .collect();
+        near.iter().sum::<f64>() / near.len() as f64
+    }
+
     /// The smooth contact whose tilt at the depth is `wanted`, and this tilt, from the tilt `first` of far points.
     fn held(
         &self,

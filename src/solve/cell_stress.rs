@@ -16,6 +16,11 @@ use rayon::prelude::*;
 /// Step of the difference quotient along x (C).
 const STEP: f64 = 1e-4;
 
+/// The curve under the largest pressure of a rough contact, how deep it goes (C), and its points less one.
+pub const PEAK_CURVE: &str = "depth-peak";
+const PEAK_DEPTH: f64 = 3.0;
+const PEAK_POINTS: i32 = 40;
+
 /// Places closer to an end face than this part of a body's length are on it.
 const ON_FACE: f64 = 1e-9;
 
@@ -35,7 +40,10 @@ impl Stressed {
         pressure: &CellPressure,
     ) -> Self {
         let HertzScales { c_m, .. } = case.hertz();
-        let specs = wanted_curves(scene, options);
+        let mut specs = wanted_curves(scene, options);
+        if scene.rough {
+            specs.extend(options.bodies.iter().map(|body| under_peak(scene, *body, pressure)));
+        }
         let placed = |[x, y, z]: [f64; 3]| [x, scene.off_middle(y), z];
         let points: Vec<(BodyKind, [f64; 3])> =
             options.points.iter().map(|p| (p.body, placed(p.at_m.map(|v| v / c_m)))).collect();
@@ -66,10 +74,18 @@ impl Stressed {
     }
 }
 
-/// What names a body of a scene among those with free ends.
-fn body_of(scene: &Scene, kind: BodyKind) -> (f64, f64, f64) {
-    let body = &scene.bodies[kind];
-    (body.half, body.nu, scene.off_middle(body.middle))
+/// The line into a body from the cell of largest pressure, where a rough contact is stressed most.
+fn under_peak(scene: &Scene, body: BodyKind, pressure: &CellPressure) -> CurveSpec {
+    let grid = &pressure.grid;
+    let all = pressure.pressure.iter().enumerate();
+    let (top, _) = all.max_by(|a, b| a.1.total_cmp(b.1)).expect("a grid has cells");
+    let (x, y) = (grid.x(top % grid.nx), grid.y(top / grid.nx) + scene.middle);
+    // From a part of a cell, on which the stresses under an asperity vary, in equal ratios.
+    let (a, b) = grid.half_sides();
+    let first = 0.25 * a.min(b);
+    let depth = |i: i32| first * (PEAK_DEPTH / first).powf(f64::from(i) / f64::from(PEAK_POINTS));
+    let points = (0..=PEAK_POINTS).map(|i| [x, y, depth(i)]).collect();
+    CurveSpec { body, name: PEAK_CURVE, points }
 }
 
 /// The fields of the line engine under the pressures of cells.
@@ -83,7 +99,7 @@ fn by_nodes(
     let columns = free.columns(pressure);
     let moments = free.moments(&columns);
     let field = |kind: BodyKind| {
-        let [field, _] = free.fields(body_of(scene, kind), &columns, &moments, scene.tolerance);
+        let [field, _] = free.fields(scene.free_body(kind), &columns, &moments, scene.tolerance);
         BodyField::new(field.following_contact(scene.may_end()), 1.0)
     };
     lines::stresses(free.shared(), field, curves, points)
@@ -112,11 +128,11 @@ fn sums(
 ) -> lines::Stresses {
     let loads = free.map(|free| EndLoads::new(free, pressure));
     let field = |kind: BodyKind| {
-        let (half, _, middle) = body_of(scene, kind);
+        let (half, _, middle) = scene.free_body(kind);
         let ends = loads.as_ref();
         Summed {
             cells: scene.mirrored_field(kind, pressure),
-            ends: ends.map(|loads| loads.stress(body_of(scene, kind), scene.tolerance)),
+            ends: ends.map(|loads| loads.stress(scene.free_body(kind), scene.tolerance)),
             faces: [middle - half, middle + half],
             near: ON_FACE * half,
             flat: Shaping::of(case).curvatures[kind] == 0.0,

@@ -4,6 +4,7 @@
 mod approached;
 mod cell_case;
 mod cell_contact;
+mod cell_layers;
 mod cell_stress;
 mod cells;
 pub mod edge;
@@ -26,8 +27,11 @@ mod tilt;
 mod tests;
 
 pub use cell_case::{
-    CellDetails, CellOptions, CellSolution, check_cells, solve_on_cells, stress_on_cells,
+    CellDetails, CellOptions, CellSolution, LoadStep, check_cells, loads_on_cells, solve_on_cells,
+    stress_on_cells,
 };
+pub use cell_layers::{CellLayer, check_layers, layers_on_cells};
+pub use cell_stress::PEAK_CURVE;
 pub use cells::PressureCell;
 pub use extent::{Extent, Outside};
 pub use grid::MOST_GRID_POINTS;

@@ -65,13 +65,23 @@ impl Scene {
 
     /// The stresses of a body under the pressures of cells and their images.
     pub(super) fn mirrored_field(&self, kind: BodyKind, pressure: &CellPressure) -> CellField {
+        CellField::new(pressure, self.field_end(kind), self.bodies[kind].nu)
+    }
+
+    /// What the end faces of a body do to the stresses of cells and images.
+    pub(super) fn field_end(&self, kind: BodyKind) -> FieldEnd {
         let (body, end) = (&self.bodies[kind], self.end(kind));
-        let ends = FieldEnd {
+        FieldEnd {
             half: body.half,
             middle: self.off_middle(body.middle),
             mirrored: end.image_weight.is_some(),
             gamma: end.gamma,
-        };
-        CellField::new(pressure, ends, body.nu)
+        }
+    }
+
+    /// What names a body among those with free ends: half-length, Poisson's ratio, middle.
+    pub(super) fn free_body(&self, kind: BodyKind) -> (f64, f64, f64) {
+        let body = &self.bodies[kind];
+        (body.half, body.nu, self.off_middle(body.middle))
     }
 }

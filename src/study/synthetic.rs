@@ -145,6 +145,8 @@ pub fn solve_on_cells(case: &Case, counts: Option<[usize; 2]>) -> Result<Solutio
         half_width_m: 1.25 * case.hertz().c_m,
         tolerance: 1e-8,
         residual: 1e-9,
+        contact_area_m2: 1e-6,
+        mean_gap_m: 0.0,
         approach_reference_m: details.approach_reference_m,
         roller_diametral_tension_pa: details.roller_diametral_tension_pa,
     }))

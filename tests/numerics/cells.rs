@@ -2,14 +2,15 @@
 //! solver.
 
 use crate::common::{near, scene, small, table};
-use edgeline::base::Material;
+use edgeline::base::{Material, StressTensor};
 use edgeline::body::EdgeModel;
 
 use edgeline::case::{Case, Factors, Surface, builtin_case};
 use edgeline::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap};
 use edgeline::contact::{Gap, Straight};
 use edgeline::solve::{
-    CellOptions, Options, Scene, SolvedCase, SolvedScene, solve, solve_on_cells,
+    CellOptions, Options, PEAK_CURVE, Point, Scene, SolvedCase, SolvedScene, layers_on_cells,
+    solve, solve_on_cells, stress_on_cells,
 };
 use edgeline::stress::{BodyKind, away_from_edge, away_from_edges};
 use std::f64::consts::PI;
@@ -184,8 +185,8 @@ fn skew(number: usize) -> Case {
 }
 
 /// Differences between cells and the line engine (p0): root mean squares of the pressure and of the worst of the stress
-/// curves, and those of the tilt (in displacements of the contact's end) and of the approach (relative).
-fn apart_from_line(case: &Case, options: &Options, counts: [usize; 2]) -> [f64; 4] {
+/// curves into and on the bodies, and those of the tilt (in displacements of the contact's end) and of the approach (relative).
+fn apart_from_line(case: &Case, options: &Options, counts: [usize; 2]) -> [f64; 5] {
     // The finest resolution does not converge in every one of them.
     let finest = SolvedCase::new(&case.clone().with_tolerance(1e-4), options);
     let solved = finest.unwrap_or_else(|_| SolvedCase::new(case, options).unwrap());
@@ -202,7 +203,8 @@ fn apart_from_line(case: &Case, options: &Options, counts: [usize; 2]) -> [f64; 
             count += 1.0;
         }
     }
-    let mut worst: f64 = 0.0;
+    // On the surface the stresses show the steps of the cells' pressure.
+    let mut worst = [0.0f64; 2];
     for (got, want) in cells.curves.stress.iter().zip(&line.curves.stress) {
         assert_eq!((got.body, &got.name, got.at.len()), (want.body, &want.name, want.at.len()));
         let pairs = got.at.iter().zip(got.stress.iter().zip(&want.stress));
@@ -210,12 +212,14 @@ fn apart_from_line(case: &Case, options: &Options, counts: [usize; 2]) -> [f64; 
             .filter(|(at, _)| away_from_edges(**at, [from, to], 0.15))
             .map(|(_, (got, want))| crate::common::apart(got, want).powi(2))
             .collect();
-        worst = worst.max((off.iter().sum::<f64>() / off.len().max(1) as f64).sqrt());
+        let own = &mut worst[usize::from(got.name.starts_with("surface"))];
+        *own = own.max((off.iter().sum::<f64>() / off.len().max(1) as f64).sqrt());
     }
     let (got, want) = (&cells.summary, &line.summary);
     let slope = case.hertz().c_m / (2.0 * case.equivalent_radius_m());
     let tilt = (got.tilt_rad - want.tilt_rad).abs() / slope * 0.5 * (to - from);
-    [(sum / count).sqrt(), worst, tilt, (got.approach_m / want.approach_m - 1.0).abs()]
+    let approach = (got.approach_m / want.approach_m - 1.0).abs();
+    [(sum / count).sqrt(), worst[0], worst[1], tilt, approach]
 }
 
 /// The four corners of the study that are symmetric, and four cases that are not.
@@ -253,11 +257,50 @@ fn corners_are_the_line_engines_by_every_model() {
             let found = grids.map(|counts| apart_from_line(&case, &options, counts));
             println!("{name} {model}: {found:?}");
             let [_, coarse, [pressure, stress, ..]] = found;
+            small(&format!("{name}, {model}, pressure"), pressure, 4e-3);
             // The published models' pressure is singular at more of the ends.
             let free = model == EdgeModel::QuarterSpace;
-            small(&format!("{name}, {model}, pressure"), pressure, if free { 4e-3 } else { 0.02 });
-            small(&format!("{name}, {model}, stress"), stress, if free { 6e-3 } else { 0.1 });
-            assert!(pressure < coarse[0] && stress < coarse[1], "{name}, {model}: {found:?}");
+            small(&format!("{name}, {model}, stress"), stress, if free { 6e-3 } else { 0.05 });
+            assert!(pressure < coarse[0], "{name}, {model}: {found:?}");
+        }
+    }
+}
+
+/// Layers by transforms are the stresses at their points, of a skew contact with waves on it.
+#[test]
+fn layers_are_the_stresses_at_points_by_every_model() {
+    let mut case = skew(1);
+    let [from, to] = case.overlap();
+    let c_m = case.hertz().c_m;
+    let steps = [4.0 * c_m / 59.0, (to - from) * c_m / 79.0];
+    let values =
+        (0..60 * 80).map(|k| 2e-8 * (f64::from(k / 80) * 0.9 + f64::from(k % 80) * 0.4).sin());
+    let samples = Some(Arc::new(Heights::new([60, 80], steps, values.collect()).unwrap()));
+    let [dx_m, dy_m] = steps;
+    case.surface = Some(Surface { heights: "waves".into(), dx_m, dy_m, detrend: None, samples });
+    let cells = CellOptions { counts: Some([64, 72]), ..CellOptions::default() };
+    for model in [EdgeModel::Guilbault, EdgeModel::QuarterSpace] {
+        let mut options = Options::new(model);
+        (options.curves, options.bodies) = (Vec::new(), vec![BodyKind::Block]);
+        let found = solve_on_cells(&case, &options, &cells, &|_, _| {}).unwrap();
+        let grid = &found.pressure.grid;
+        let depths = [0.1, 0.6].map(|z| z * c_m);
+        let layers = layers_on_cells(&case, &options, &found.pressure, &depths).unwrap();
+        for layer in &layers {
+            let places = [(32, 36), (20, 1), (40, 70), (9, 50)];
+            let middle = 0.5 * (from + to);
+            let at = |(i, j): (usize, usize)| {
+                [grid.x(i) * c_m, (grid.y(j) + middle) * c_m, layer.depth_m]
+            };
+            options.points =
+                places.map(|place| Point { body: layer.body, at_m: at(place) }).to_vec();
+            let wanted = stress_on_cells(&case, &options, &found.pressure).unwrap();
+            for ((i, j), want) in places.into_iter().zip(wanted) {
+                let got = layer.stress.each_ref().map(|field| field[j * grid.nx + i]);
+                let got = StressTensor::from_components(got);
+                let name = format!("{model}, {i} {j} at {:.1e} m", layer.depth_m);
+                small(&name, crate::common::apart(&got, &want), 1e-3);
+            }
         }
     }
 }
@@ -381,6 +424,10 @@ fn vanishing_heights_on_skew_bodies_with_free_ends_change_nothing() {
         for curve in &rough.solution.curves.stress {
             let own = curve.name.strip_suffix("-xneg").unwrap_or(&curve.name);
             let all = &smooth.solution.curves.stress;
+            // A smooth contact has no line under its largest pressure.
+            if own == PEAK_CURVE {
+                continue;
+            }
             let twin = all.iter().find(|c| c.body == curve.body && c.name == own).unwrap();
             for (i, at) in curve.at.iter().enumerate() {
                 if !away_from_edges(*at, [from, to], 0.3) || at[2] < 0.1 {

@@ -407,7 +407,41 @@ fn a_measured_surface_is_pressed_on_cells() {
     assert!(
         summary["p_max_pa"].as_f64().unwrap() > 1.3 * summary["hertz"]["p0_pa"].as_f64().unwrap()
     );
-    assert!(folder.path().join("out/pressure.npy").is_file());
+    let out = folder.path().join("out");
+    assert!(out.join("pressure.npy").is_file());
+    let shares: f64 =
+        rows(&out.join("pressure_histogram.csv")).iter().map(|row| number(row, "share")).sum();
+    assert!((shares - 1.0).abs() < 1e-9);
+    // The curve under the largest pressure is the most stressed one.
+    assert!(rows(&out.join("curves.csv")).iter().any(|row| row["curve"] == "depth-peak"));
+    let force = summary["load_n"].as_f64().unwrap();
+    let loads = format!("--loads={},{force}", 0.25 * force);
+    let more = [&run[..], &[&loads, "--layers", "1e-5,2e-4", "--plots", "--out", "more"]].concat();
+    let output = edgeline(folder.path(), &more).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let more = folder.path().join("more");
+    let by_load = rows(&more.join("load_gap.csv"));
+    for (key, of) in [
+        ("approach_m", &summary),
+        ("mean_gap_m", &summary["details"]),
+        ("contact_area_m2", &summary["details"]),
+        ("p_max_pa", &summary),
+    ] {
+        let [low, own] = [0, 1].map(|i: usize| number(&by_load[i], key));
+        assert!((own / of[key].as_f64().unwrap() - 1.0).abs() < 1e-6, "{key}");
+        assert!(if key == "mean_gap_m" { low > own } else { low < own }, "{key}");
+    }
+    for name in ["layer-block-2.npy", "layer-roller-1.npy"] {
+        let length = std::fs::metadata(more.join(name)).unwrap().len();
+        assert_eq!(length, 128 + 8 * 6 * 64 * 64);
+    }
+    let layers: Value =
+        serde_json::from_str(&std::fs::read_to_string(more.join("layers.json")).unwrap()).unwrap();
+    assert_eq!(layers["layers"][1]["z_m"], 2e-4);
+    assert!(layers["critical"]["value_pa"].as_f64().unwrap() > 1e8);
+    for plot in ["plot-heights.png", "plot-peak-block.svg", "plot-pressure-map.png"] {
+        assert!(more.join(plot).is_file(), "{plot}");
+    }
     let refusals = [
         ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
@@ -421,6 +455,9 @@ fn a_measured_surface_is_pressed_on_cells() {
         case("bad.toml", &format!("{heights}\n{steps}"));
         let said = refused(folder.path(), &["solve", "bad.toml", "--out", "no"]);
         assert!(said.contains(wanted), "{said}");
+    }
+    for more in [&["--layers", "-1e-6"][..], &["--loads", "0"]] {
+        refused(folder.path(), &[&["solve", "rough.toml", "--out", "no"], more].concat());
     }
     for arguments in [
         &["solve", "rough.toml", "--engine", "line", "--out", "no"][..],

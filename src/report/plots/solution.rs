@@ -3,8 +3,9 @@
 use super::symbol::symbol;
 use crate::base::{BodyKind, HertzScales};
 use crate::case::Case;
+use crate::cells::Heights;
 use crate::report::draw::{Colour, Figure, Look, Map, Marker, Panel, Series, Shade};
-use crate::solve::Solution;
+use crate::solve::{PEAK_CURVE, PressureCell, Solution};
 use crate::stress::{EDGE, Quantity, away_from_edges};
 
 const MM: f64 = 1e3;
@@ -26,6 +27,9 @@ const ALONG: [(&str, &str); 3] = [
     ("along-y-0.5C", "0.5 C deep"),
     ("along-y-0.78C", "0.78 C deep"),
 ];
+
+/// Under the largest pressure of a rough contact.
+const PEAK: [(&str, &str); 1] = [(PEAK_CURVE, "under the largest pressure")];
 
 /// Most lines of a map in each direction; cells that lie closer are thinned out.
 const MOST_LINES: f64 = 400.0;
@@ -49,8 +53,13 @@ pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(Str
     let plots = Plots { solution, title: format!("{}, {by}", case.name), hertz, ends };
     let mut figures =
         vec![("pressure".to_string(), plots.pressure()), ("pressure-map".to_string(), plots.map())];
+    if let Some(heights) = case.heights() {
+        figures.push(("heights".to_string(), plots.heights(&heights)));
+    }
     for body in BodyKind::ALL {
-        for (place, axis, lines) in [("along", 1, &ALONG[..]), ("depth", 2, &DOWN)] {
+        for (place, axis, lines) in
+            [("along", 1, &ALONG[..]), ("depth", 2, &DOWN), ("peak", 2, &PEAK)]
+        {
             let figure = plots.stress(body, axis, lines);
             if figure.panels.iter().all(|panel| !panel.series.is_empty()) {
                 figures.push((format!("{place}-{}", body.name()), figure));
@@ -142,7 +151,27 @@ impl<D> Plots<'_, D> {
 
     /// The pressure over the whole contact.
     fn map(&self) -> Figure {
-        let HertzScales { c_m, p0_pa, .. } = self.hertz;
+        let p0_pa = self.hertz.p0_pa;
+        // Beside a singular edge the colours end with the largest value outside.
+        let cells = &self.solution.cells;
+        let outside = cells.iter().filter(|cell| !self.at_edge([cell.x, cell.y, 0.0]));
+        let most = outside.map(|cell| cell.p).fold(0.0, f64::max);
+        let capped = cells.iter().any(|cell| cell.p > most);
+        let label = if capped { "p (MPa), as far as 0.1 C from the ends" } else { "p (MPa)" };
+        self.map_of("contact pressure", label, |cell| cell.p.min(most) * p0_pa * MPA)
+    }
+
+    /// The heights over the whole contact.
+    fn heights(&self, heights: &Heights) -> Figure {
+        let c_m = self.hertz.c_m;
+        let middle = 0.5 * (self.ends[0] + self.ends[1]);
+        let height = |cell: &PressureCell| heights.at(cell.x * c_m, (cell.y - middle) * c_m);
+        self.map_of("heights", "height (µm)", |cell| height(cell) * 1e6)
+    }
+
+    /// A `value` over the whole contact.
+    fn map_of(&self, what: &str, label: &str, value: impl Fn(&PressureCell) -> f64) -> Figure {
+        let c_m = self.hertz.c_m;
         let cells = &self.solution.cells;
         let lines = |of: &dyn Fn(usize) -> f64| {
             let mut all: Vec<f64> = (0..cells.len()).map(of).collect();
@@ -154,19 +183,14 @@ impl<D> Plots<'_, D> {
         let (ys, xs) = (lines(&|i| cells[i].y), lines(&|i| cells[i].x));
         let mut values = vec![0.0; ys.len() * xs.len()];
         let place = |all: &[f64], v: f64| all.binary_search_by(|a| a.total_cmp(&v)).ok();
-        // Beside a singular edge the colours end with the largest value outside.
-        let outside = cells.iter().filter(|cell| !self.at_edge([cell.x, cell.y, 0.0]));
-        let most = outside.map(|cell| cell.p).fold(0.0, f64::max);
         for cell in cells {
             if let (Some(i), Some(j)) = (place(&ys, cell.y), place(&xs, cell.x)) {
-                values[j * ys.len() + i] = cell.p.min(most) * p0_pa * MPA;
+                values[j * ys.len() + i] = value(cell);
             }
         }
         let axes = [ys, xs].map(|axis| axis.iter().map(|v| v * c_m * MM).collect());
-        let capped = cells.iter().any(|cell| cell.p > most);
-        let label = if capped { "p (MPa), as far as 0.1 C from the ends" } else { "p (MPa)" };
         let map = Map { label: label.into(), axes, down: false, values };
-        let title = format!("{}: contact pressure", self.title);
+        let title = format!("{}: {what}", self.title);
         Figure::of_map(title, ["y (mm)", "x (mm)"], map)
     }
 
@@ -186,9 +210,13 @@ impl<D> Plots<'_, D> {
                 ..Panel::default()
             }
         };
-        let place = if axis == 1 { "along the contact" } else { "into the body" };
+        let place = match lines[0] {
+            (PEAK_CURVE, _) => "under the largest pressure",
+            _ if axis == 1 => "along the contact, x = 0",
+            _ => "into the body, x = 0",
+        };
         Figure {
-            title: format!("{}: {} {place}, x = 0", self.title, body.name()),
+            title: format!("{}: {} {place}", self.title, body.name()),
             columns: 2,
             panels: SHOWN.map(panel).into(),
             panel_size: (500, 300),
