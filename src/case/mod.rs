@@ -3,12 +3,15 @@
 mod builtin;
 mod case_file;
 mod check;
+#[cfg(feature = "cli")]
+mod design_file;
 mod document;
 mod draft;
 mod keys;
 #[cfg(feature = "cli")]
 mod levels;
 mod model;
+mod objective;
 mod profile;
 mod profile_table;
 mod profiles;
@@ -30,10 +33,12 @@ pub use builtin::{BUILTIN_CASES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
+pub use objective::Objective;
 pub use profile::{ProfileKind, ProfileSpec};
 pub use surface::Surface;
 #[cfg(feature = "cli")]
 pub use {
+    design_file::{Design, DesignLoad, Parameter},
     schema::case_schema,
     study_file::{DEFAULT_STUDY, Study},
     sweep::Sweep,

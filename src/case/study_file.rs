@@ -196,7 +196,7 @@ fn read_levels(table: &Table, name: &str) -> Result<Vec<f64>> {
 }
 
 /// A case that the study lists by file or by built-in name.
-fn listed_case(entry: &Entry, folder: &Path) -> Result<Case> {
+pub(super) fn listed_case(entry: &Entry, folder: &Path) -> Result<Case> {
     let listed = entry.string()?;
     let path: PathBuf = folder.join(listed);
     if path.is_file() {

@@ -4,6 +4,7 @@ mod bench;
 mod cold;
 mod compare;
 mod deck;
+mod design;
 mod doctor;
 mod explore;
 mod extras;

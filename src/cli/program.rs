@@ -2,7 +2,8 @@
 
 use super::output::{Exit, say};
 use super::{
-    bench, compare, deck, doctor, explore, extras, fatigue, fem, gate, report, solve, study, sweep,
+    bench, compare, deck, design, doctor, explore, extras, fatigue, fem, gate, report, solve,
+    study, sweep,
 };
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
@@ -31,6 +32,7 @@ enum Command {
     Deck(deck::Arguments),
     Study(study::Arguments),
     Sweep(sweep::Arguments),
+    Design(design::Arguments),
     Compare(compare::Arguments),
     Gate(gate::Arguments),
     Bench(bench::Arguments),
@@ -57,6 +59,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Fem(arguments) => fem::run(arguments),
         Command::Study(arguments) => study::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
+        Command::Design(arguments) => design::run(arguments),
         Command::Compare(arguments) => compare::run(arguments),
         Command::Gate(arguments) => gate::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),

@@ -4,6 +4,7 @@ pub mod bench;
 pub mod cells;
 pub mod columns;
 pub mod comparison;
+pub mod design;
 pub mod draw;
 pub mod effects_text;
 pub mod fatigue;

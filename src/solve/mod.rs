@@ -16,6 +16,8 @@ mod lines;
 mod on_cells;
 mod options;
 mod passage;
+#[cfg(feature = "cli")]
+mod peak;
 mod scene;
 mod shaping;
 mod solved;
@@ -39,6 +41,8 @@ pub use group::{solve, solve_group};
 pub use key_results::{END_DISTANCES, KeyResults, key_results};
 pub use options::{Options, Point};
 pub use passage::Passage;
+#[cfg(feature = "cli")]
+pub use peak::peak;
 pub use scene::{Scene, SceneBody, SceneKey, Tilt};
 pub use solved::{Solution, SolvedCase};
 pub use solved_scene::{Seconds, SolvedScene};

@@ -221,7 +221,10 @@ impl SolvedScene {
     /// The contact's ends along y (C).
     pub fn ends(&self) -> [f64; 2] {
         let [from, to] = self.contact.ends;
-        if self.scene.is_symmetric() { [-to, to] } else { [from, to] }
+        let ends = if self.scene.is_symmetric() { [-to, to] } else { [from, to] };
+        // Where a contact all but reaches the bodies' end, its own end may be found beyond.
+        let [first, last] = self.scene.overlap();
+        ends.map(|y| y.clamp(first, last))
     }
 
     /// The compliance of both bodies together.

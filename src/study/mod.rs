@@ -14,6 +14,7 @@ pub mod gate;
 mod groups;
 pub mod live;
 mod models;
+pub mod optimum;
 mod published;
 pub mod reference;
 pub mod response;

@@ -259,6 +259,14 @@ fn results(case: &Case, method: EdgeModel, nominal: &Curves) -> Result<Vec<f64>>
 
 /// Points of a Latin hypercube in `inputs` directions, as deviations of a normal distribution.
 fn latin_hypercube(inputs: usize, samples: usize, seed: u64) -> Vec<Vec<f64>> {
+    let normal = Normal::new(0.0, 1.0).expect("a positive deviation");
+    let mut points = unit_hypercube(inputs, samples, seed);
+    points.iter_mut().flatten().for_each(|part| *part = normal.inverse_cdf(*part));
+    points
+}
+
+/// Points of a Latin hypercube of `inputs` directions, each between 0 and 1.
+pub(super) fn unit_hypercube(inputs: usize, samples: usize, seed: u64) -> Vec<Vec<f64>> {
     let mut state = seed;
     let mut next = || {
         // Steele, Lea and Flood (OOPSLA 2014): SplitMix64.
@@ -268,7 +276,6 @@ fn latin_hypercube(inputs: usize, samples: usize, seed: u64) -> Vec<Vec<f64>> {
         z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
         (z ^ (z >> 31)) as f64 / 2f64.powi(64)
     };
-    let normal = Normal::new(0.0, 1.0).expect("a positive deviation");
     let mut points = vec![vec![0.0; inputs]; samples];
     for input in 0..inputs {
         let mut strata: Vec<usize> = (0..samples).collect();
@@ -278,7 +285,7 @@ fn latin_hypercube(inputs: usize, samples: usize, seed: u64) -> Vec<Vec<f64>> {
         }
         for (point, stratum) in points.iter_mut().zip(strata) {
             let within = next().clamp(1e-6, 1.0 - 1e-6);
-            point[input] = normal.inverse_cdf((stratum as f64 + within) / samples as f64);
+            point[input] = (stratum as f64 + within) / samples as f64;
         }
     }
     points

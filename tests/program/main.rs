@@ -4,6 +4,7 @@ mod bench;
 mod cli;
 mod compare;
 mod corpora;
+mod design;
 mod docs;
 mod explore;
 mod fatigue;
