@@ -1,6 +1,6 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::output::{Exit, print, print_json};
+use super::output::{Exit, print, print_json, say};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
@@ -12,8 +12,8 @@ use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellOptions, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells, check_layers,
-    layers_on_cells, loads_on_cells, solve_on_cells,
+    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
+    check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
 };
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
@@ -28,7 +28,7 @@ use std::path::PathBuf;
 /// per length and half-width along the contact), curves.csv (stresses on the standard curves of both
 /// bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg and .png
 /// (pressure, its map, stresses of both bodies) and summary.html, a page of one sheet about the case.
-/// With --uncertain, what uncertain inputs make of the results. Takes well under a second, with
+/// With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281, steel's constant. With --uncertain, what uncertain inputs make of the results. Takes well under a second, with
 /// --uncertain that for each sample; with --field, or for a scene that is not symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
@@ -81,6 +81,12 @@ pub(super) struct Arguments {
     /// residual, 1e-8 by default
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
+    /// Adds the stiffnesses, force by approach and moment by tilt, to summary.json: four more solutions
+    #[arg(long)]
+    stiffness: bool,
+    /// Writes laminae.csv: the loads of N equal slices of the contact beside those of ISO/TS 16281
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(30..=2000))]
+    laminae: Option<u16>,
     #[command(flatten)]
     uncertain: UncertainOptions,
     /// Print the summary as one JSON object and nothing else
@@ -168,17 +174,55 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         Some(counts) => field::contents(&solved, counts)?,
         None => Vec::new(),
     };
-    let found = solved.solution();
+    let mut found = solved.solution();
+    if arguments.stiffness {
+        found.summary.details.stiffness = Some(stiffness(&solved, &options)?);
+    }
+    if let Some(count) = arguments.laminae {
+        let laminae = laminae(&solved, usize::from(count));
+        say(&what_laminae_miss(case, &laminae));
+        let table = solution::laminae(&laminae);
+        more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
+    }
     more.extend(pictures(case, &found, &arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     solution::write(&found, &options, more, &arguments.out)?;
     tell(case, &found, &arguments)
 }
 
+/// What the slices of ISO/TS 16281 make of the ends, in words.
+fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
+    let ratio = |lamina: &Lamina| lamina.load_n / lamina.standard_load_n;
+    let [first, last] = [&all[0], &all[all.len() - 1]].map(ratio);
+    let shown = |ratio: f64| match ratio.is_finite() {
+        true => format!("{ratio:.3} times"),
+        false => "a load where the standard has none, not finite times".into(),
+    };
+    let steel = |young_pa: f64| (195e9..=220e9).contains(&young_pa);
+    let own = [case.roller.material.young_pa, case.block.material.young_pa];
+    let material = match own.into_iter().all(steel) {
+        true => "",
+        false => "; the standard's constant is that of steel, which these bodies are not",
+    };
+    format!(
+        "note: laminae: the outermost slices carry {} and {} the load of ISO/TS 16281{material}",
+        shown(first),
+        shown(last)
+    )
+}
+
 /// The same on uniform cells.
 fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result<Exit> {
     if arguments.field {
         return Err(unsuited("field", "the engine on cells writes no fields", "leave it out"));
+    }
+    for (option, given) in
+        [("stiffness", arguments.stiffness), ("laminae", arguments.laminae.is_some())]
+    {
+        if given {
+            let reason = "the engine on cells does not compute them";
+            return Err(unsuited(option, reason, "leave it out, or take --engine line"));
+        }
     }
     if arguments.uncertain.is_given() {
         let reason = "the engine on cells is too slow for many solutions";

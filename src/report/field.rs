@@ -2,39 +2,57 @@
 //!
 //! The field is evaluated on a quarter of each body and mirrored: sigma_xy and sigma_xz are odd in
 //! x, sigma_xy and sigma_yz odd in y, everything else is even. Where the bodies slide on each other it is
-//! evaluated on both sides of x = 0.
+//! evaluated on both sides of x = 0, and over the whole length where the scene is not symmetric about y = 0.
 
 use super::draw::{Figure, Map};
 use super::vtk::VtkGrid;
 use crate::base::{Result, StressTensor};
 use crate::case::Case;
 use crate::solve::SolvedCase;
-use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edge};
+use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edges};
 use rayon::prelude::*;
 
 /// Extent of the field from the middle of the contact in x, beyond the roller's end in y, and into
 /// the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
 
-/// Axes of a quarter of a body in units of C, each from 0 (or the surface) outwards, that along x from
-/// one side to the other where the bodies slide: finer towards the roller's end along y and towards the surface along z. `counts` are at least 2 each.
-fn axes(case: &Case, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
-    let factors = case.factors();
-    let half = factors.slenderness;
+/// Axes of a body's part in units of C: along x from 0, from one side to the other where the bodies slide; along y from the
+/// middle, over the whole length where the scene is not symmetric; finer towards the ends of the bodies' overlap and towards
+/// the surface along z. `counts` are at least 2 each.
+fn axes(solved: &SolvedCase, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
+    let case = solved.case();
+    let [from, to] = case.overlap();
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
     let shares = |n: usize| (0..n).map(move |i| i as f64 / (n - 1) as f64);
     let mut x: Vec<f64> = shares(counts[0]).map(|t| REACH[0] * t).collect();
     if case.sliding.friction != 0.0 {
         x = x[1..].iter().rev().map(|x| -x).chain(x.iter().copied()).collect();
     }
-    let mut y: Vec<f64> =
-        shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
-    // The computed sine of a right angle may differ from 1, but the last point must be on the end
-    // face.
-    y[counts[1] - 1] = half;
-    let ledge = half / factors.length_ratio - half;
-    if body == BodyKind::Block && ledge > 1e-9 * half {
-        let reach = ledge.min(REACH[1]);
-        y.extend(shares(1 + counts[1] / 2).skip(1).map(|t| half + reach * t * t));
+    let own = case.ends_m(body).map(|y| y / case.hertz().c_m);
+    // From the overlap's middle outwards on one side, as distances.
+    let side = |ledge: f64| -> Vec<f64> {
+        let mut y: Vec<f64> =
+            shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
+        // The computed sine of a right angle may differ from 1, but the last point must be on the end
+        // face.
+        y[counts[1] - 1] = half;
+        if ledge > 1e-9 * half {
+            let reach = ledge.min(REACH[1]);
+            y.extend(shares(1 + counts[1] / 2).skip(1).map(|t| half + reach * t * t));
+        }
+        y
+    };
+    let mut y: Vec<f64> = side(own[1] - to).into_iter().map(|y| middle + y).collect();
+    if !solved.is_symmetric() {
+        let behind = side(from - own[0]).into_iter().skip(1).rev().map(|y| middle - y);
+        y = behind.chain(y).collect();
+        // The ends of the overlap exactly.
+        let nearest = |end: f64| {
+            move |a: &&mut f64, b: &&mut f64| (**a - end).abs().total_cmp(&(**b - end).abs())
+        };
+        for end in [from, to] {
+            *y.iter_mut().min_by(nearest(end)).expect("places") = end;
+        }
     }
     let z = shares(counts[2]).map(|t| REACH[2] * t * t).collect();
     [x, y, z]
@@ -46,15 +64,18 @@ struct Quarter<'a> {
     stress: GridStress,
     case: &'a Case,
     body: BodyKind,
+    /// Whether x and y have one side only, which is mirrored.
+    folded: [bool; 2],
 }
 
 impl<'a> Quarter<'a> {
     /// The field of `body`.
     fn new(solved: &'a SolvedCase, body: BodyKind, counts: [usize; 3]) -> Result<Self> {
-        let axes = axes(solved.case(), body, counts);
+        let axes = axes(solved, body, counts);
         let [x, y, z] = axes.clone();
         let stress = solved.on_grid(body, &stress::Grid { x, y, z })?;
-        Ok(Self { axes, stress, case: solved.case(), body })
+        let folded = [solved.case().sliding.friction == 0.0, solved.is_symmetric()];
+        Ok(Self { axes, stress, case: solved.case(), body, folded })
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
@@ -107,11 +128,12 @@ impl<'a> Quarter<'a> {
         }
     }
 
-    /// Indices and signs of the points along an axis and its mirror image, ascending; an axis that has both
-    /// sides is not mirrored.
-    fn mirror(axis: &[f64]) -> impl Iterator<Item = (usize, f32)> + Clone {
-        let behind = if axis[0] < 0.0 { 1..1 } else { 1..axis.len() };
-        behind.rev().map(|i| (i, -1.0)).chain((0..axis.len()).map(|i| (i, 1.0)))
+    /// Indices and signs of the points along x (0) or y (1) and their mirror images, ascending; an axis that has
+    /// both sides is not mirrored.
+    fn mirror(&self, axis: usize) -> impl Iterator<Item = (usize, f32)> + Clone + use<> {
+        let count = self.axes[axis].len();
+        let behind = if self.folded[axis] { 1..count } else { 1..1 };
+        behind.rev().map(|i| (i, -1.0)).chain((0..count).map(|i| (i, 1.0)))
     }
 
     /// A scalar of the layers `zs` of the whole body, from its `value` at each point of the
@@ -122,9 +144,9 @@ impl<'a> Quarter<'a> {
         let sign = |odd: bool, side: f32| if odd { side } else { 1.0 };
         let mut values = Vec::with_capacity((2 * nx - 1) * (2 * ny - 1) * zs.len());
         for &k in zs {
-            for (j, along) in Self::mirror(y) {
+            for (j, along) in self.mirror(1) {
                 let row = (k * ny + j) * nx;
-                values.extend(Self::mirror(x).map(|(i, across)| {
+                values.extend(self.mirror(0).map(|(i, across)| {
                     sign(odd[0], across) * sign(odd[1], along) * value(row + i)
                 }));
             }
@@ -135,17 +157,17 @@ impl<'a> Quarter<'a> {
     /// Coordinates of the whole body (m), at the depths `z` (C, in the global frame).
     fn axes_m(&self, z: impl Iterator<Item = f64>) -> [Vec<f64>; 3] {
         let c_m = self.case.hertz().c_m;
-        let whole = |axis: &[f64]| -> Vec<f64> {
-            Self::mirror(axis).map(|(i, side)| f64::from(side) * axis[i] * c_m).collect()
+        let whole = |axis: usize| -> Vec<f64> {
+            self.mirror(axis).map(|(i, side)| f64::from(side) * self.axes[axis][i] * c_m).collect()
         };
-        [whole(&self.axes[0]), whole(&self.axes[1]), z.map(|z| z * c_m).collect()]
+        [whole(0), whole(1), z.map(|z| z * c_m).collect()]
     }
 
     /// Whether a point is in the excluded surroundings of the roller's edge, where stresses may be
     /// singular. Contours there are limited to the largest value outside.
     fn at_edge(&self, j: usize, k: usize) -> bool {
         let at = [0.0, self.axes[1][j], self.axes[2][k]];
-        !away_from_edge(at, self.case.factors().slenderness, EDGE)
+        !away_from_edges(at, self.case.overlap(), EDGE)
     }
 
     /// Von Mises stress (p0) at a point of the grid.
@@ -166,8 +188,9 @@ impl<'a> Quarter<'a> {
     /// value, with the names of their files.
     fn figures(&self) -> [(&'static str, Figure); 3] {
         let [x, y, z] = &self.axes;
-        let half = self.case.factors().slenderness;
-        let end = y.iter().position(|v| *v == half).unwrap_or(y.len() - 1);
+        let [_, to] = self.case.overlap();
+        let far = |y: &f64| (y - to).abs();
+        let end = (0..y.len()).min_by(|i, j| far(&y[*i]).total_cmp(&far(&y[*j]))).expect("places");
         let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
         let (largest, critical) = self.critical();
         let shown = |i: usize, j: usize, k: usize| {
@@ -190,7 +213,7 @@ impl<'a> Quarter<'a> {
             ("x0", figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| shown(middle, j, k))),
             (
                 "end",
-                figure("y = L1/2 (end)", ["x / C", "z / C"], [x, z], true, &|i, k| {
+                figure("the +y end of the contact", ["x / C", "z / C"], [x, z], true, &|i, k| {
                     shown(i, end, k)
                 }),
             ),
@@ -245,7 +268,7 @@ mod tests {
         let quarter = quarter(BodyKind::Roller);
         assert_eq!(quarter.stress.len(), 5 * 7 * 6);
         let [x, y, z] = &quarter.axes;
-        assert_eq!((y[6], z[5], x[4]), (case.factors().slenderness, 5.0, 2.5));
+        assert_eq!((y[6], z[5], x[4]), (case.overlap()[1], 5.0, 2.5));
         let grid = quarter.grid();
         let [nx, ny, nz] = [0, 1, 2].map(|k| grid.axes_m[k].len());
         assert_eq!([nx, ny, nz], [9, 13, 6]);
@@ -265,5 +288,46 @@ mod tests {
             assert_eq!(a[at(2, 9, 3)], odd_x * here, "{name}");
             assert_eq!(a[at(6, 3, 3)], odd_y * here, "{name}");
         }
+    }
+
+    #[test]
+    fn a_scene_that_is_not_symmetric_has_a_field_of_its_whole_length() {
+        let mut case = Case::find(Path::new("half-short")).unwrap();
+        case.accuracy.tolerance = 1e-2;
+        case.load.eccentricity_m = Some(1e-4);
+        case.pose.offset_m = 2e-4;
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
+        for body in BodyKind::ALL {
+            let whole = Quarter::new(&solved, body, [3, 5, 4]).unwrap();
+            let [x, y, z] = &whole.axes;
+            assert!(case.overlap().iter().all(|end| y.contains(end)), "{y:?}");
+            let beyond = if body == BodyKind::Block { 4 } else { 0 };
+            assert_eq!(y.len(), 9 + beyond);
+            let grid = whole.grid();
+            assert_eq!(grid.axes_m[1].len(), y.len());
+            let c_m = case.hertz().c_m;
+            assert!(grid.axes_m[1].iter().zip(y).all(|(m, y)| (m - y * c_m).abs() < 1e-15));
+            let mises = &grid.arrays.iter().find(|(name, _)| name == "von_mises_pa").unwrap().1;
+            for (j, y) in y.iter().enumerate() {
+                let there = solved.stress(body, &[[x[1], *y, z[2]]]).unwrap()[0];
+                let wanted = there.von_mises() * case.hertz().p0_pa;
+                // The roller's layers run upwards.
+                let layer = if body == BodyKind::Roller { 1 } else { 2 };
+                let found = f64::from(mises[(layer * grid.axes_m[1].len() + j) * 5 + 3]);
+                let off = (found - wanted).abs() / case.hertz().p0_pa;
+                assert!(off < 5e-3, "{body:?} {y}: {found} of {wanted}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_roller_longer_than_the_block_has_its_ledge() {
+        let mut case = Case::find(Path::new("half-short")).unwrap();
+        case.accuracy.tolerance = 1e-2;
+        std::mem::swap(&mut case.roller.length_m, &mut case.block.length_m);
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
+        let [block, roller] =
+            BodyKind::ALL.map(|body| Quarter::new(&solved, body, [3, 6, 3]).unwrap().axes[1].len());
+        assert_eq!([block, roller], [6, 9]);
     }
 }

@@ -5,7 +5,7 @@ use super::columns::{Columns, Values};
 use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
 use crate::host::{Lock, write_set};
-use crate::solve::{Options, Solution};
+use crate::solve::{Lamina, Options, Solution};
 use serde::Serialize;
 use std::path::Path;
 
@@ -105,6 +105,28 @@ fn points<D>(solution: &Solution<D>, options: &Options) -> Columns {
     let mut columns = vec![("body".into(), Values::Texts(bodies))];
     columns.extend(numbers(stress_columns(), rows));
     Columns { name: "points", columns }
+}
+
+/// The slices of a contact beside those of ISO/TS 16281, in SI units.
+pub fn laminae(all: &[Lamina]) -> Columns {
+    let names = [
+        "y_m",
+        "width_m",
+        "load_n",
+        "line_load_n_per_m",
+        "p_pa",
+        "iso_load_n",
+        "iso_line_load_n_per_m",
+        "iso_p_pa",
+        "iso_edge_factor",
+    ];
+    let rows = all.iter().map(|lamina| {
+        let Lamina { y_m, width_m, load_n, standard_load_n, p_pa, standard_p_pa, edge_factor } =
+            *lamina;
+        let [line, iso_line] = [load_n, standard_load_n].map(|load| load / width_m);
+        [y_m, width_m, load_n, line, p_pa, standard_load_n, iso_line, standard_p_pa, edge_factor]
+    });
+    Columns { name: "laminae", columns: numbers(names.map(String::from), rows) }
 }
 
 /// Columns of numbers from their rows.

@@ -98,8 +98,23 @@ impl SolvedCase {
         &self.scene
     }
 
+    /// Whether the contact is symmetric about y = 0.
+    pub fn is_symmetric(&self) -> bool {
+        self.scene.scene.is_symmetric()
+    }
+
+    /// Approach of points one roller radius below the surfaces (m).
+    pub(super) fn approach_m(&self) -> f64 {
+        approach_m(&self.scene, &self.case)
+    }
+
+    /// y of the line of action of the pressure's resultant (m).
+    pub(super) fn centre_of_pressure_m(&self) -> f64 {
+        centre_of_pressure(&self.scene) * self.hertz.c_m
+    }
+
     /// Tilt of the lines x = 0 one roller radius below the surfaces (rad).
-    fn tilt_rad(&self) -> f64 {
+    pub(super) fn tilt_rad(&self) -> f64 {
         let radius = self.case.roller.radius_m / self.hertz.c_m;
         let slope = self.hertz.c_m / (2.0 * self.case.equivalent_radius_m());
         self.scene.tilt(radius) * slope
@@ -244,12 +259,12 @@ impl SolvedCase {
             method: solved.scene.model,
             hertz: self.hertz,
             load_n: case.load.force_n,
-            approach_m: approach_m(solved, case),
+            approach_m: self.approach_m(),
             tilt_rad: self.tilt_rad(),
             p_centre_pa: self.pressure(0.0, solved.scene.span().centre()) * p0_pa,
             p_max_pa: top.p * p0_pa,
             p_max_at_m: place_of(solved, top).map(|v| v * c_m),
-            centre_of_pressure_m: [0.0, centre_of_pressure(solved) * c_m],
+            centre_of_pressure_m: [0.0, self.centre_of_pressure_m()],
             contact_y_m: solved.ends().map(|y| y * c_m),
             converged: solved.converged(),
             iterations: solved.contact.iterations,
@@ -284,6 +299,7 @@ impl SolvedCase {
             roller_diametral_tension_pa: round::DIAMETRAL_TENSION
                 * self.curvature(BodyKind::Roller)
                 * self.hertz.p0_pa,
+            stiffness: None,
         }
     }
 }

@@ -138,6 +138,26 @@ pub struct Details {
     pub approach_reference_m: f64,
     /// The uniform sigma_xx of a roller compressed across its diameter (Pa).
     pub roller_diametral_tension_pa: f64,
+    /// The stiffnesses, where they are asked for.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stiffness: Option<Stiffness>,
+}
+
+/// The stiffnesses of a contact at its load: how force and moment about the roller's middle grow with the approach there
+/// and with the tilt. They are those between points and lines one roller radius below the surfaces, as are approach and
+/// tilt.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Stiffness {
+    /// Force by approach at constant tilt (N/m).
+    pub force_by_approach_n_per_m: f64,
+    /// Moment by tilt at constant approach (N m/rad).
+    pub moment_by_tilt_nm_per_rad: f64,
+    /// Force by tilt at constant approach (N/rad); zero where the contact is symmetric.
+    pub force_by_tilt_n_per_rad: f64,
+    /// Moment by approach at constant tilt (N); zero where the contact is symmetric. It differs a little from the force by
+    /// tilt, as approach and tilt are those of points and lines at a depth.
+    pub moment_by_approach_n: f64,
 }
 
 /// Evaluations done and avoided.

@@ -120,6 +120,7 @@ fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> 
             work: None,
             approach_reference_m: case.roller.radius_m,
             roller_diametral_tension_pa: 0.5 * c_m / case.roller.radius_m * p0_pa,
+            stiffness: None,
         },
     }
 }

@@ -113,6 +113,51 @@ fn an_approach_gives_the_load_and_is_refused_where_a_force_is_needed() {
 }
 
 #[test]
+fn stiffness_and_laminae_are_there_on_demand() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    std::fs::write(path.join("a.toml"), include_str!("../../examples/crowned-eccentric.toml"))
+        .unwrap();
+    let solve = [
+        "solve",
+        "a.toml",
+        "--tolerance",
+        "5e-3",
+        "--stiffness",
+        "--laminae",
+        "40",
+        "--plots",
+        "--json",
+    ];
+    let run = edgeline(path, &solve).output().unwrap();
+    assert!(run.status.success(), "{}", crate::support::said(&run));
+    let found: Value = serde_json::from_slice(&run.stdout).unwrap();
+    let stiffness = &found["details"]["stiffness"];
+    // A steel roller of 10 mm under 5 kN: hundreds of newtons a micrometre.
+    let force = stiffness["force_by_approach_n_per_m"].as_f64().unwrap();
+    assert!((1e8..1e9).contains(&force), "{found}");
+    assert!(stiffness["moment_by_tilt_nm_per_rad"].as_f64().unwrap() > 0.0);
+    let note = String::from_utf8(run.stderr).unwrap();
+    assert!(note.contains("the outermost slices carry"), "{note}");
+    let rows = rows(&path.join("out/laminae.csv"));
+    assert_eq!(rows.len(), 40);
+    for column in ["load_n", "iso_load_n"] {
+        let sum: f64 = rows.iter().map(|row| number(row, column)).sum();
+        assert!((sum / 5000.0 - 1.0).abs() < 1e-5, "{column}: {sum}");
+    }
+    assert!(files(&path.join("out")).contains(&"plot-profile.svg".into()));
+    let plain = edgeline(path, &["solve", "flush-short", "--json"]).output().unwrap();
+    assert!(!String::from_utf8(plain.stdout).unwrap().contains("stiffness"));
+    for option in [&["--stiffness"][..], &["--laminae", "40"]] {
+        let mut arguments = vec!["solve", "flush-short", "--engine", "cells", "--out", "none"];
+        arguments.extend(option);
+        let said = refused(path, &arguments);
+        assert!(said.contains("the engine on cells does not compute them"), "{said}");
+    }
+    assert!(refused(path, &["solve", "flush-short", "--laminae", "29"]).contains("30..=2000"));
+}
+
+#[test]
 fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path();

@@ -4,7 +4,7 @@ use super::symbol::symbol;
 use crate::base::{BodyKind, HertzScales};
 use crate::case::Case;
 use crate::cells::Heights;
-use crate::report::draw::{Colour, Figure, Look, Map, Marker, Panel, Series, Shade};
+use crate::report::draw::{Colour, Figure, Look, Map, Marker, Panel, Rule, Series, Shade};
 use crate::solve::{PEAK_CURVE, PressureCell, Solution};
 use crate::stress::{EDGE, Quantity, away_from_edges};
 
@@ -56,6 +56,7 @@ pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(Str
     if let Some(heights) = case.heights() {
         figures.push(("heights".to_string(), plots.heights(&heights)));
     }
+    figures.extend(profile(case, &plots.title, solution).map(|figure| ("profile".into(), figure)));
     for body in BodyKind::ALL {
         for (place, axis, lines) in
             [("along", 1, &ALONG[..]), ("depth", 2, &DOWN), ("peak", 2, &PEAK)]
@@ -67,6 +68,63 @@ pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(Str
         }
     }
     figures
+}
+
+/// Points of a profile's line.
+const PROFILE_POINTS: usize = 201;
+
+/// The profiles of both bodies, and the gap between them before they are loaded but tilted as they are then; none
+/// between straight and parallel bodies.
+fn profile<D>(case: &Case, title: &str, solution: &Solution<D>) -> Option<Figure> {
+    const UM: f64 = 1e6;
+    let summary = &solution.summary;
+    let profiles = BodyKind::ALL.map(|body| case.profile(body));
+    if profiles.iter().all(Option::is_none) && summary.tilt_rad == 0.0 {
+        return None;
+    }
+    let ends = BodyKind::ALL.map(|body| case.ends_m(body));
+    let places = |[from, to]: [f64; 2]| {
+        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+        // Some profiles have no drop at the very end.
+        let share = |i: usize| 0.9999 * (2.0 * i as f64 / (PROFILE_POINTS - 1) as f64 - 1.0);
+        (0..PROFILE_POINTS).map(move |i| middle + half * share(i))
+    };
+    let drop = |body: usize, y: f64| {
+        let middle = 0.5 * (ends[body][0] + ends[body][1]);
+        profiles[body].as_ref().map_or(0.0, |profile| profile.drop(y - middle))
+    };
+    let line = |(body, look): (usize, Look)| {
+        profiles[body].as_ref()?;
+        let points = places(ends[body]).map(|y| (y * MM, drop(body, y) * UM)).collect();
+        Some(Series { markers: false, ..Series::curve(BodyKind::ALL[body].name(), look, points) })
+    };
+    let both = [ends[0][0].max(ends[1][0]), ends[0][1].min(ends[1][1])];
+    let gaps: Vec<(f64, f64)> =
+        places(both).map(|y| (y, drop(0, y) + drop(1, y) - summary.tilt_rad * y)).collect();
+    let least = gaps.iter().map(|(_, gap)| *gap).fold(f64::INFINITY, f64::min);
+    let gaps = gaps.into_iter().map(|(y, gap)| (y * MM, (gap - least) * UM)).collect();
+    let [look, ..] = looks();
+    let [from, to] = summary.contact_y_m;
+    let panel = |title: &str, y_label: &str, series: Vec<Series>| Panel {
+        title: title.into(),
+        x_label: "y (mm)".into(),
+        y_label: y_label.into(),
+        series,
+        ..Panel::default()
+    };
+    let gap = Series { markers: false, ..Series::curve("", look, gaps) };
+    let gap = Panel {
+        rules: [from, to].map(|y| Rule::Vertical(y * MM, String::new())).into(),
+        ..panel("Gap before the load, x = 0; dashed: the contact's ends", "gap (µm)", vec![gap])
+    };
+    let drops: Vec<Series> = (0..2).zip(looks()).filter_map(line).collect();
+    let drops = (!drops.is_empty()).then(|| panel("Profile", "drop (µm)", drops));
+    Some(Figure {
+        title: format!("{title}: profile and gap"),
+        columns: 2,
+        panels: drops.into_iter().chain([gap]).collect(),
+        panel_size: (470, 310),
+    })
 }
 
 /// The looks of the curves of one panel, told apart without colour too.
