@@ -53,7 +53,9 @@ impl Solution {
         engine: Option<&str>,
     ) -> Result<Self> {
         let options = Options::new(method.parse()?);
-        let solved = match engine.unwrap_or("line") {
+        // Only cells take a rough surface.
+        let own = if case.surface.is_some() { "cells" } else { "line" };
+        let solved = match engine.unwrap_or(own) {
             "line" => {
                 if let Some(tolerance) = tolerance {
                     case.accuracy.tolerance = checked_tolerance(tolerance)?;

@@ -25,10 +25,11 @@ use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
 use crate::contact;
 use crate::stress::{Field, Load};
+use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+use rustfft::num_complex::Complex;
 use std::f64::consts::PI;
-use std::ops::{AddAssign, Mul};
 
 /// A body with free end faces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -282,7 +283,11 @@ impl FreeEnds {
             (0..rank).map(shape).collect()
         };
         let means = means(&self.axis, grid, self.symmetric);
-        EndCorrection { shapes: means.iter().flat_map(of_cell).collect(), rank, matrices }
+        let shapes: Vec<f64> = means.iter().flat_map(of_cell).collect();
+        let count = means.len();
+        let turned = (0..rank).flat_map(|i| (0..count).map(move |j| (i, j)));
+        let turned = turned.map(|(i, j)| shapes[j * rank + i]).collect();
+        EndCorrection { shapes, turned, rank, matrices }
     }
 }
 
@@ -356,34 +361,86 @@ fn scaled(
 /// [`FreeEnds`] on cells, in the wavenumbers of their transform.
 #[derive(Debug, Clone)]
 pub(super) struct EndCorrection {
-    /// E B: for each cell along the line the mean of each shape.
+    /// E B: for each cell along the line the mean of each shape; and for each shape those of all cells.
     shapes: Vec<f64>,
+    turned: Vec<f64>,
     rank: usize,
     /// For each wavenumber 2 b r, the long waves in it.
     matrices: Vec<f64>,
 }
 
-/// Numbers of a transform, real or complex.
-pub(super) trait Amplitude: Copy + Default + AddAssign + Mul<f64, Output = Self> {}
+/// Numbers of a transform, real or complex: `PARTS` real ones each.
+pub(super) trait Amplitude<const PARTS: usize>: Copy {
+    /// Its real numbers.
+    fn parts(self) -> [f64; PARTS];
+    /// Adds real numbers.
+    fn add(&mut self, parts: [f64; PARTS]);
+}
 
-impl<T: Copy + Default + AddAssign + Mul<f64, Output = T>> Amplitude for T {}
+impl Amplitude<1> for f64 {
+    fn parts(self) -> [f64; 1] {
+        [self]
+    }
+
+    fn add(&mut self, [part]: [f64; 1]) {
+        *self += part;
+    }
+}
+
+impl Amplitude<2> for Complex<f64> {
+    fn parts(self) -> [f64; 2] {
+        [self.re, self.im]
+    }
+
+    fn add(&mut self, [re, im]: [f64; 2]) {
+        self.re += re;
+        self.im += im;
+    }
+}
+
+/// Adds `factor` times `from` to `sum`; compiled for the processor's vector units with what calls it.
+#[inline(always)]
+fn axpy(factor: f64, from: &[f64], sum: &mut [f64]) {
+    sum.iter_mut().zip(from).for_each(|(sum, v)| *sum += factor * v);
+}
+
+/// Products of the shapes with the numbers `p`, of each cell one after the other.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn project(shapes: &[f64], p: &[f64], loads: &mut [f64]) {
+    let rank = loads.len();
+    shapes.chunks_exact(rank).zip(p).for_each(|(shapes, p)| axpy(*p, shapes, loads));
+}
+
+/// The product of the columns of a `matrix` with `loads`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn product(matrix: &[f64], loads: &[f64], moved: &mut [f64]) {
+    let rank = moved.len();
+    matrix.chunks_exact(rank).zip(loads).for_each(|(column, load)| axpy(*load, column, moved));
+}
 
 impl EndCorrection {
     /// Adds the displacement that the pressures `p(j)` of wavenumber `k` cause to `out`.
-    pub(super) fn add<T: Amplitude>(&self, k: usize, p: impl Fn(usize) -> T, out: &mut [T]) {
+    pub(super) fn add<const PARTS: usize, T: Amplitude<PARTS>>(
+        &self,
+        k: usize,
+        p: impl Fn(usize) -> T,
+        out: &mut [T],
+    ) {
         let rank = self.rank;
-        let (mut loads, mut moved) = (vec![T::default(); rank], vec![T::default(); rank]);
-        for (j, shapes) in self.shapes.chunks_exact(rank).enumerate() {
-            let p = p(j);
-            loads.iter_mut().zip(shapes).for_each(|(load, shape)| *load += p * *shape);
-        }
         let matrix = &self.matrices[k * rank * rank..][..rank * rank];
-        for (column, load) in matrix.chunks_exact(rank).zip(&loads) {
-            moved.iter_mut().zip(column).for_each(|(sum, m)| *sum += *load * *m);
+        let all: Vec<[f64; PARTS]> = (0..out.len()).map(|j| p(j).parts()).collect();
+        let mut sums = vec![[0.0; PARTS]; out.len()];
+        for part in 0..PARTS {
+            let own: Vec<f64> = all.iter().map(|p| p[part]).collect();
+            let (mut loads, mut moved) = (vec![0.0; rank], vec![0.0; rank]);
+            project(&self.shapes, &own, &mut loads);
+            product(matrix, &loads, &mut moved);
+            let mut displaced = vec![0.0; out.len()];
+            // Shape by shape, each along all cells.
+            product(&self.turned, &moved, &mut displaced);
+            sums.iter_mut().zip(displaced).for_each(|(sum, v)| sum[part] = v);
         }
-        for (out, shapes) in out.iter_mut().zip(self.shapes.chunks_exact(rank)) {
-            shapes.iter().zip(&moved).for_each(|(shape, m)| *out += *m * *shape);
-        }
+        out.iter_mut().zip(sums).for_each(|(out, sum)| out.add(sum));
     }
 }
 
