@@ -72,6 +72,12 @@ def _probe(arguments):
     print(json.dumps({**versions(), "gmsh": gmsh}))
 
 
+def _keep(arguments):
+    from .record import keep
+
+    keep(arguments.runs, arguments.folder, _log)
+
+
 def _cases(arguments):
     from .record import read_cases
 
@@ -125,6 +131,10 @@ def main():
     command.add_argument("--launcher", default="mpirun -n {ranks}",
                          help="what starts the ranks (default: 'mpirun -n {ranks}')")
     command.set_defaults(run=_record)
+    command = commands.add_parser("keep", help="add finished runs of `edgeline fem` to the recorded curves")
+    command.add_argument("folder", type=Path, help="folder of the records, one subfolder a case")
+    command.add_argument("runs", nargs="+", type=Path, help="output folders of finished runs")
+    command.set_defaults(run=_keep)
     command = commands.add_parser("cases", help="list the names of the cases that can be recorded")
     command.add_argument("folder", type=Path, help="folder with cases.toml")
     command.set_defaults(run=_cases)

@@ -23,7 +23,7 @@ from pathlib import Path
 import numpy as np
 
 from .meshing import write_atomically
-from .request import Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions
+from .request import Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions, read_request
 from .standard_points import EDGE_RANGE, away_from_edge, pressure_lines, standard_curves
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
@@ -324,12 +324,59 @@ def _record(case, size, target, log, run, overrides):
     began = datetime.datetime.now(datetime.timezone.utc)
     for stage in ("mesh", "solve"):
         _stage(stage, run, asked, work, log)
+    command = f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}"
+    if run.engine != Run.engine:
+        command += f" --engine {run.engine} --list results/reference/cases.toml"
+    if (run.linear, run.ranks) != (Run.linear, Run.ranks):
+        command += f" --linear {run.linear} --ranks {run.ranks}"
+    _add(case, case.to_json(), size, data, work, target, (began, f"{command} results/{target.parent.name}"))
+    shutil.rmtree(work)
+    return True
+
+
+def keep(runs, folder, log):
+    """Add finished runs of ``edgeline fem``, the folders ``runs``, to the records in ``folder``, one a case.
+
+    Each run holds its request, and so its case: any that the model takes, of several sizes. What a record holds of
+    that size is replaced. Raises :class:`FemError` where a run is not finished, or is of another case than
+    its record.
+    """
+    for work in map(Path, runs):
+        request = read_request(work / "request.json")
+        if not (work / "fem.json").exists():
+            raise FemError(f"{work}: has no fem.json: the run is not finished; run it again")
+        asked = json.loads((work / "request.json").read_text(encoding="utf-8"))["case"]
+        # A record names a profile as the case does; its points follow from that.
+        for body in ("roller", "block"):
+            asked[body].pop("profile_m", None)
+        target = Path(folder) / request.case.name
+        target.mkdir(parents=True, exist_ok=True)
+        with _locked(target):
+            _commit(target)
+            data = None
+            if (target / "record.json").exists():
+                check_record(target)
+                data = json.loads((target / "record.json").read_text(encoding="utf-8"))
+                if data["case"] != asked:
+                    raise FemError(f"{target}: holds another case of that name; remove the folder to record anew")
+            began = datetime.datetime.fromtimestamp((work / "request.json").stat().st_mtime, datetime.timezone.utc)
+            size = request.mesh.size
+            command = f"edgeline fem cases/{request.case.name}.toml --size {size:g}"
+            _add(request.case, asked, size, data, work, target, (began, command))
+        log(f"{request.case.name}, size {size:g}")
+
+
+def _add(case, form, size, data, work, target, made):
+    """Add the run in ``work`` to the record ``data`` in ``target``, new if it is ``None``; ``form`` is the case there.
+
+    ``made``: when, and by which command.
+    """
     summary = json.loads((work / "fem.json").read_text(encoding="utf-8"))
     scales = case.scales()
     if data is None:
         data = {
             "schema": 1,
-            "case": case.to_json(),
+            "case": form,
             "hertz": summary["hertz"],
             "dimensionless": {
                 "W": math.pi / (4.0 * scales.radius**2),
@@ -341,14 +388,8 @@ def _record(case, size, target, log, run, overrides):
         }
     for key in ("schema", "case", "hertz"):
         summary.pop(key)
-    command = f"python3 -m edgeline_fem record --cases {case.name} --sizes {size:g}"
-    if run.engine != Run.engine:
-        command += f" --engine {run.engine} --list results/reference/cases.toml"
-    if (run.linear, run.ranks) != (Run.linear, Run.ranks):
-        command += f" --linear {run.linear} --ranks {run.ranks}"
-    data["meshes"][f"{size:g}"] = {
-        "date": began.isoformat(timespec="seconds"), "command": f"{command} results/{target.parent.name}", **summary,
-    }
+    began, command = made
+    data["meshes"][f"{size:g}"] = {"date": began.isoformat(timespec="seconds"), "command": command, **summary}
     data["meshes"] = dict(sorted(data["meshes"].items(), key=lambda item: -float(item[0])))
     new = target / NEW
     new.mkdir()
@@ -360,5 +401,3 @@ def _record(case, size, target, log, run, overrides):
     (new / "record.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
     write_atomically(new / SUMS, checksums(new))
     _commit(target)
-    shutil.rmtree(work)
-    return True

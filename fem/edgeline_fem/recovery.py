@@ -167,12 +167,8 @@ class StressField:
         return found
 
 
-def hertz_stress(points, half_width, peak, poisson, radius):
-    """Stress (n, 6) at ``points`` (n, 3) of a body in plane strain under a Hertz pressure along y.
-
-    McEwen's form (Johnson, Contact Mechanics, 1985, Eqs. 4.49). ``half_width`` (C) and ``peak`` (p0) are the
-    pressure's. On a surface of finite ``radius`` (C) depth runs along its normals.
-    """
+def _along_and_below(points, radius):
+    """x along a surface of this ``radius`` and the depth below it at ``points`` (n, 3), and the sine of its slope."""
     x, _, z = np.asarray(points, dtype=float).T
     if np.isinf(radius):
         sine, depth = np.zeros_like(x), z
@@ -180,9 +176,17 @@ def hertz_stress(points, half_width, peak, poisson, radius):
         distance = np.hypot(x, radius - z)
         sine, depth = x / distance, radius - distance
         x = radius * sine
-    cosine = np.sqrt(1.0 - sine**2)
     # Rounding may move points of the surface slightly above it.
-    depth = np.maximum(depth, 0.0)
+    return x, np.maximum(depth, 0.0), sine
+
+
+def hertz_stress(points, half_width, peak, poisson, radius):
+    """Stress (n, 6) at ``points`` (n, 3) of a body in plane strain under a Hertz pressure along y.
+
+    McEwen's form (Johnson, Contact Mechanics, 1985, Eqs. 4.49). ``half_width`` (C) and ``peak`` (p0) are the
+    pressure's. On a surface of finite ``radius`` (C) depth runs along its normals.
+    """
+    x, depth, sine = _along_and_below(points, radius)
     half = half_width**2 - x**2 + depth**2
     root = np.hypot(half, 2.0 * x * depth)
     m = np.sqrt(0.5 * np.maximum(root + half, 0.0))
@@ -192,7 +196,7 @@ def hertz_stress(points, half_width, peak, poisson, radius):
     scale = -peak / half_width
     along, normal = scale * (m * (1.0 + share) - 2.0 * depth), scale * m * (1.0 - share)
     shear = scale * n * (m**2 - depth**2) / np.maximum(root, 1e-300)
-    return _turned(along, normal, shear, sine, cosine, poisson)
+    return _turned(along, normal, shear, sine, np.sqrt(1.0 - sine**2), poisson)
 
 
 def _turned(along, normal, shear, sine, cosine, poisson):
@@ -214,14 +218,8 @@ def hertz_traction_stress(points, half_width, peak, poisson, radius):
     With F the potential of the pressure, pi sigma_xx = -2 Re F + Im(z F'), pi sigma_zz = -Im(z F') and
     pi sigma_xz = Im F + Re(z F') (Johnson, Contact Mechanics, 1985, section 7.1).
     """
-    x, _, z = np.asarray(points, dtype=float).T
-    if np.isinf(radius):
-        sine, depth = np.zeros_like(x), z
-    else:
-        distance = np.hypot(x, radius - z)
-        sine, depth = x / distance, radius - distance
-        x = radius * sine
-    depth = np.maximum(depth, 0.0) / half_width
+    x, depth, sine = _along_and_below(points, radius)
+    depth = depth / half_width
     # Just below the surface, to be on the branch that belongs to the body.
     place = x / half_width + 1j * np.maximum(depth, 1e-12)
     root = np.sqrt(place - 1.0) * np.sqrt(place + 1.0)

@@ -319,8 +319,9 @@ def _case(case, where):
     _only(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m", "friction"},
           where)
     roller, block = _table(case, "roller", where), _table(case, "block", where)
-    _only(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m"}, f"{where}.roller")
-    _only(block, {"length_m", "young_pa", "poisson", "profile_m"}, f"{where}.block")
+    # The profile's own form is for those who read the request; its points count here.
+    _only(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.roller")
+    _only(block, {"length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.block")
     lengths = [_positive(body, "length_m", f"{where}.{name}")
                for name, body in (("roller", roller), ("block", block))]
     parsed = Case(

@@ -1,5 +1,6 @@
 """Records: resumable, error estimates with known answers."""
 
+import dataclasses
 import fcntl
 import json
 import os
@@ -9,7 +10,9 @@ import sys
 import pytest
 
 from conftest import FEM, STEEL, steel_case
-from edgeline_fem.record import observed_orders, order_and_factor, read_cases, record
+from edgeline_fem.record import (
+    COMPONENTS, check_record, keep, observed_orders, order_and_factor, read_cases, record, standard_request,
+)
 from edgeline_fem.request import FemError
 
 
@@ -59,6 +62,47 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
     with pytest.raises(FemError, match="holds another case"):
         other = steel_case(6e-4, 5.0, 1.0)
         record(other, 3.0, tmp_path, lines.append)
+
+
+def test_finished_runs_become_a_record(tmp_path):
+    case = dataclasses.replace(steel_case(5e-4, 5.0, 1.0), eccentricity_m=1e-4)
+    half = 0.5 * case.roller_length_m
+    runs = []
+    for size in (4.0, 3.0):
+        run = tmp_path / f"run-{size:g}"
+        run.mkdir()
+        asked = standard_request(case, size).to_json()
+        # A profile's own form stands beside its points, and alone in the record.
+        asked["case"]["roller"].update(profile={"kind": "crown"}, profile_m=[[-half, 1e-7], [0.0, 0.0], [half, 1e-7]])
+        (run / "request.json").write_text(json.dumps(asked))
+        rows = [f"{curve['body']},{curve['curve']},{point[0]},{point[1]},{point[2]}," + ",".join(["1e9"] * 8)
+                for curve in asked["curves"] for point in curve["points_m"]]
+        names = ",".join(f"{name}_pa" for name in COMPONENTS)
+        (run / "curves.csv").write_text("\n".join([f"body,curve,x_m,y_m,z_m,{names}", *rows]) + "\n")
+        rows = [f"{line},{point[0]},{point[1]},1e9,1e9,1e9"
+                for line, points in asked["pressure_points_m"].items() for point in points]
+        head = "line,x_m,y_m,p_pa,p_lumped_pa,p_stress_pa"
+        (run / "pressure.csv").write_text("\n".join([head, *rows]) + "\n")
+        runs.append(run)
+    with pytest.raises(FemError, match="not finished"):
+        keep(runs, tmp_path / "kept", print)
+    for run in runs:
+        (run / "fem.json").write_text(json.dumps({"schema": 1, "case": "test", "hertz": {}, "unknowns": 7}))
+    keep(runs, tmp_path / "kept", print)
+    kept = tmp_path / "kept" / "test"
+    check_record(kept)
+    data = json.loads((kept / "record.json").read_text())
+    assert list(data["meshes"]) == ["4", "3"]
+    assert data["meshes"]["3"]["command"] == "edgeline fem cases/test.toml --size 3"
+    assert data["case"]["eccentricity_m"] == 1e-4
+    assert data["case"]["roller"]["profile"] == {"kind": "crown"}
+    assert "profile_m" not in data["case"]["roller"]
+    assert data["errors"] and all(entry["difference_max"] == 0.0 for entry in data["errors"])
+    other = json.loads((runs[0] / "request.json").read_text())
+    other["case"]["eccentricity_m"] = 2e-4
+    (runs[0] / "request.json").write_text(json.dumps(other))
+    with pytest.raises(FemError, match="holds another case"):
+        keep(runs[:1], tmp_path / "kept", print)
 
 
 def test_every_case_on_record_converges_to_what_is_promised():

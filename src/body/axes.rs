@@ -17,9 +17,8 @@ pub(super) const PLATE_FADES: f64 = 8.0;
 /// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest one.
 const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 
-/// Exponent of the pressure at its end (0.23 for equal materials) from which the contact's
-/// iteration barely converges with smaller panels there, on blocks much softer than the roller.
-const STEEP: f64 = 0.3;
+/// Distance (C) from a corner within which panels grow by a ratio of their own.
+const STEEP: f64 = 0.02;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
@@ -35,6 +34,9 @@ pub struct Resolution {
     pub order: usize,
     /// Panel next to a loaded corner.
     pub corner: f64,
+    /// Growth of panels within 0.02 C of a corner: the nearer, the less a load weighs in what is computed
+    /// farther away.
+    pub corner_ratio: f64,
     /// Growth of panels away from a corner.
     pub ratio: f64,
     /// Modes of the pressure across the contact.
@@ -61,11 +63,159 @@ pub struct Resolution {
     pub reach: f64,
 }
 
-/// The levels for the tolerances 0.01, 0.005, 0.001 and 0.0001.
-const LEVELS: [Resolution; 4] = [
+/// The tolerances that have levels of their own.
+const TOLERANCES: [f64; 4] = [1e-2, 5e-3, 1e-3, 1e-4];
+
+/// A share this small is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// The levels where the pressure at the contact's end has a limit, at each of [`TOLERANCES`].
+///
+/// `cargo bench --bench promise -- search` found these and the next ones: the cheapest that keep the errors of
+/// twelve scenes within about the tolerance. `-- hold` measures others.
+const FINITE: [Resolution; 4] = [
     Resolution {
         order: 3,
         corner: 0.06,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.018,
+        corner_ratio: 2.54,
+        ratio: 2.54,
+        modes: 4,
+        spacing: 0.05,
+        k_max: 25.0,
+        k_order: 3,
+        k_step: 3.2,
+        k_min: 0.05,
+        k_ratio: 5.1,
+        images: 1,
+        face_reach: 12.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.006,
+        corner_ratio: 2.2,
+        ratio: 2.2,
+        modes: 6,
+        spacing: 0.018,
+        k_max: 110.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.01,
+        k_ratio: 2.6,
+        images: 1,
+        face_reach: 16.0,
+        reach: 15.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.003,
+        corner_ratio: 1.85,
+        ratio: 1.85,
+        modes: 7,
+        spacing: 0.015,
+        k_max: 240.0,
+        k_order: 5,
+        k_step: 3.0,
+        k_min: 0.005,
+        k_ratio: 2.2,
+        images: 2,
+        face_reach: 18.0,
+        reach: 18.0,
+    },
+];
+
+/// The same where the pressure grows without bound at a free end: the loads on the end face do so too, and carry
+/// much from next to the corner. Its panels are many times smaller, and grow fast.
+const SINGULAR: [Resolution; 4] = [
+    Resolution {
+        order: 3,
+        corner: 0.01,
+        corner_ratio: 7.29,
+        ratio: 2.7,
+        modes: 3,
+        spacing: 0.12,
+        k_max: 20.0,
+        k_order: 3,
+        k_step: 3.0,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.004,
+        corner_ratio: 7.84,
+        ratio: 2.8,
+        modes: 4,
+        spacing: 0.09,
+        k_max: 30.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.05,
+        k_ratio: 4.5,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.0006,
+        corner_ratio: 4.84,
+        ratio: 2.2,
+        modes: 6,
+        spacing: 0.04,
+        k_max: 120.0,
+        k_order: 5,
+        k_step: 5.0,
+        k_min: 0.01,
+        k_ratio: 2.6,
+        images: 1,
+        face_reach: 14.0,
+        reach: 14.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.0002,
+        corner_ratio: 3.42,
+        ratio: 1.85,
+        modes: 7,
+        spacing: 0.03,
+        k_max: 240.0,
+        k_order: 6,
+        k_step: 4.0,
+        k_min: 0.005,
+        k_ratio: 2.1,
+        images: 2,
+        face_reach: 18.0,
+        reach: 18.0,
+    },
+];
+
+/// The same where the contact ends before its bodies do: its pressure falls to zero there, and only its length
+/// has to be found.
+const TIPS: [Resolution; 4] = [
+    Resolution {
+        order: 3,
+        corner: 0.06,
+        corner_ratio: 3.0,
         ratio: 3.0,
         modes: 3,
         spacing: 0.15,
@@ -81,6 +231,7 @@ const LEVELS: [Resolution; 4] = [
     Resolution {
         order: 3,
         corner: 0.04,
+        corner_ratio: 2.5,
         ratio: 2.5,
         modes: 4,
         spacing: 0.1,
@@ -96,6 +247,7 @@ const LEVELS: [Resolution; 4] = [
     Resolution {
         order: 5,
         corner: 0.015,
+        corner_ratio: 2.0,
         ratio: 2.0,
         modes: 5,
         spacing: 0.05,
@@ -111,6 +263,7 @@ const LEVELS: [Resolution; 4] = [
     Resolution {
         order: 7,
         corner: 0.01,
+        corner_ratio: 1.8,
         ratio: 1.8,
         modes: 7,
         spacing: 0.05,
@@ -125,57 +278,144 @@ const LEVELS: [Resolution; 4] = [
     },
 ];
 
+/// The same for half-spaces: their pressure is the steepest at its end, and nodes and wavenumbers cost little
+/// without end faces.
+const ENDLESS: [Resolution; 4] = [
+    Resolution {
+        order: 5,
+        corner: 0.015,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.1,
+        k_max: 60.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.05,
+        k_ratio: 2.6,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.008,
+        corner_ratio: 2.8,
+        ratio: 2.8,
+        modes: 4,
+        spacing: 0.06,
+        k_max: 70.0,
+        k_order: 5,
+        k_step: 4.0,
+        k_min: 0.05,
+        k_ratio: 2.4,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.0027,
+        corner_ratio: 2.5,
+        ratio: 2.5,
+        modes: 6,
+        spacing: 0.025,
+        k_max: 110.0,
+        k_order: 5,
+        k_step: 4.0,
+        k_min: 0.018,
+        k_ratio: 2.6,
+        images: 1,
+        face_reach: 10.0,
+        reach: 14.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.001,
+        corner_ratio: 2.2,
+        ratio: 2.2,
+        modes: 7,
+        spacing: 0.025,
+        k_max: 260.0,
+        k_order: 6,
+        k_step: 3.0,
+        k_min: 0.005,
+        k_ratio: 2.2,
+        images: 1,
+        face_reach: 18.0,
+        reach: 18.0,
+    },
+];
+
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
-    pub const FINEST: f64 = 1e-4;
+    pub const FINEST: f64 = TOLERANCES[3];
 
     /// Smallest tolerance with a coarse resolution.
-    pub const COARSE: f64 = 5e-3;
+    pub const COARSE: f64 = TOLERANCES[1];
 
     /// The resolution of a body with end faces `end`, under a pressure that is singular at the
     /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
     pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
         if end.image_weight.is_none() {
             Self::for_half_space(tolerance)
-        } else if end.freed && corner.is_some_and(|m| m < STEEP) {
+        } else if corner.is_some() {
             Self::for_singular_end(tolerance)
         } else {
             Self::for_tolerance(tolerance)
         }
     }
 
-    /// The resolution for errors of about `tolerance` (a fraction of p0) outside 0.1 C of the
-    /// roller's corner: one of four levels, for 0.01, 0.005, 0.001 and 0.0001. The error of each
-    /// level is measured by its own refinement.
+    /// The resolution for errors of about `tolerance` (a fraction of p0) where the pressure has a limit at the
+    /// contact's end. Between the levels it is interpolated, so that no error jumps.
     pub fn for_tolerance(tolerance: f64) -> Self {
-        if tolerance >= 1e-2 {
-            LEVELS[0]
-        } else if tolerance >= Self::COARSE {
-            LEVELS[1]
-        } else if tolerance >= 1e-3 {
-            LEVELS[2]
-        } else {
-            LEVELS[3]
-        }
+        Self::between(&FINITE, tolerance)
     }
 
-    /// [`Resolution::for_tolerance`] where the pressure grows without bound at a free end: the
-    /// coarse levels need smaller panels there to be within their tolerance beyond 0.1 C.
+    /// The same where the pressure grows without bound at a free end, outside 0.1 C of it.
     pub fn for_singular_end(tolerance: f64) -> Self {
-        let usual = Self::for_tolerance(tolerance);
-        let factor = if tolerance >= Self::COARSE { 0.5 } else { 1.0 };
-        Self { corner: factor * usual.corner, ..usual }
+        Self::between(&SINGULAR, tolerance)
     }
 
-    /// [`Resolution::for_tolerance`] of a half-space's contact: its pressure is the steepest, and
-    /// more nodes per panel and more wavenumbers cost little without end faces.
+    /// The same of a contact that ends before its bodies do, at both ends.
+    pub fn for_tips(tolerance: f64) -> Self {
+        Self::between(&TIPS, tolerance)
+    }
+
+    /// The same of half-spaces.
     pub fn for_half_space(tolerance: f64) -> Self {
-        let mut usual = Self::for_tolerance(tolerance);
-        usual.k_ratio = usual.k_ratio.min(2.6);
-        if tolerance < Self::COARSE {
-            return usual;
+        Self::between(&ENDLESS, tolerance)
+    }
+
+    /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.
+    fn between(levels: &[Self; 4], tolerance: f64) -> Self {
+        let at = tolerance.clamp(TOLERANCES[3], TOLERANCES[0]);
+        let next = TOLERANCES.iter().position(|level| *level <= at).unwrap_or(3).max(1);
+        let [wide, tight] = [next - 1, next].map(|i| TOLERANCES[i]);
+        let share = (wide / at).ln() / (wide / tight).ln();
+        let (from, to) = (&levels[next - 1], &levels[next]);
+        let mixed = |of: fn(&Self) -> f64| of(from) * (of(to) / of(from)).powf(share);
+        let count = |of: fn(&Self) -> usize| match (of(from), of(to)) {
+            (a, _) if share < ROUNDING => a,
+            (_, b) if share > 1.0 - ROUNDING => b,
+            (a, b) => a.max(b),
+        };
+        Self {
+            order: count(|r| r.order),
+            corner: mixed(|r| r.corner),
+            corner_ratio: mixed(|r| r.corner_ratio),
+            ratio: mixed(|r| r.ratio),
+            modes: count(|r| r.modes),
+            spacing: mixed(|r| r.spacing),
+            k_max: mixed(|r| r.k_max),
+            k_order: count(|r| r.k_order),
+            k_step: mixed(|r| r.k_step),
+            k_ratio: mixed(|r| r.k_ratio),
+            k_min: mixed(|r| r.k_min),
+            images: count(|r| r.images),
+            face_reach: mixed(|r| r.face_reach),
+            reach: mixed(|r| r.reach),
         }
-        Self { order: 5, corner: 0.04, ratio: 3.0, modes: 3, k_max: 20.0, ..usual }
     }
 
     /// Every panel halved (its growth ratio's root taken) and every extent doubled.
@@ -183,6 +423,7 @@ impl Resolution {
         Self {
             order: self.order,
             corner: 0.5 * self.corner,
+            corner_ratio: self.corner_ratio.sqrt(),
             ratio: self.ratio.sqrt(),
             modes: self.modes + 2,
             spacing: 0.5 * self.spacing,
@@ -205,7 +446,7 @@ impl Resolution {
         // Avoids a last panel that is much shorter than its neighbour.
         while next * self.ratio.sqrt() < length {
             s.push(next);
-            next *= self.ratio;
+            next *= if next < STEEP { self.corner_ratio } else { self.ratio };
         }
         s.push(length);
         s

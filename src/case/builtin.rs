@@ -5,10 +5,18 @@ use crate::base::{Error, Result};
 use std::path::Path;
 
 /// Name and text of every case file in `cases/`.
-pub const BUILTIN_CASES: [(&str, &str); 9] = [
+pub const BUILTIN_CASES: [(&str, &str); 17] = [
+    ("crown-inside", include_str!("../../cases/crown-inside.toml")),
+    ("crown-to-the-ends", include_str!("../../cases/crown-to-the-ends.toml")),
+    ("eccentric-flush", include_str!("../../cases/eccentric-flush.toml")),
+    ("eccentric-half", include_str!("../../cases/eccentric-half.toml")),
     ("flush-short", include_str!("../../cases/flush-short.toml")),
     ("half-short", include_str!("../../cases/half-short.toml")),
+    ("logarithmic-eccentric", include_str!("../../cases/logarithmic-eccentric.toml")),
+    ("logarithmic-steel-aluminium", include_str!("../../cases/logarithmic-steel-aluminium.toml")),
     ("long-contact", include_str!("../../cases/long-contact.toml")),
+    ("longer-roller", include_str!("../../cases/longer-roller.toml")),
+    ("offset-flush-end", include_str!("../../cases/offset-flush-end.toml")),
     ("sliding-flush", include_str!("../../cases/sliding-flush.toml")),
     ("sliding-half", include_str!("../../cases/sliding-half.toml")),
     ("sliding-steel-aluminium", include_str!("../../cases/sliding-steel-aluminium.toml")),

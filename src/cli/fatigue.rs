@@ -1,7 +1,7 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
 use super::output::{Exit, print, print_json};
-use super::values::{checked_tolerance, edge_model};
+use super::values::{checked_tolerance, count, edge_model};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -33,7 +33,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "fatigue", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     /// Numbers of places along the contact and into the bodies; half as many are added beyond an end
-    #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count)]
+    #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count("places", 2..=500))]
     places: Vec<usize>,
     /// Accuracy as a fraction of p0, that of the case by default
     #[arg(long, allow_negative_numbers = true)]
@@ -41,14 +41,6 @@ pub(super) struct Arguments {
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
     json: bool,
-}
-
-/// Parses a number of places.
-fn count(text: &str) -> std::result::Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(value) if (2..=500).contains(&value) => Ok(value),
-        _ => Err("give a number of places between 2 and 500".into()),
-    }
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {

@@ -14,9 +14,9 @@ use std::path::PathBuf;
 /// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx or CalculiX, as child processes.
 ///
 /// Writes curves.csv and pressure.csv (at the points of the semi-analytical solution), fem.json,
-/// mesh.json and the log of each stage into the output folder. Takes a few seconds at --size 2 and
-/// a minute at --size 1; with --engine calculix one to two minutes at --size 2. The next run continues a run that was stopped; a finished run is not
-/// repeated.
+/// mesh.json, request.json and the log of each stage into the output folder. Takes a few seconds at --size 2 and
+/// a minute at --size 1; with --engine calculix one to two minutes at --size 2. The next run continues
+/// a run that was stopped; a finished run is not repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case

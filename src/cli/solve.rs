@@ -4,7 +4,7 @@ use super::output::{Exit, print, print_json, say};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
-use super::values::{checked_residual, checked_tolerance, edge_model};
+use super::values::{checked_residual, checked_tolerance, count, edge_model};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -48,7 +48,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum)]
     engine: Option<Engine>,
     /// Numbers of cells across and along the contact; by its shape if absent
-    #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = cell_count)]
+    #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = count("cells", 4..=65536))]
     cells: Vec<usize>,
     /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact area
     #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_negative_numbers = true)]
@@ -69,7 +69,7 @@ pub(super) struct Arguments {
     #[arg(long, conflicts_with = "points")]
     field: bool,
     /// Numbers of points of a quarter of a body: across, along and into it
-    #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_value = "33,49,41", value_parser = count, requires = "field")]
+    #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_value = "33,49,41", value_parser = count("grid points", 2..=2000), requires = "field")]
     field_points: Vec<usize>,
     /// Only this body's curves; both by default
     #[arg(long, value_parser = body())]
@@ -111,27 +111,11 @@ impl Arguments {
     }
 }
 
-/// Parses a number of cells.
-fn cell_count(text: &str) -> std::result::Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(value) if (4..=65536).contains(&value) => Ok(value),
-        _ => Err("give a number of cells between 4 and 65536".into()),
-    }
-}
-
 fn body() -> impl TypedValueParser<Value = BodyKind> {
     PossibleValuesParser::new(BodyKind::ALL.map(BodyKind::name)).map(|name| {
         let named = |body: &BodyKind| body.name() == name;
         BodyKind::ALL.into_iter().find(named).expect("only these names pass")
     })
-}
-
-/// Parses a number of grid points.
-fn count(text: &str) -> std::result::Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(value) if (2..=2000).contains(&value) => Ok(value),
-        _ => Err("give a number of points between 2 and 2000".into()),
-    }
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {

@@ -5,6 +5,7 @@ use crate::body::EdgeModel;
 use crate::case::Key;
 use crate::study::{Engine, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use std::ops::RangeInclusive;
 
 /// Parses the name of an edge model.
 pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
@@ -28,6 +29,17 @@ pub(super) fn source() -> impl TypedValueParser<Value = Source> {
 pub(super) fn chosen_models(named: &[Source]) -> Vec<EdgeModel> {
     let wanted = |m: &EdgeModel| named.is_empty() || named.contains(&Source::from(*m));
     EdgeModel::ALL.into_iter().filter(wanted).collect()
+}
+
+/// Parses a number of `what` within the range.
+pub(super) fn count(
+    what: &'static str,
+    range: RangeInclusive<usize>,
+) -> impl Fn(&str) -> std::result::Result<usize, String> + Clone {
+    move |text| match text.parse::<usize>() {
+        Ok(value) if range.contains(&value) => Ok(value),
+        _ => Err(format!("give a number of {what} between {} and {}", range.start(), range.end())),
+    }
 }
 
 /// Legal range of the residual of an iteration: smaller ones are lost in rounding.

@@ -11,6 +11,10 @@ use std::ops::Range;
 const DISTURBED: f64 = 1.0;
 const INNER_MODES: usize = 3;
 
+/// Modes of the nodes between the last free one and the line's end: more of them would be noise, as their
+/// half-widths are those of the free node, and turn tensile one node after the other.
+const TAIL_MODES: usize = 3;
+
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
@@ -24,10 +28,14 @@ const LEAST: usize = 2;
 /// amplitude scales.
 const STEEPEST: f64 = 10.0;
 
+/// Power of the distance from the contact's end in which the half-width is interpolated: it steepens towards
+/// an end where the pressure changes by s^-m or by s ln s.
+const STEEPENING: f64 = 0.6;
+
 /// The unknowns of each node. Free nodes have all modes and the singular one, whose amplitude
 /// determines the change of their half-width. Next to the end of the line the nodes are closer than
-/// the shortest wave, and independent half-widths would be noise. They are interpolated linearly
-/// from those of the free nodes, at least `spacing` apart. A node beyond the last free one whose
+/// the shortest wave, and independent half-widths would be noise. They are interpolated
+/// from those of the free nodes, at least `spacing` apart, in the [`STEEPENING`] power of the distance from the end. A node beyond the last free one whose
 /// pressure would be tensile loses modes, the higher ones first; with none left it carries no
 /// pressure.
 #[derive(Debug, Clone)]
@@ -36,6 +44,9 @@ pub(super) struct Layout {
     pub free: Vec<usize>,
     /// The half-width of each node from those of the free nodes: positions in `free`, and shares.
     pub shares: Vec<[(usize, f64); 2]>,
+    /// Whether the contact narrows to a tip towards the end next to each node: it is the square of the
+    /// half-width that is interpolated then.
+    pub narrows: Vec<bool>,
     /// Modes of each node.
     pub counts: Vec<usize>,
     /// The first unknown of each node, and the end.
@@ -83,11 +94,34 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
     if free.is_empty() { vec![middle] } else { free }
 }
 
+/// The [`STEEPENING`] power of the distance from the nearer end, as a coordinate that ascends with y.
+fn steepening(problem: &Problem, y: f64) -> f64 {
+    let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
+    let half = if problem.both_ends { 0.5 * (to - from) } else { to - from };
+    if to - y <= half {
+        -(to - y).powf(STEEPENING)
+    } else {
+        (y - from).powf(STEEPENING) - 2.0 * half.powf(STEEPENING)
+    }
+}
+
+/// Whether the contact ends before the bodies do towards the end next to `y`.
+fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
+    let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
+    if problem.both_ends && y - from < to - y {
+        problem.open[0] || contact.start > 0
+    } else {
+        problem.open[1] || contact.end < problem.axis.len()
+    }
+}
+
 impl Layout {
     /// All modes at the nodes that are in `contact`, none at the others.
     pub fn new(problem: &Problem, settings: &ContactSettings, contact: Range<usize>) -> Self {
         let axis = problem.axis;
         let free = free_nodes(problem, settings.spacing, &contact);
+        let narrows: Vec<bool> =
+            axis.nodes().iter().map(|y| narrows(problem, &contact, *y)).collect();
         let shares = axis
             .nodes()
             .iter()
@@ -108,18 +142,21 @@ impl Layout {
                     return [(0, (y - end) / (first - end)), (0, 0.0)];
                 }
                 let before = after.clamp(1, free.len() - 1) - 1;
-                let [a, b] = [before, before + 1].map(|i| axis.nodes()[free[i]]);
-                let share = (y - a) / (b - a);
+                let own = if narrows[j] { |_: &Problem, y: f64| y } else { steepening };
+                let [a, b] = [before, before + 1].map(|i| own(problem, axis.nodes()[free[i]]));
+                let share = (own(problem, *y) - a) / (b - a);
                 [(before, 1.0 - share), (before + 1, share)]
             })
             .collect();
+        let (first, last) = (free[0], free[free.len() - 1]);
         let modes_at = |(j, y): (usize, &f64)| match problem.distance_to_end(*y) > DISTURBED {
             _ if !contact.contains(&j) => 0,
+            _ if j > last || problem.both_ends && j < first => settings.modes.min(TAIL_MODES),
             true => settings.modes.min(INNER_MODES),
             false => settings.modes,
         };
         let counts = axis.nodes().iter().enumerate().map(modes_at).collect();
-        let mut layout = Self { free, shares, counts, starts: Vec::new() };
+        let mut layout = Self { free, shares, narrows, counts, starts: Vec::new() };
         layout.number();
         layout
     }

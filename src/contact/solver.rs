@@ -20,6 +20,14 @@ const NEGLIGIBLE: f64 = 0.1;
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
+/// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse. Higher modes,
+/// which describe the pressure's inside, may cancel the slope of the first one for an iteration, and the
+/// half-width would run away.
+const STEEPER: f64 = 1.3;
+
+/// Amplitude of the edge singularity (p0) from which on tensile nodes are released.
+const NEAR: f64 = 1e-3;
+
 /// Smallest half-width in the iteration (C), and that of a contact that ends at a tip.
 const NARROWEST: f64 = 0.05;
 const TIP: f64 = 1e-3;
@@ -84,8 +92,7 @@ fn solve_once(
         };
         let unknowns = held.solve()?;
         for (j, slope) in slopes.iter_mut().enumerate() {
-            let own = &unknowns.as_slice()[layout.modes(j)];
-            *slope = own.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
+            *slope = edge_slope(&unknowns.as_slice()[layout.modes(j)]);
         }
         let mut worst: f64 = 0.0;
         let wanted: Vec<f64> = layout
@@ -102,7 +109,9 @@ fn solve_once(
         last = worst;
         let shrunk = layout.shrunk(problem, &contact, &unknowns);
         let settled = shrunk == contact;
-        if settled && worst <= settings.tolerance && !layout.release(problem.both_ends, &unknowns) {
+        let near = settled && worst <= settings.tolerance.max(NEAR);
+        let released = near && layout.release(problem.both_ends, &unknowns);
+        if settled && worst <= settings.tolerance && !released {
             let ends = ends(problem, &layout, &contact, &half_widths);
             let solution = carrying(problem, &layout, half_widths, &unknowns);
             return Ok(ContactSolution {
@@ -113,12 +122,13 @@ fn solve_once(
                 ..solution
             });
         }
-        for (a, shares) in half_widths.iter_mut().zip(&layout.shares) {
+        let shared = layout.shares.iter().zip(&layout.narrows);
+        for (a, (shares, narrows)) in half_widths.iter_mut().zip(shared) {
             let mean = |of: fn(f64) -> f64| -> f64 {
                 shares.iter().map(|(free, share)| share * of(wanted[*free])).sum()
             };
             // Towards an open end the square is linear.
-            *a = match problem.may_end() {
+            *a = match narrows {
                 true => mean(|a| a * a).max(TIP * TIP).sqrt(),
                 false => mean(|a| a).max(NARROWEST),
             };
@@ -133,6 +143,16 @@ fn solve_once(
         residual: last,
         remedy: "ask for a coarser [accuracy] tolerance, or check the case's lengths".into(),
     })
+}
+
+/// The edge slope S of the pressure with these modes, see [`STEEPER`].
+fn edge_slope(modes: &[f64]) -> f64 {
+    let slope: f64 = modes.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
+    match modes.first() {
+        Some(first) if *first > 0.0 => slope.clamp(first / STEEPER, first * STEEPER),
+        Some(first) => *first,
+        None => 0.0,
+    }
 }
 
 /// The solution from the `unknowns`. The share of the load in the singular modes, which is below

@@ -99,12 +99,12 @@ impl Driver {
     /// Solves `case` in `folder`, or takes the result from there if the same request has been
     /// solved before. `progress` receives messages on the state of the run.
     ///
-    /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `fem.json` and the log of each stage. On
+    /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `request.json`, `fem.json` and the log of each stage. On
     /// failure all files that help to find the cause are kept.
     ///
     /// # Errors
-    /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run uses the folder, [`Error::Child`] when a stage fails or
-    /// takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
+    /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run uses
+    /// the folder, [`Error::Child`] when a stage fails or takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
     /// process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         self.settings.code.check(case)?;
@@ -126,7 +126,7 @@ impl Driver {
         run.solve(progress)?;
         let result = run.result(&run.work)?;
         let mut files = Vec::new();
-        for name in ["curves.csv", "pressure.csv", "mesh.json", "fem.json"] {
+        for name in ["curves.csv", "pressure.csv", "mesh.json", "request.json", "fem.json"] {
             files.push((name, read(&run.work.join(name))?.into_bytes()));
         }
         write_set(folder, &files)?;

@@ -91,7 +91,6 @@ fn case_of(case: &Case) -> Value {
             [y, profile.drop(y.clamp(-CUT * half, CUT * half))]
         };
         let own = value[body.name()].as_object_mut().expect("a body is a table");
-        own.remove("profile");
         own.insert("profile_m".into(), json!((0..PROFILE_POINTS).map(point).collect::<Vec<_>>()));
     }
     value

@@ -33,7 +33,7 @@ enum Slot {
 
 /// Stresses of bodies before the roller's round shape is added.
 #[derive(Debug, Default)]
-pub(super) struct Stresses {
+pub struct Stresses {
     /// Of each curve at its points.
     pub curves: Vec<Vec<RoundStress>>,
     /// Of the single points.

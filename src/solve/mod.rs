@@ -42,6 +42,7 @@ pub use grid::MOST_GRID_POINTS;
 pub use group::{solve, solve_group};
 pub use key_results::{END_DISTANCES, KeyResults, key_results};
 pub use laminae::{Lamina, laminae};
+pub use lines::Stresses;
 pub use options::{Options, Point};
 pub use passage::Passage;
 #[cfg(feature = "cli")]

@@ -1,6 +1,6 @@
 //! A scene whose contact is solved.
 
-use super::lines;
+use super::lines::{self, Stresses};
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
 use crate::base::stop::go_on;
@@ -100,9 +100,7 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        let end = scene.end(BodyKind::Block);
-        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
-        Self::with_resolution(scene, &resolution)
+        Self::with_resolution(scene, &scene.resolution(scene.tolerance))
     }
 
     /// Solves a scene at a given resolution.
@@ -137,8 +135,7 @@ impl SolvedScene {
         let mut line = Line::first(scene, slices);
         if scene.may_end() {
             // The ends are found at low cost; on the way there no solution has to be sound.
-            let coarse =
-                Resolution::of(SEARCH, &scene.end(BodyKind::Block), scene.corner_exponent());
+            let coarse = scene.resolution(SEARCH);
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
             let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices };
             line = search.settled(line)?.line;
@@ -147,6 +144,7 @@ impl SolvedScene {
         let trial = Trial { scene, resolution, accuracy, gap: &gap, slices };
         let Settled { line, parts, contact, setup } = trial.settled(line)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
+        let open = left_open(scene, &line, &contact);
         let pressure = Pressure::new(
             axis,
             scene.is_symmetric(),
@@ -163,7 +161,7 @@ impl SolvedScene {
             pressure: pressure.scaled(unit),
             contact: contact.scaled(unit),
             own: Own { scene: scene.clone(), contact, pressure },
-            open: line.open,
+            open,
             seconds: Seconds { setup, contact: total - setup, stress: 0.0, total },
             condition,
             moments,
@@ -196,11 +194,7 @@ impl SolvedScene {
     }
 
     /// Stresses on `curves` and at single `points` (C).
-    pub(super) fn stresses(
-        &self,
-        curves: &[CurveSpec],
-        points: &[(BodyKind, [f64; 3])],
-    ) -> lines::Stresses {
+    pub fn stresses(&self, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) -> Stresses {
         lines::stresses(self.bodies_shared(), |kind| self.field(kind), curves, points)
     }
 
@@ -264,6 +258,18 @@ impl SolvedScene {
 }
 
 impl Scene {
+    /// The resolution for a tolerance (p0).
+    fn resolution(&self, tolerance: f64) -> Resolution {
+        if self.may_end() {
+            let (ends, overlap) = (self.slices(&self.gap()).ends, self.overlap());
+            let least = MARGIN * self.half_length;
+            if ends[0] - overlap[0] > least && overlap[1] - ends[1] > least {
+                return Resolution::for_tips(tolerance);
+            }
+        }
+        Resolution::of(tolerance, &self.end(BodyKind::Block), self.corner_exponent())
+    }
+
     /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line
     /// contact is left as it is where the contact is not much wider.
     fn own_unit(&self) -> f64 {
@@ -287,6 +293,17 @@ impl Scene {
         let (moment, tilt) = self.moment_and_tilt();
         Slices::new(gap, self.overlap(), self.load, moment, tilt)
     }
+}
+
+/// Whether the contact ends before its bodies do, at either end: its axis does, or the last nodes carry no
+/// load.
+fn left_open(scene: &Scene, line: &Line, contact: &ContactSolution) -> [bool; 2] {
+    let last = contact.coefficients.len() - 1;
+    let outermost = [if scene.is_symmetric() { last } else { 0 }, last];
+    [0, 1].map(|side| {
+        let lifted = contact.coefficients[outermost[side]].is_empty();
+        line.open[side] || scene.may_end() && lifted
+    })
 }
 
 /// The part of the overlap that the contact's axis covers.

@@ -106,7 +106,7 @@ fn pressures_are_the_line_engines_for_every_edge_model() {
             let limit = match (model, ratio) {
                 (EdgeModel::HalfSpace, _) => 3e-3,
                 (_, 0.5) => 4e-4,
-                _ => 1e-4,
+                _ => 2e-4,
             };
             small(&name, pressure_error(&cells, &line), limit);
         }

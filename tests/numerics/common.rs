@@ -67,6 +67,33 @@ pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
     Case::from_factors("case", 0.01, steel, steel, factors)
 }
 
+/// Asserts that tractions of `stress` (y, z and all x) vanish on the end faces of both bodies, at 40 x 40
+/// points of each.
+pub fn free_ends(
+    solved: &SolvedScene,
+    what: &str,
+    stress: impl Fn(&BodyField, f64, f64, &[f64]) -> Vec<StressTensor>,
+) {
+    let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
+    for kind in BodyKind::ALL {
+        let field = solved.field(kind);
+        // On the face itself the tractions are set to zero; next to it they are computed.
+        let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
+        let mut left = [0.0; 3];
+        for i in 0..40 {
+            let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
+            for s in stress(&field, y, z, &xs) {
+                for (worst, traction) in left.iter_mut().zip([s.yy, s.xy, s.yz]) {
+                    *worst = worse(*worst, traction.abs());
+                }
+            }
+        }
+        for (name, left) in ["yy", "xy", "yz"].iter().zip(left) {
+            small(&format!("{} {what}: {name}", kind.name()), left, 5e-3);
+        }
+    }
+}
+
 /// Rows of `tests/data/<name>`: a label if the file has one, and the numbers. Lines that begin with
 /// # are comments.
 pub fn table(name: &str) -> Vec<(String, Vec<f64>)> {

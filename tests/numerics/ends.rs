@@ -57,7 +57,8 @@ fn strengths_do_not_depend_on_the_mesh() {
             }
             other => panic!("{other:?}"),
         });
-        assert!((limits[0] - limits[1]).abs() < 3e-3, "{limits:?}");
+        // The limit lies beyond the last free half-width too.
+        assert!((limits[0] - limits[1]).abs() < 6e-3, "{limits:?}");
         if slenderness == 5.0 {
             // Finite elements: 0.572 within one percent.
             assert!((limits[1] - 0.572).abs() < 0.006, "{limits:?}");

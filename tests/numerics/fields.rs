@@ -1,7 +1,7 @@
 //! Laws of any stress field: equilibrium, free faces, superposition, symmetry. Lengths are in units
 //! of C, stresses in units of p0.
 
-use crate::common::{apart, at, half_of, near, small, solved, table, worse};
+use crate::common::{apart, at, free_ends, half_of, near, small, solved, table, worse};
 use edgeline::base::{Material, Panels, StressTensor};
 use edgeline::body::{EdgeModel, Resolution, Shape, Stack};
 use edgeline::case::{Case, Factors};
@@ -73,25 +73,9 @@ fn end_faces_are_free() {
         (5.0, 1.0, 0.45),
     ] {
         let solved = solved(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
-        let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
-        for kind in BodyKind::ALL {
-            let field = solved.field(kind);
-            // On the face itself the tractions are set to zero; next to it they are computed.
-            let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
-            let mut left = [0.0; 3];
-            for i in 0..40 {
-                let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
-                for s in field.at(y, z, &xs) {
-                    for (worst, traction) in left.iter_mut().zip([s.yy, s.xy, s.yz]) {
-                        *worst = worse(*worst, traction.abs());
-                    }
-                }
-            }
-            for (name, left) in ["yy", "xy", "yz"].iter().zip(left) {
-                let what = format!("{} {slenderness} {length_ratio} {nu}: {name}", kind.name());
-                small(&what, left, 5e-3);
-            }
-        }
+        free_ends(&solved, &format!("{slenderness} {length_ratio} {nu}"), |field, y, z, xs| {
+            field.at(y, z, xs)
+        });
     }
 }
 

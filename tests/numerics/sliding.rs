@@ -2,7 +2,7 @@
 //! units of C, stresses in units of p0; the traction on the block is the pressure along +x unless a friction
 //! is named.
 
-use crate::common::{apart, case, half_of, near, scene, small, worse};
+use crate::common::{apart, case, free_ends, half_of, near, scene, small, worse};
 use crate::fields::{LIMITS, Random, SCENES, imbalance};
 use edgeline::base::{Panels, StressTensor, gauss_legendre};
 use edgeline::body::EdgeModel;
@@ -165,25 +165,9 @@ fn end_faces_are_free_under_a_traction() {
         [(5.0, 1.0, 0.3), (5.0, 0.5, 0.3), (20.0, 1.0, 0.3), (1.0, 1.0, 0.3), (5.0, 0.99, 0.45)]
     {
         let solved = sliding(slenderness, length_ratio, nu, EdgeModel::QuarterSpace);
-        let xs: Vec<f64> = (0..40).map(|i| 4.0 * f64::from(i) / 39.0).collect();
-        for kind in BodyKind::ALL {
-            let field = solved.field(kind);
-            let y = half_of(&solved.scene, kind) * (1.0 - 2e-9);
-            let mut left = [0.0; 3];
-            for i in 0..40 {
-                let z = 0.02 * 500f64.powf(f64::from(i) / 39.0);
-                for s in field.round_at(y, z, &xs) {
-                    let s = s.flat.traction;
-                    for (worst, traction) in left.iter_mut().zip([s.yy, s.xy, s.yz]) {
-                        *worst = worse(*worst, traction.abs());
-                    }
-                }
-            }
-            for (name, left) in ["yy", "xy", "yz"].iter().zip(left) {
-                let what = format!("{} {slenderness} {length_ratio} {nu}: {name}", kind.name());
-                small(&what, left, 5e-3);
-            }
-        }
+        free_ends(&solved, &format!("{slenderness} {length_ratio} {nu}"), |field, y, z, xs| {
+            field.round_at(y, z, xs).iter().map(|s| s.flat.traction).collect()
+        });
     }
 }
 

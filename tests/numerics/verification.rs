@@ -159,10 +159,10 @@ fn stresses_of_cells() {
         let scene = Scene::new(&case, model, None);
         let solved = SolvedScene::new(&scene).unwrap();
         // Cells of the pressure: 0.05 wide, graded towards the end of the line.
-        let mut ends = vec![0.0f64, 0.002];
+        let mut ends = vec![0.0f64, 2e-4];
         while ends[ends.len() - 1] < 5.0 {
             let last = ends[ends.len() - 1];
-            ends.push((last + (0.2 * last).clamp(0.002, 0.1)).min(5.0));
+            ends.push((last + (0.2 * last).clamp(2e-4, 0.1)).min(5.0));
         }
         let mut cells = Vec::new();
         for pair in ends.windows(2) {

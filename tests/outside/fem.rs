@@ -25,6 +25,7 @@ fn a_run_leaves_checked_results_and_is_not_repeated() {
         "mesh.json",
         "mesh.log",
         "pressure.csv",
+        "request.json",
         "request.key",
         "solve.log",
     ];

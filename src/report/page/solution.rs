@@ -1,11 +1,12 @@
 //! The pictures of one solution, and a page of one sheet about it for a report.
 
+use super::render::fill;
 use crate::base::number::{duration, significant, with_minus_signs};
-use crate::base::{BodyKind, Error, Result};
+use crate::base::{BodyKind, Result};
 use crate::case::{Case, Draft, Form, KEYS, Key};
 use crate::report::plots;
 use crate::solve::{Solution, Summary};
-use minijinja::{Environment, context};
+use minijinja::context;
 
 const NAME: &str = "solution.html";
 const PAGE: &str = include_str!("solution.html");
@@ -53,22 +54,11 @@ pub fn of_solution<D>(
         files.push((format!("plot-{name}.svg"), svg.clone().into_bytes()));
         pictures.push(svg);
     }
-    let mut environment = Environment::new();
-    let fault = |e: minijinja::Error| Error::File {
-        path: NAME.into(),
-        line: None,
-        message: format!("{e:#}"),
-        remedy: "report this as a fault of the program".to_string(),
+    let data = context! {
+        case => case.name, by => label.by, program => label.program, date => label.date,
+        results => results(case, &solution.summary), inputs => inputs(case), notes => NOTES, pictures,
     };
-    environment.add_template(NAME, PAGE).map_err(fault)?;
-    let page = environment.get_template(NAME).and_then(|template| {
-        template.render(context! {
-            case => case.name, by => label.by, program => label.program, date => label.date,
-            results => results(case, &solution.summary), inputs => inputs(case), notes => NOTES,
-            pictures,
-        })
-    });
-    files.push(("summary.html".into(), page.map_err(fault)?.into_bytes()));
+    files.push(("summary.html".into(), fill(NAME, PAGE, data)?.into_bytes()));
     Ok(files)
 }
 
