@@ -66,6 +66,9 @@ pub struct Resolution {
 /// The tolerances that have levels of their own.
 const TOLERANCES: [f64; 4] = [1e-2, 5e-3, 1e-3, 1e-4];
 
+/// Lengths that differ by less than this part of a body's are the same.
+const SAME: f64 = 1e-10;
+
 /// A share this small is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -482,12 +485,14 @@ impl Resolution {
     pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
-        if near > 0.0 {
+        // Less than that between a body's end, or its middle, and the contact's is rounding.
+        let rounding = SAME * half;
+        if near > rounding {
             let inward = self.graded(self.corner.min(0.5 * near), near);
             breaks.splice(..0, inward[1..].iter().rev().map(|s| (near - s).max(0.0)));
         }
         let ledge = half - contact.end();
-        if ledge > 0.0 {
+        if ledge > rounding {
             // The effect of the end face on the surface is smooth at the contact's end: only the
             // face itself needs grading.
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);

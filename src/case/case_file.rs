@@ -6,7 +6,7 @@ use super::keys::{KEYS, Key, others_of};
 use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::profile_table::read_profile_table;
-use super::surface::read_surface;
+use super::surface_table::read_surface;
 use crate::base::{BodyKind, Result};
 use std::path::Path;
 use std::sync::Arc;

@@ -20,6 +20,7 @@ mod schema;
 #[cfg(feature = "cli")]
 mod study_file;
 mod surface;
+mod surface_table;
 #[cfg(feature = "cli")]
 mod sweep;
 #[cfg(feature = "cli")]

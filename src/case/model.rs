@@ -4,6 +4,7 @@
 use super::profile::ProfileSpec;
 use super::surface::Surface;
 use crate::base::{BodyKind, HertzScales, Material};
+use crate::cells::Heights;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value};
 
@@ -221,6 +222,11 @@ const SAME: f64 = 1e-9;
 const PLAIN: &str = "a case has the form of its file";
 
 impl Case {
+    /// The heights of the rough surface (m), if there is one.
+    pub fn heights(&self) -> Option<Heights> {
+        self.surface.as_ref()?.heights()
+    }
+
     /// Size above which case and study files are refused (bytes).
     pub const MAX_BYTES: u64 = 1 << 20;
 

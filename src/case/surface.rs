@@ -1,12 +1,8 @@
 //! The rough surface of a case: measured heights on the block, within the contact.
 
-use super::document::{Table, nearest};
-use super::draft::Draft;
-use super::model::Case;
-use crate::base::Result;
 use crate::cells::{Detrend, Heights};
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Heights that come on top of the smooth surfaces.
@@ -35,46 +31,4 @@ impl Surface {
             None => heights,
         })
     }
-}
-
-impl Case {
-    /// The heights of the rough surface (m), if there is one.
-    pub fn heights(&self) -> Option<Heights> {
-        self.surface.as_ref()?.heights()
-    }
-}
-
-/// Takes `[surface]` but for its numbers; its file is looked for beside the case file, which stands at `path`.
-pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
-    let Some(entry) = root.find("surface") else { return Ok(()) };
-    let table = entry.table()?;
-    let file = table.require("heights", "heights = \"rough.npy\"")?;
-    let mut detrend = None;
-    if let Some(entry) = table.get("detrend") {
-        let name = entry.string()?;
-        detrend = Detrend::ALL.into_iter().find(|detrend| detrend.name() == name);
-        if detrend.is_none() {
-            let known = Detrend::ALL.map(Detrend::name);
-            let remedy = format!(
-                "did you mean {}? There are {}; without the key nothing is taken off",
-                nearest(name, &known),
-                known.join(" and ")
-            );
-            return Err(entry.refuse("there is no such trend", remedy));
-        }
-    }
-    for key in ["dx_m", "dy_m"] {
-        table.require(key, &format!("{key} = 1e-6"))?;
-    }
-    let heights = path.parent().unwrap_or(Path::new("")).join(file.string()?);
-    // The distances are numbers of the case: whatever they are, the samples are the same.
-    let samples = Heights::read(&heights, [1.0; 2])?;
-    draft.case.surface = Some(Surface {
-        heights,
-        dx_m: f64::NAN,
-        dy_m: f64::NAN,
-        detrend,
-        samples: Some(Arc::new(samples)),
-    });
-    Ok(())
 }

@@ -1,6 +1,6 @@
 //! The pressure of cells as a stress field takes it: a profile across the contact at each node along it.
 
-use super::ends::means;
+use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::Panels;
 use crate::kernels::strip;

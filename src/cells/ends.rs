@@ -20,6 +20,7 @@
 use super::columns::Columns;
 use super::grid::Grid;
 use super::influence::HalfTransform;
+use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
@@ -441,60 +442,5 @@ impl EndCorrection {
             sums.iter_mut().zip(displaced).for_each(|(sum, v)| sum[part] = v);
         }
         out.iter_mut().zip(sums).for_each(|(out, sum)| out.add(sum));
-    }
-}
-
-/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact over those on the axis's half.
-pub(super) fn means(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<(usize, f64)>> {
-    let length = 2.0 * grid.half_sides().1;
-    let order = axis.order();
-    let (from, count) = match symmetric {
-        true => (0.0, grid.ny / 2),
-        false => (-grid.half_length, grid.ny),
-    };
-    let of_cell = |j: usize| {
-        let cell = [j, j + 1].map(|j| from + length * j as f64);
-        let mut all = Vec::new();
-        for panel in 0..axis.panel_count() {
-            let [from, to] = axis.panel(panel);
-            let (from, to) = (from.max(cell[0]), to.min(cell[1]));
-            if to <= from {
-                continue;
-            }
-            let start = all.len();
-            all.extend((0..order).map(|i| (panel * order + i, 0.0)));
-            let part = Panels::new(vec![from, to], order);
-            for (y, weight) in part.nodes().iter().zip(part.weights()) {
-                let values = axis.polynomials(panel, *y).map(|v| v * weight / length);
-                all[start..].iter_mut().zip(values).for_each(|((_, mean), v)| *mean += v);
-            }
-        }
-        all
-    };
-    (0..count).map(of_cell).collect()
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn means_over_cells_are_those_of_polynomials() {
-        let axis = Panels::new(vec![0.0, 1.7, 2.6, 3.0], 4);
-        let grid = Grid::new(4, 10, 1.0, 3.0).unwrap();
-        let all = means(&axis, &grid, true);
-        let cubic = |y: f64| y * (1.0 - 0.3 * y * y);
-        let integral = |y: f64| 0.5 * y * y - 0.075 * y.powi(4);
-        for (j, means) in all.iter().enumerate() {
-            let got: f64 = means.iter().map(|(node, m)| m * cubic(axis.nodes()[*node])).sum();
-            let want = (integral(0.6 * (j + 1) as f64) - integral(0.6 * j as f64)) / 0.6;
-            assert!((got - want).abs() < 1e-13, "{got} {want}");
-        }
-        // The cells add up to the line.
-        let mut sums = vec![0.0; axis.len()];
-        all.iter().flatten().for_each(|(node, mean)| sums[*node] += 0.6 * mean);
-        for (sum, weight) in sums.iter().zip(axis.weights()) {
-            assert!((sum - weight).abs() < 1e-13);
-        }
     }
 }

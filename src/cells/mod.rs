@@ -28,6 +28,7 @@ mod heights_file;
 mod influence;
 mod layer;
 mod linear;
+mod means;
 mod pressure;
 mod problem;
 mod solver;

@@ -181,7 +181,8 @@ mod tests {
             }
             assert!(found.value > most - 1e-3, "{name}: {found:?} of {most}");
             let there = solved.stress(body, &[found.at]).unwrap()[0].von_mises();
-            assert!((found.value - there).abs() < 1e-3, "{name}: {found:?}, there {there}");
+            // Along a curve stresses are interpolated, to a part of the tolerance of 5e-3.
+            assert!((found.value - there).abs() < 2e-3, "{name}: {found:?}, there {there}");
             let passage = Passage::new(&solved, body, [33, 31]);
             let range = passage.critical(|m| Some(m.shear_range)).unwrap().value;
             let found = of_body(&solved, body, Objective::TauXz, 0.1);

@@ -75,7 +75,7 @@ mod tests {
     fn case(slenderness: f64) -> Case {
         let material = Material { young_pa: 210e9, poisson: 0.3 };
         let factors = Factors { load: 5e-4, slenderness, length_ratio: 1.0 };
-        Case::from_factors("case", 0.01, material, material, factors).with_tolerance(5e-3)
+        Case::from_factors("case", 0.01, material, material, factors).with_tolerance(1e-3)
     }
 
     fn found(case: &Case) -> (SolvedCase, Stiffness) {

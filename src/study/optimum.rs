@@ -334,7 +334,7 @@ mod tests {
         assert!((confirmed - 1.0).abs() < 0.05, "{confirmed}");
         assert!(found.values[0] > 1.0 && found.values[0] < 19.9, "{:?}", found.values);
         let worst = found.scans[0].iter().map(|(_, objective)| *objective).fold(0.0, f64::max);
-        assert!(worst > 1.02 * least, "{worst} of {least}");
+        assert!(worst > 1.01 * least, "{worst} of {least}");
         // The same seed gives the same search.
         let again = seek(&design, &settings, &|_, _| {}).unwrap();
         assert_eq!(again.history, found.history);

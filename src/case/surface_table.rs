@@ -1,0 +1,44 @@
+//! The table `[surface]` of a case file.
+
+use super::document::{Table, nearest};
+use super::draft::Draft;
+use super::surface::Surface;
+use crate::base::Result;
+use crate::cells::{Detrend, Heights};
+use std::path::Path;
+use std::sync::Arc;
+
+/// Takes `[surface]` but for its numbers; its file is looked for beside the case file, which stands at `path`.
+pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
+    let Some(entry) = root.find("surface") else { return Ok(()) };
+    let table = entry.table()?;
+    let file = table.require("heights", "heights = \"rough.npy\"")?;
+    let mut detrend = None;
+    if let Some(entry) = table.get("detrend") {
+        let name = entry.string()?;
+        detrend = Detrend::ALL.into_iter().find(|detrend| detrend.name() == name);
+        if detrend.is_none() {
+            let known = Detrend::ALL.map(Detrend::name);
+            let remedy = format!(
+                "did you mean {}? There are {}; without the key nothing is taken off",
+                nearest(name, &known),
+                known.join(" and ")
+            );
+            return Err(entry.refuse("there is no such trend", remedy));
+        }
+    }
+    for key in ["dx_m", "dy_m"] {
+        table.require(key, &format!("{key} = 1e-6"))?;
+    }
+    let heights = path.parent().unwrap_or(Path::new("")).join(file.string()?);
+    // The distances are numbers of the case: whatever they are, the samples are the same.
+    let samples = Heights::read(&heights, [1.0; 2])?;
+    draft.case.surface = Some(Surface {
+        heights,
+        dx_m: f64::NAN,
+        dy_m: f64::NAN,
+        detrend,
+        samples: Some(Arc::new(samples)),
+    });
+    Ok(())
+}
