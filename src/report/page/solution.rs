@@ -38,7 +38,7 @@ pub struct Label {
 /// case and the results.
 ///
 /// # Errors
-/// [`Error::File`] when the page cannot be made.
+/// [`crate::base::Error::File`] when the page cannot be made.
 pub fn of_solution<D>(
     case: &Case,
     label: &Label,
