@@ -10,7 +10,7 @@ mod explore;
 mod fatigue;
 mod faults;
 mod gate;
-mod sliding;
+mod recorded;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
