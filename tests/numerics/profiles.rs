@@ -6,7 +6,9 @@ use edgeline::base::profile::Table;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Factors, ProfileKind, ProfileSpec};
 use edgeline::solve::{Options, SolvedCase};
+use edgeline::stress::BodyKind;
 use std::f64::consts::PI;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Complete elliptic integrals K and E of the modulus `e`, by the arithmetic-geometric mean (Abramowitz
@@ -166,5 +168,56 @@ fn a_contact_ends_where_the_pressure_does() {
             let inside = solved.pressure(0.0, 0.999 * y / solved.hertz().c_m);
             assert_eq!(inside < 0.15, open, "p = {inside} near {y} of {radius_m}");
         }
+    }
+}
+
+/// Steep profiles under light loads, off the middle of blocks of other lengths: ends at kinks of a profile, just before
+/// a body's end, and where two gradings of panels meet. Each once ended in a panic, unsound or not at all.
+#[test]
+fn steep_profiles_off_the_middle_end_in_sound_answers() {
+    let logarithmic = |amplitude: f64, k: f64| {
+        format!("kind = \"logarithmic\"\namplitude_m = {amplitude:e}\nk = {k}")
+    };
+    let fujiwara = |k1: f64, k2: f64, zm: f64| {
+        format!("kind = \"fujiwara\"\ndesign_force_n = 5000\nk1 = {k1}\nk2 = {k2}\nzm_m = {zm:e}")
+    };
+    let crown = "kind = \"crown\"\nradius_m = 0.209703".to_string();
+    // Profile, length of the block, force, eccentricity, offset, tolerance.
+    for (profile, block_m, force_n, eccentricity_m, offset_m, tolerance) in [
+        (crown, 5.35145e-3, 8.75432e3, 8.85366e-4, 0.0, 1e-2),
+        (logarithmic(5.4096e-6, 0.327156), 8.75956e-3, 708.318, 9.92337e-4, 1.36446e-3, 1e-2),
+        (logarithmic(6.15676e-6, 0.40831), 1.20143e-2, 740.127, 1.15249e-3, 2.50555e-3, 1e-2),
+        (logarithmic(2.17606e-6, 0.969374), 1.24125e-2, 402.706, -9.67771e-5, -1.39981e-3, 1e-2),
+        (fujiwara(2.9716, 0.234687, 1.80145e-5), 2.21559e-2, 333.893, 0.0, 0.0, 1e-2),
+        (fujiwara(1.15142, 0.162038, 9.31388e-6), 2.02902e-2, 316.769, 0.0, 1.00899e-3, 1e-3),
+        (fujiwara(2.70672, 0.139987, 2.02032e-6), 1.52657e-2, 276.559, 0.0, 0.0, 1e-3),
+        (
+            fujiwara(0.407307, 0.192568, 3.82716e-5),
+            7.4594e-3,
+            3688.98,
+            1.67559e-3,
+            1.69078e-3,
+            1e-2,
+        ),
+    ] {
+        let text = format!(
+            "name = \"steep\"\n[roller]\nradius_m = 0.01\nlength_m = 0.01\nyoung_pa = 210e9\npoisson = 0.3\n\
+             [roller.profile]\n{profile}\n[block]\nlength_m = {block_m:e}\nyoung_pa = 210e9\npoisson = 0.3\n\
+             [load]\nforce_n = {force_n}\neccentricity_m = {eccentricity_m:e}\n[pose]\noffset_m = {offset_m:e}\n\
+             [accuracy]\ntolerance = {tolerance:e}\n"
+        );
+        let case = Case::parse(&text, Path::new("steep.toml")).unwrap();
+        let options = Options { curves: Vec::new(), ..Options::new(EdgeModel::QuarterSpace) };
+        let solved = SolvedCase::new(&case, &options).unwrap_or_else(|e| panic!("{e}: {text}"));
+        let summary = solved.solution().summary;
+        small("load", summary.load_error_rel, 1e-9);
+        let arm_m = summary.centre_of_pressure_m[1];
+        small("its place", (arm_m - eccentricity_m).abs() / case.roller.length_m, 1e-9);
+        // The contact lies within both bodies, and the load within the contact.
+        let [from, to] = summary.contact_y_m;
+        let block = case.ends_m(BodyKind::Block);
+        let within = from > block[0].max(-5e-3) - 1e-12 && to < block[1].min(5e-3) + 1e-12;
+        assert!(within, "{from} {to}: {text}");
+        assert!(from < arm_m && arm_m < to, "{from} {arm_m} {to}");
     }
 }

@@ -106,7 +106,7 @@ fn stresses_under_friction_are_those_of_finite_elements() {
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
         ("crown-to-the-ends", [0.005, 0.005, 0.008], 0.03),
-        ("crown-inside", [0.005, 0.008, 0.008], 0.04),
+        ("crown-inside", [0.005, 0.009, 0.009], 0.04),
         ("longer-roller", [0.005, 0.005, 0.008], 0.02),
         ("logarithmic-steel-aluminium", [0.005, 0.005, 0.008], 0.02),
         ("eccentric-flush", [0.005, 0.008, 0.008], 0.03),
