@@ -36,14 +36,14 @@ pub fn case_schema() -> Value {
     }
     let surface = &mut tables["surface"];
     surface["properties"]["heights"] = json!({
-        "description": "The file of the heights, .npy or .csv, beside the case file.",
+        "description": "The file of the heights, .npy, .csv or .x3p, beside the case file. The first two need dx_m and dy_m.",
         "type": "string",
     });
     surface["properties"]["detrend"] = json!({
         "description": "What is taken off the heights; nothing without it.",
         "enum": Detrend::ALL.map(Detrend::name),
     });
-    ["heights", "dx_m", "dy_m"].iter().for_each(|key| push(&mut surface["required"], key));
+    push(&mut surface["required"], "heights");
     let needed = |(_, table): &(&String, &Value)| table["required"] != json!([]);
     let names = tables.iter().filter(needed).map(|(name, _)| name.as_str());
     let names = names.filter(|name| *name != "surface");

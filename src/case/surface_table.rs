@@ -27,18 +27,18 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
             return Err(entry.refuse("there is no such trend", remedy));
         }
     }
-    for key in ["dx_m", "dy_m"] {
-        table.require(key, &format!("{key} = 1e-6"))?;
-    }
     let heights = path.parent().unwrap_or(Path::new("")).join(file.string()?);
     // The distances are numbers of the case: whatever they are, the samples are the same.
     let samples = Heights::read(&heights, [1.0; 2])?;
-    draft.case.surface = Some(Surface {
-        heights,
-        dx_m: f64::NAN,
-        dy_m: f64::NAN,
-        detrend,
-        samples: Some(Arc::new(samples)),
-    });
+    // A file of this format has its distances itself.
+    let knows = heights.extension().is_some_and(|e| e.eq_ignore_ascii_case("x3p"));
+    if !knows {
+        for key in ["dx_m", "dy_m"] {
+            table.require(key, &format!("{key} = 1e-6"))?;
+        }
+    }
+    let [dx_m, dy_m] = if knows { samples.steps_m() } else { [f64::NAN; 2] };
+    draft.case.surface =
+        Some(Surface { heights, dx_m, dy_m, detrend, samples: Some(Arc::new(samples)) });
     Ok(())
 }

@@ -83,6 +83,11 @@ impl Heights {
         Self { steps_m, ..self.clone() }
     }
 
+    /// Distances of the samples across and along (m).
+    pub fn steps_m(&self) -> [f64; 2] {
+        self.steps_m
+    }
+
     /// Samples across and along.
     pub fn shape(&self) -> [usize; 2] {
         self.shape

@@ -1,6 +1,8 @@
-//! Heights from files: numpy's arrays and CSV.
+//! Heights from files: numpy's arrays, CSV and x3p.
 
 use super::heights::Heights;
+#[cfg(feature = "cli")]
+use super::x3p;
 use crate::base::{Error, Result};
 use crate::host::check_memory;
 use std::path::Path;
@@ -16,11 +18,11 @@ type Array = ([usize; 2], Vec<f64>);
 
 /// Formats that are read, for messages.
 const FORMATS: &str =
-    "give a two-dimensional array of floats as .npy, or .csv with a row for each x";
+    "give a two-dimensional array of floats as .npy, .csv with a row for each x, or .x3p";
 
 impl Heights {
-    /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit floats, or .csv with a line for each
-    /// x. Other formats go through SurfaceTopography, whose `Topography.heights()` numpy saves.
+    /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit floats, .csv with a line for each
+    /// x, or .x3p (ISO 25178-72), which has its own distances of the samples. Other formats go through SurfaceTopography, whose `Topography.heights()` numpy saves.
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read, [`Error::File`] and [`Error::Memory`] before a file is read that is too large, [`Error::File`] when it has
@@ -48,7 +50,13 @@ impl Heights {
             message,
             remedy: FORMATS.to_string(),
         };
-        let is_csv = path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv"));
+        let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
+        #[cfg(feature = "cli")]
+        if is("x3p") {
+            let (shape, own_m, values) = x3p::read(&content).map_err(|e| refuse((None, e)))?;
+            return Self::new(shape, own_m, values);
+        }
+        let is_csv = is("csv");
         let read = if is_csv { csv(&content) } else { npy(&content).map_err(|e| (None, e)) };
         let (shape, values) = read.map_err(refuse)?;
         Self::new(shape, steps_m, values)

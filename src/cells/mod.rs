@@ -33,6 +33,8 @@ mod pressure;
 mod problem;
 mod solver;
 mod whole;
+#[cfg(feature = "cli")]
+mod x3p;
 
 pub use columns::Columns;
 pub use end_stress::{EndLoads, EndStress};

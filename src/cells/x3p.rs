@@ -1,0 +1,196 @@
+//! Heights in the format x3p of ISO 25178-72: a zip archive with a description, main.xml, and the heights.
+
+use roxmltree::{Document, Node};
+use std::io::{Cursor, Read};
+use zip::ZipArchive;
+
+/// What an x3p file holds: the shape (nx, ny), the distances of the samples along x and y (m), and the heights (m), those
+/// of the last index next to each other.
+pub(super) type Samples = ([usize; 2], [f64; 2], Vec<f64>);
+
+/// Most bytes of the description, and of each height.
+const MOST_TEXT: u64 = 16 << 20;
+const MOST_BYTES: u64 = 24;
+
+/// The samples of an x3p file, or what is wrong with it. Lengths are in metres, as the format has them; heights that are
+/// missing become NaN.
+pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
+    let mut archive =
+        ZipArchive::new(Cursor::new(content)).map_err(|e| format!("is no zip archive: {e}"))?;
+    let text = part(&mut archive, "main.xml", MOST_TEXT)?;
+    let text =
+        String::from_utf8(text).map_err(|_| "has a main.xml that is not text".to_string())?;
+    let document = Document::parse(&text).map_err(|e| format!("has a broken main.xml: {e}"))?;
+    let root = document.root_element();
+    let axes = find(root, "Axes")?;
+    let steps = [increment(find(axes, "CX")?)?, increment(find(axes, "CY")?)?];
+    let height = find(axes, "CZ")?;
+    let kind = word(find(height, "DataType")?);
+    // Whole numbers count increments; other ones are lengths.
+    let scale = match kind {
+        "I" | "L" => increment(height)?,
+        _ => 1.0,
+    };
+    let offset = number(height, "Offset").unwrap_or(0.0);
+    let size = find(root, "MatrixDimension")?;
+    let count = |name: &str| -> Result<usize, String> {
+        let node = find(size, name)?;
+        word(node).parse().map_err(|_| format!("has a {name} that is no number"))
+    };
+    let (nx, ny) = (count("SizeX")?, count("SizeY")?);
+    if count("SizeZ").unwrap_or(1) != 1 {
+        return Err("has several layers of heights".into());
+    }
+    let samples = nx.checked_mul(ny).ok_or("has a shape that is no array's")?;
+    let raw = match find(root, "PointDataLink") {
+        Ok(link) => {
+            let most = (samples as u64).saturating_mul(MOST_BYTES);
+            binary(&part(&mut archive, word(link).trim_start_matches('/'), most)?, kind)?
+        }
+        Err(_) => list(find(root, "DataList")?)?,
+    };
+    if raw.len() != samples {
+        return Err(format!("has {} heights for the shape {nx} x {ny}", raw.len()));
+    }
+    // In the file x is fastest.
+    let place = |i: usize, j: usize| offset + scale * raw[j * nx + i];
+    let values = (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j)));
+    Ok(([nx, ny], steps, values.map(|(i, j)| place(i, j)).collect()))
+}
+
+/// The content of a file of the archive.
+fn part(archive: &mut ZipArchive<Cursor<&[u8]>>, name: &str, most: u64) -> Result<Vec<u8>, String> {
+    let file = archive.by_name(name).map_err(|e| format!("has no {name}: {e}"))?;
+    let mut content = Vec::new();
+    file.take(most + 1)
+        .read_to_end(&mut content)
+        .map_err(|e| format!("has a damaged {name}: {e}"))?;
+    if content.len() as u64 > most {
+        return Err(format!("has a {name} that is larger than its heights"));
+    }
+    Ok(content)
+}
+
+/// The first element of this name, in any namespace.
+fn find<'a, 'i>(from: Node<'a, 'i>, name: &str) -> Result<Node<'a, 'i>, String> {
+    let own = |node: &Node| node.is_element() && node.tag_name().name() == name;
+    from.descendants().find(own).ok_or_else(|| format!("has no {name} in its main.xml"))
+}
+
+fn word<'a>(node: Node<'a, '_>) -> &'a str {
+    node.text().unwrap_or("").trim()
+}
+
+fn number(node: Node, name: &str) -> Result<f64, String> {
+    let text = word(find(node, name)?);
+    let value = text.parse::<f64>().ok().filter(|v| v.is_finite());
+    value.ok_or_else(|| format!("has an {name} '{text}', which is no number"))
+}
+
+/// The increment of an axis, which is above zero.
+fn increment(axis: Node) -> Result<f64, String> {
+    let value = number(axis, "Increment")?;
+    if value > 0.0 { Ok(value) } else { Err(format!("has an Increment of {value}")) }
+}
+
+/// Numbers of the format's kind: 16 or 32-bit whole ones, 32 or 64-bit floats.
+fn binary(bytes: &[u8], kind: &str) -> Result<Vec<f64>, String> {
+    let chunks = |size: usize, of: fn(&[u8]) -> f64| -> Result<Vec<f64>, String> {
+        match bytes.len() % size {
+            0 => Ok(bytes.chunks_exact(size).map(of).collect()),
+            _ => Err(format!("has {} bytes of heights of {size} bytes each", bytes.len())),
+        }
+    };
+    match kind {
+        "I" => chunks(2, |b| f64::from(i16::from_le_bytes([b[0], b[1]]))),
+        "L" => chunks(4, |b| f64::from(i32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
+        "F" => chunks(4, |b| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]))),
+        "D" => chunks(8, |b| f64::from_le_bytes(b.try_into().expect("eight bytes"))),
+        _ => Err(format!("has heights of the type '{kind}'; known are I, L, F and D")),
+    }
+}
+
+/// Heights in the description itself, one a datum, the last of whose numbers is the height; an empty one is missing.
+fn list(node: Node) -> Result<Vec<f64>, String> {
+    let data = node.children().filter(|child| child.tag_name().name() == "Datum");
+    data.map(|datum| match word(datum).rsplit(';').next().unwrap_or("").trim() {
+        "" => Ok(f64::NAN),
+        text => text.parse().map_err(|_| format!("has a datum '{text}', which is no number")),
+    })
+    .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+    use zip::write::SimpleFileOptions;
+
+    /// An archive with this description and these bytes of heights.
+    fn archive(kind: &str, shape: [usize; 2], data: Option<&[u8]>, list: &str) -> Vec<u8> {
+        let link = match data {
+            Some(_) => {
+                "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>".into()
+            }
+            None => format!("<DataList>{list}</DataList>"),
+        };
+        let text = format!(
+            "<?xml version=\"1.0\"?><p:ISO5436_2 xmlns:p=\"http://www.opengps.eu/2008/ISO5436_2\"><Record1><Axes>\
+             <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>2e-6</Increment></CX>\
+             <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>3e-6</Increment></CY>\
+             <CZ><AxisType>A</AxisType><DataType>{kind}</DataType><Increment>1e-9</Increment><Offset>0</Offset></CZ>\
+             </Axes></Record1><Record3><MatrixDimension><SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ>\
+             </MatrixDimension>{link}</Record3></p:ISO5436_2>",
+            shape[0], shape[1]
+        );
+        let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
+        writer.start_file("main.xml", SimpleFileOptions::default()).unwrap();
+        writer.write_all(text.as_bytes()).unwrap();
+        if let Some(data) = data {
+            writer.start_file("bindata/data.bin", SimpleFileOptions::default()).unwrap();
+            writer.write_all(data).unwrap();
+        }
+        writer.finish().unwrap().into_inner()
+    }
+
+    #[test]
+    fn heights_of_every_type_are_read() {
+        let counts = [1i16, -2, 3, 4, 5, -600];
+        // x is fastest in the file: (0, 0), (1, 0), (2, 0), (0, 1) ...
+        let wanted = [1.0, 4.0, -2.0, 5.0, 3.0, -600.0].map(|v| v * 1e-9);
+        let lengths: Vec<f64> = counts.iter().map(|v| f64::from(*v) * 1e-9).collect();
+        let datum = |v: &f64| format!("<Datum>0;0;{v:e}</Datum>");
+        for (kind, data, list) in [
+            ("I", Some(counts.iter().flat_map(|v| v.to_le_bytes()).collect::<Vec<u8>>()), None),
+            ("L", Some(counts.iter().flat_map(|v| i32::from(*v).to_le_bytes()).collect()), None),
+            ("F", Some(lengths.iter().flat_map(|v| (*v as f32).to_le_bytes()).collect()), None),
+            ("D", Some(lengths.iter().flat_map(|v| v.to_le_bytes()).collect()), None),
+            ("D", None, Some(lengths.iter().map(datum).collect::<String>())),
+        ] {
+            let bytes = archive(kind, [3, 2], data.as_deref(), list.as_deref().unwrap_or(""));
+            let (shape, steps, values) = read(&bytes).unwrap();
+            assert_eq!((shape, steps), ([3, 2], [2e-6, 3e-6]));
+            for (got, want) in values.iter().zip(wanted) {
+                assert!((got - want).abs() <= 1e-7 * want.abs(), "{kind}: {values:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_damaged_is_named() {
+        let data = 1f64.to_le_bytes();
+        for (bytes, wanted) in [
+            (b"PK no".to_vec(), "is no zip archive"),
+            (archive("D", [2, 1], Some(&data), ""), "has 1 heights for the shape 2 x 1"),
+            (archive("Q", [1, 1], Some(&data), ""), "of the type 'Q'"),
+            (archive("D", [1, 1], Some(&data[..5]), ""), "5 bytes of heights of 8"),
+            (archive("D", [1, 1], None, "<Datum>x</Datum>"), "'x', which is no number"),
+        ] {
+            let said = read(&bytes).unwrap_err();
+            assert!(said.contains(wanted), "{said}");
+        }
+        // A missing height is a hole, which a surface must not have.
+        let (_, _, values) = read(&archive("D", [1, 1], None, "<Datum></Datum>")).unwrap();
+        assert!(values[0].is_nan());
+    }
+}
