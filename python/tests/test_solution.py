@@ -68,11 +68,11 @@ def test_stresses_broadcast_and_meet_the_curves(solution: edgeline.Solution) -> 
         at = [curves[f"{axis}_m"][of_body] for axis in "xyz"]
         stress = solution.stress(body, *at)
         wanted = [curves[f"sigma_{name}_pa"][of_body] for name in edgeline.COMPONENTS]
-        # Points of curves between those that carry the field are interpolated.
+        # Points of curves between those that carry the field are interpolated, to the tolerance.
         p0 = solution.summary["hertz"]["p0_pa"]
-        assert np.abs(stress - np.stack(wanted, axis=-1)).max() < 5e-3 * p0
+        assert np.abs(stress - np.stack(wanted, axis=-1)).max() < 1e-2 * p0
         measure = np.abs(edgeline.von_mises(stress) - curves["von_mises_pa"][of_body])
-        assert measure.max() < 5e-3 * p0
+        assert measure.max() < 1e-2 * p0
     c = solution.summary["hertz"]["c_m"]
     grid = solution.stress("block", np.zeros((2, 1, 1)), [[0.0], [c]], [0.0, c, 2.0 * c])
     assert grid.shape == (2, 2, 3, 6)
