@@ -301,18 +301,25 @@ def record(case, size, folder, log, run=Run(), **overrides):
         return _record(case, size, target, log, run, overrides)
 
 
-def _record(case, size, target, log, run, overrides):
+def _known(target, form):
+    """What the record in ``target`` holds, ``None`` if there is none; raise if it is damaged or not of the case ``form``."""
     _commit(target)
     path = target / "record.json"
+    if not path.exists():
+        return None
+    check_record(target)
+    data = json.loads(path.read_text(encoding="utf-8"))
+    if data["case"] != form:
+        raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
+    return data
+
+
+def _record(case, size, target, log, run, overrides):
+    data = _known(target, case.to_json())
     request = standard_request(case, size, **overrides)
     request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear), engine=run.engine)
-    data = None
-    if path.exists():
-        check_record(target)
-        data = json.loads(path.read_text(encoding="utf-8"))
+    if data is not None:
         known = data["meshes"].get(f"{size:g}")
-        if data["case"] != case.to_json():
-            raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
         # Options that are newer than the record had their defaults then.
         if known is not None and MeshOptions(**known["mesh"]["options"]) == request.mesh:
             return False
@@ -352,13 +359,7 @@ def keep(runs, folder, log):
         target = Path(folder) / request.case.name
         target.mkdir(parents=True, exist_ok=True)
         with _locked(target):
-            _commit(target)
-            data = None
-            if (target / "record.json").exists():
-                check_record(target)
-                data = json.loads((target / "record.json").read_text(encoding="utf-8"))
-                if data["case"] != asked:
-                    raise FemError(f"{target}: holds another case of that name; remove the folder to record anew")
+            data = _known(target, asked)
             began = datetime.datetime.fromtimestamp((work / "request.json").stat().st_mtime, datetime.timezone.utc)
             size = request.mesh.size
             command = f"edgeline fem cases/{request.case.name}.toml --size {size:g}"

@@ -30,14 +30,13 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
     let heights = path.parent().unwrap_or(Path::new("")).join(file.string()?);
     // The distances are numbers of the case: whatever they are, the samples are the same.
     let samples = Heights::read(&heights, [1.0; 2])?;
-    // A file of this format has its distances itself.
-    let knows = heights.extension().is_some_and(|e| e.eq_ignore_ascii_case("x3p"));
-    if !knows {
+    let has_steps = Heights::has_steps(&heights);
+    if !has_steps {
         for key in ["dx_m", "dy_m"] {
             table.require(key, &format!("{key} = 1e-6"))?;
         }
     }
-    let [dx_m, dy_m] = if knows { samples.steps_m() } else { [f64::NAN; 2] };
+    let [dx_m, dy_m] = if has_steps { samples.steps_m() } else { [f64::NAN; 2] };
     draft.case.surface =
         Some(Surface { heights, dx_m, dy_m, detrend, samples: Some(Arc::new(samples)) });
     Ok(())

@@ -50,17 +50,25 @@ impl Heights {
             message,
             remedy: FORMATS.to_string(),
         };
-        let is = |name: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(name));
         #[cfg(feature = "cli")]
-        if is("x3p") {
+        if Self::has_steps(path) {
             let (shape, own_m, values) = x3p::read(&content).map_err(|e| refuse((None, e)))?;
             return Self::new(shape, own_m, values);
         }
-        let is_csv = is("csv");
+        let is_csv = has_extension(path, "csv");
         let read = if is_csv { csv(&content) } else { npy(&content).map_err(|e| (None, e)) };
         let (shape, values) = read.map_err(refuse)?;
         Self::new(shape, steps_m, values)
     }
+
+    /// Whether a file of this name has the distances of its samples itself.
+    pub fn has_steps(path: &Path) -> bool {
+        cfg!(feature = "cli") && has_extension(path, "x3p")
+    }
+}
+
+fn has_extension(path: &Path, name: &str) -> bool {
+    path.extension().is_some_and(|own| own.eq_ignore_ascii_case(name))
 }
 
 /// The array of lines of numbers; or the line that is none, and what is wrong.

@@ -8,15 +8,13 @@ use super::cosine::good_length;
 use super::end_stress::EndStress;
 use super::field::{CellField, FieldEnd};
 use super::grid::Grid;
+use super::plans::Plans;
 use super::pressure::CellPressure;
 use crate::base::{Panels, StressTensor};
 use crate::body::transition;
 use crate::kernels::love;
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
-use std::sync::Arc;
 
 /// The six components (p0) under every cell, x fastest: xx, yy, zz, xy, xz, yz.
 pub type Layer = [Vec<f64>; 6];
@@ -27,26 +25,13 @@ struct Padded {
     ny: usize,
     /// Periods in x and y.
     periods: [usize; 2],
-    forward_x: Arc<dyn RealToComplex<f64>>,
-    backward_x: Arc<dyn ComplexToReal<f64>>,
-    forward_y: Arc<dyn Fft<f64>>,
-    backward_y: Arc<dyn Fft<f64>>,
+    plans: Plans,
 }
 
 impl Padded {
     fn new(grid: &Grid) -> Self {
         let periods = [grid.nx, grid.ny].map(|n| 2 * good_length(n));
-        let [px, py] = periods;
-        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
-        Self {
-            nx: grid.nx,
-            ny: grid.ny,
-            periods,
-            forward_x: real.plan_fft_forward(px),
-            backward_x: real.plan_fft_inverse(px),
-            forward_y: complex.plan_fft_forward(py),
-            backward_y: complex.plan_fft_inverse(py),
-        }
+        Self { nx: grid.nx, ny: grid.ny, periods, plans: Plans::new(periods) }
     }
 
     /// The transform of the field with the rows `row(j)` of each j < period, none where it is zero: for each wavenumber in x all those in y.
@@ -57,13 +42,13 @@ impl Padded {
         rows.par_chunks_mut(count).enumerate().for_each(|(j, out)| {
             let mut line = vec![0.0; px];
             if row(j, &mut line) {
-                self.forward_x.process(&mut line, out).expect("lengths are the plan's");
+                self.plans.forward_x.process(&mut line, out).expect("lengths are the plan's");
             }
         });
         let mut all = vec![Complex::default(); count * py];
         all.par_chunks_mut(py).enumerate().for_each(|(k, line)| {
             line.iter_mut().enumerate().for_each(|(j, v)| *v = rows[j * count + k]);
-            self.forward_y.process(line);
+            self.plans.forward_y.process(line);
         });
         all
     }
@@ -71,7 +56,7 @@ impl Padded {
     /// The field over the grid that has this transform.
     fn backward(&self, mut all: Vec<Complex<f64>>) -> Vec<f64> {
         let [px, py] = self.periods;
-        all.par_chunks_mut(py).for_each(|line| self.backward_y.process(line));
+        all.par_chunks_mut(py).for_each(|line| self.plans.backward_y.process(line));
         let scale = 1.0 / (px * py) as f64;
         let mut field = vec![0.0; self.nx * self.ny];
         field.par_chunks_mut(self.nx).enumerate().for_each(|(j, out)| {
@@ -79,7 +64,7 @@ impl Padded {
             // Real by construction, but for rounding.
             (wave[0].im, wave[px / 2].im) = (0.0, 0.0);
             let mut line = vec![0.0; px];
-            self.backward_x.process(&mut wave, &mut line).expect("lengths are the plan's");
+            self.plans.backward_x.process(&mut wave, &mut line).expect("lengths are the plan's");
             out.iter_mut().zip(line).for_each(|(out, v)| *out = scale * v);
         });
         field

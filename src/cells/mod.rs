@@ -29,6 +29,7 @@ mod influence;
 mod layer;
 mod linear;
 mod means;
+mod plans;
 mod pressure;
 mod problem;
 mod solver;

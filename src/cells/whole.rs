@@ -3,12 +3,10 @@
 use super::convolution::LINES;
 use super::ends::EndCorrection;
 use super::linear::Linear;
+use super::plans::Plans;
 use rayon::prelude::*;
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
 use rustfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
 use std::f64::consts::PI;
-use std::sync::Arc;
 
 /// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x, K in y too. One transform of p
 /// serves both: p' has the coefficient of the opposite wavenumber in y, turned by the phase of the mirror.
@@ -17,10 +15,7 @@ pub(super) struct WholeConvolution {
     ny: usize,
     /// Half the padded periods.
     half: [usize; 2],
-    forward_x: Arc<dyn RealToComplex<f64>>,
-    backward_x: Arc<dyn ComplexToReal<f64>>,
-    forward_y: Arc<dyn Fft<f64>>,
-    backward_y: Arc<dyn Fft<f64>>,
+    plans: Plans,
     /// Of K, and of the even and the odd part of M, as [`super::influence::Table::spectrum`] gives them.
     direct: Vec<f64>,
     images: Vec<f64>,
@@ -44,7 +39,6 @@ impl WholeConvolution {
         [images, odd_images]: [Vec<f64>; 2],
         ends: Option<EndCorrection>,
     ) -> Self {
-        let (mut real, mut complex) = (RealFftPlanner::new(), FftPlanner::new());
         let turn = |l| {
             let turns = (l * (ny - 1)) % (2 * my);
             Complex::from_polar(1.0, -PI * turns as f64 / my as f64)
@@ -54,10 +48,7 @@ impl WholeConvolution {
             nx,
             ny,
             half: [mx, my],
-            forward_x: real.plan_fft_forward(2 * mx),
-            backward_x: real.plan_fft_inverse(2 * mx),
-            forward_y: complex.plan_fft_forward(2 * my),
-            backward_y: complex.plan_fft_inverse(2 * my),
+            plans: Plans::new([2 * mx, 2 * my]),
             direct,
             images,
             odd_images,
@@ -101,18 +92,19 @@ impl Linear for WholeConvolution {
         let mut filtered = std::mem::take(&mut self.filtered);
         let this = &*self;
         waves.par_chunks_mut(count).zip(x.par_chunks(nx)).for_each_init(
-            || (this.forward_x.make_input_vec(), this.forward_x.make_scratch_vec()),
+            || (this.plans.forward_x.make_input_vec(), this.plans.forward_x.make_scratch_vec()),
             |(line, work), (waves, x)| {
                 line[..nx].copy_from_slice(x);
                 line[nx..].fill(0.0);
-                this.forward_x
+                this.plans
+                    .forward_x
                     .process_with_scratch(line, waves, work)
                     .expect("lengths are the plan's");
             },
         );
         filtered.par_chunks_mut(LINES * ny).enumerate().for_each_init(
             || {
-                let (forward, backward) = (&this.forward_y, &this.backward_y);
+                let (forward, backward) = (&this.plans.forward_y, &this.plans.backward_y);
                 let work =
                     forward.get_inplace_scratch_len().max(backward.get_inplace_scratch_len());
                 (vec![zero; 2 * my], vec![zero; work])
@@ -121,9 +113,9 @@ impl Linear for WholeConvolution {
                 for (k, filtered) in (block * LINES..).zip(filtered.chunks_exact_mut(ny)) {
                     (0..ny).for_each(|j| line[j] = waves[j * count + k]);
                     line[ny..].fill(zero);
-                    this.forward_y.process_with_scratch(line, work);
+                    this.plans.forward_y.process_with_scratch(line, work);
                     this.filter(k, line);
-                    this.backward_y.process_with_scratch(line, work);
+                    this.plans.backward_y.process_with_scratch(line, work);
                     filtered.copy_from_slice(&line[..ny]);
                     if let Some(ends) = &this.ends {
                         ends.add(k, |j| waves[j * count + k], filtered);
@@ -133,7 +125,7 @@ impl Linear for WholeConvolution {
         );
         out.par_chunks_mut(LINES * nx).enumerate().for_each_init(
             || {
-                let backward = &this.backward_x;
+                let backward = &this.plans.backward_x;
                 let vectors = (backward.make_input_vec(), backward.make_output_vec());
                 (vectors, backward.make_scratch_vec())
             },
@@ -143,7 +135,8 @@ impl Linear for WholeConvolution {
                     // Real by construction, but for rounding.
                     wave[0].im = 0.0;
                     wave[mx].im = 0.0;
-                    this.backward_x
+                    this.plans
+                        .backward_x
                         .process_with_scratch(wave, line, work)
                         .expect("lengths are the plan's");
                     out.copy_from_slice(&line[..nx]);

@@ -100,7 +100,7 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        Self::with_resolution(scene, &scene.resolution(scene.tolerance))
+        Self::with_resolution(scene, &scene.own_resolution())
     }
 
     /// Solves a scene at a given resolution.
@@ -118,9 +118,7 @@ impl SolvedScene {
     /// # Errors
     /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`], but for the laws of contact.
     pub(super) fn roughly(scene: &Scene) -> Result<Self> {
-        let end = scene.end(BodyKind::Block);
-        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
-        Self::within(scene, &resolution, f64::INFINITY)
+        Self::within(scene, &scene.own_resolution(), f64::INFINITY)
     }
 
     /// Solves a scene that may violate the laws of contact by `soundness`.
@@ -135,7 +133,7 @@ impl SolvedScene {
         let mut line = Line::first(scene, slices);
         if scene.may_end() {
             // The ends are found at low cost; on the way there no solution has to be sound.
-            let coarse = scene.resolution(SEARCH);
+            let coarse = scene.resolution(SEARCH, slices);
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
             let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices };
             line = search.settled(line)?.line;
@@ -258,14 +256,22 @@ impl SolvedScene {
 }
 
 impl Scene {
-    /// The resolution for a tolerance (p0).
-    fn resolution(&self, tolerance: f64) -> Resolution {
-        if self.may_end() {
-            let (ends, overlap) = (self.slices(&self.gap()).ends, self.overlap());
-            let least = MARGIN * self.half_length;
-            if ends[0] - overlap[0] > least && overlap[1] - ends[1] > least {
-                return Resolution::for_tips(tolerance);
-            }
+    /// The resolution for the scene's tolerance.
+    fn own_resolution(&self) -> Resolution {
+        let slices = self.may_end().then(|| self.slices(&self.gap()));
+        self.resolution(self.tolerance, slices.as_ref())
+    }
+
+    /// The resolution for a tolerance (p0), where `slices` are a first guess of a contact that may end before its
+    /// bodies do.
+    fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
+        let overlap = self.overlap();
+        let least = MARGIN * self.half_length;
+        let ends_inside = |slices: &Slices| {
+            slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
+        };
+        if slices.is_some_and(ends_inside) {
+            return Resolution::for_tips(tolerance);
         }
         Resolution::of(tolerance, &self.end(BodyKind::Block), self.corner_exponent())
     }

@@ -449,15 +449,7 @@ impl<'a> Field<'a> {
         z: f64,
         remainder: StressTensor,
     ) -> StressTensor {
-        let mut s = remainder;
-        let body = self.stack.body();
-        for (j, weight) in self.pressure.neighbours(y) {
-            let [xx, zz, xz] = own.endless_along(j, x, z).map(|s| weight * s);
-            s.xx += xx;
-            s.zz += zz;
-            s.xz += xz;
-            s.yy += body.nu * (xx + zz);
-        }
+        let mut s = self.with_plane(y, remainder, |j| own.endless_along(j, x, z));
         if z == 0.0 {
             s.xz = -self.pressure.at(x, y);
             (s.zz, s.yz) = (0.0, 0.0);
@@ -467,20 +459,31 @@ impl<'a> Field<'a> {
 
     /// [`Field::complete`] under the pressure.
     fn complete_pressure(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
-        let mut s = remainder;
-        let body = self.stack.body();
-        for (j, weight) in self.pressure.neighbours(y) {
-            let [xx, zz, xz] = self.pressure.endless(j, x, z).map(|s| weight * s);
-            s.xx += xx;
-            s.zz += zz;
-            s.xz += xz;
-            s.yy += body.nu * (xx + zz);
-        }
+        let mut s = self.with_plane(y, remainder, |j| self.pressure.endless(j, x, z));
         if z == 0.0 {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
         }
         self.free_face(y, s)
+    }
+
+    /// The stress `s` and at `y` the plane strain of an endless contact, interpolated between nodes: xx, zz and xz of
+    /// the node j are `plane(j)`.
+    fn with_plane(
+        &self,
+        y: f64,
+        mut s: StressTensor,
+        plane: impl Fn(usize) -> [f64; 3],
+    ) -> StressTensor {
+        let nu = self.stack.body().nu;
+        for (j, weight) in self.pressure.neighbours(y) {
+            let [xx, zz, xz] = plane(j).map(|s| weight * s);
+            s.xx += xx;
+            s.zz += zz;
+            s.xz += xz;
+            s.yy += nu * (xx + zz);
+        }
+        s
     }
 
     /// The stress `s` without the tractions of a free end face, if `y` lies on one.
