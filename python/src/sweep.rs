@@ -9,7 +9,7 @@ use edgeline::cli::values::checked_tolerance;
 use edgeline::report::columns::{Columns, Value};
 use edgeline::report::sweep::results;
 use edgeline::study::sweep as rows;
-use edgeline::study::sweep::{Group, Outcome, Settings, Shard};
+use edgeline::study::sweep::{Outcome, Rows, Settings, Shard};
 use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -47,9 +47,7 @@ pub fn sweep<'py>(
         .map_err(|e: String| Error::new_err(format!("shard: {e}")))?;
     let jobs = jobs.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from));
     let (rows, columns) = guarded(py, |_| {
-        let groups = rows::groups(&cases, &settings, shard);
-        let mut solved = run(&cases, &settings, &groups, jobs, progress.as_ref())?;
-        solved.sort_unstable_by_key(|(row, _)| *row);
+        let solved = run(&cases, &settings, shard, jobs, progress.as_ref())?;
         let named = |(row, outcome): &Row| {
             let mut columns = vec![
                 ("case".to_string(), Value::Text(cases[*row].name.clone())),
@@ -65,18 +63,21 @@ pub fn sweep<'py>(
     Ok((rows.into_pyarray(py), table(py, columns)?))
 }
 
-/// Solves the groups beside this thread, which alone talks to Python.
+/// Solves the cases beside this thread, which alone talks to Python.
 fn run(
     cases: &Vec<edgeline::case::Case>,
     settings: &Settings,
-    groups: &[Group],
+    shard: Option<Shard>,
     jobs: usize,
     progress: Option<&Py<PyAny>>,
 ) -> PyResult<Vec<Row>> {
-    let total = groups.iter().map(|group| group.rows.len()).sum();
+    let total = match shard {
+        None => cases.len(),
+        Some(_) => rows::count(cases, settings, shard).map_err(raised)?,
+    };
     let (give, take) = channel();
     std::thread::scope(|scope| {
-        let solving = scope.spawn(|| solve(cases, settings, groups, jobs, give));
+        let solving = scope.spawn(|| rows::run(cases, settings, shard, jobs, &mut Given(give)));
         // Nobody takes rows any more where this fails, which ends the solving.
         let rows = collect(take, total, progress)?;
         solving.join().map_err(|_| panicked())?.map_err(raised)?;
@@ -84,19 +85,20 @@ fn run(
     })
 }
 
-fn solve(
-    cases: &Vec<edgeline::case::Case>,
-    settings: &Settings,
-    groups: &[Group],
-    jobs: usize,
-    give: Sender<Row>,
-) -> base::Result<()> {
-    rows::run(cases, settings, groups, jobs, &|row, outcome| {
-        give.send((row, outcome)).map_err(|e| {
+/// Rows on their way to the thread that talks to Python.
+struct Given(Sender<Row>);
+
+impl Rows<()> for Given {
+    fn has(&mut self, _: usize, (): &()) -> base::Result<bool> {
+        Ok(false)
+    }
+
+    fn add(&mut self, row: usize, (): &(), outcome: &Outcome) -> base::Result<()> {
+        self.0.send((row, outcome.clone())).map_err(|e| {
             let source = std::io::Error::other(e.to_string());
             base::Error::Io { action: "hand on", path: "a row".into(), source }
         })
-    })
+    }
 }
 
 /// Takes the rows as they come; tells `progress`, and listens to signals.

@@ -7,6 +7,7 @@ use crate::base::Result;
 pub(super) const MAX_ROWS: usize = 10_000_000;
 
 /// A number, or several.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) enum Levels {
     /// One number, which does not vary.
     One(f64),
@@ -25,29 +26,26 @@ impl Levels {
         }
     }
 
-    /// The values, one by one.
-    pub fn expand(self) -> Vec<f64> {
+    /// The value `i`, from 0.
+    pub fn at(&self, i: usize) -> f64 {
         let (low, high, count, logarithmic) = match self {
-            Levels::One(value) => return vec![value],
-            Levels::Many(values) => return values,
-            Levels::Range { low, high, count, logarithmic } => (low, high, count, logarithmic),
+            Levels::One(value) => return *value,
+            Levels::Many(values) => return values[i],
+            Levels::Range { low, high, count, logarithmic } => (*low, *high, *count, *logarithmic),
         };
-        let value = |i: usize| {
-            let t = i as f64 / (count - 1) as f64;
-            // The ends are exact.
-            if i == 0 {
-                low
-            } else if i == count - 1 {
-                high
-            } else if logarithmic {
-                // Thirteen digits, so that the middle of a decade is a round number.
-                let value = (low.ln() + t * (high / low).ln()).exp();
-                format!("{value:.12e}").parse().expect("a formatted number")
-            } else {
-                low + t * (high - low)
-            }
-        };
-        (0..count).map(value).collect()
+        let t = i as f64 / (count - 1) as f64;
+        // The ends are exact.
+        if i == 0 {
+            low
+        } else if i == count - 1 {
+            high
+        } else if logarithmic {
+            // Thirteen digits, so that the middle of a decade is a round number.
+            let value = (low.ln() + t * (high / low).ln()).exp();
+            format!("{value:.12e}").parse().expect("a formatted number")
+        } else {
+            low + t * (high - low)
+        }
     }
 }
 

@@ -26,6 +26,8 @@ mod sweep;
 #[cfg(feature = "cli")]
 mod sweep_csv;
 #[cfg(feature = "cli")]
+mod sweep_table;
+#[cfg(feature = "cli")]
 mod sweep_toml;
 #[cfg(all(test, feature = "cli"))]
 mod tests;

@@ -1,12 +1,14 @@
 //! A sweep: thousands of cases as a grid or as lists of parameters, or as a table.
 //!
-//! A sweep does not store its cases: row i is the base with the values of that row, and is checked
+//! A sweep stores neither its cases nor the rows of a table: a row is the base with the values of that row, and is checked
 //! like every case. A mistake in the file is an error of the sweep; a mistake in a row is an error
 //! of that row.
 
 use super::draft::Draft;
 use super::keys::Key;
+use super::levels::Levels;
 use super::model::Case;
+use super::sweep_table::{RowCells, Table};
 use crate::base::{Error, Result};
 use std::path::Path;
 
@@ -35,11 +37,11 @@ pub(super) enum Column {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum Rows {
     /// Every combination of the columns' levels; the last column varies fastest.
-    Grid(Vec<Vec<f64>>),
+    Grid(Vec<Levels>),
     /// The columns' values side by side, with equal lengths; one row if there is no column.
-    Side(Vec<Vec<f64>>),
-    /// Texts, row by row.
-    List(Vec<Vec<String>>),
+    Side(Vec<Levels>),
+    /// Those of a table.
+    Table(Table),
 }
 
 impl Sweep {
@@ -69,9 +71,9 @@ impl Sweep {
     pub fn len(&self) -> usize {
         match &self.rows {
             // The readers have checked that the product is within the limit.
-            Rows::Grid(levels) => levels.iter().map(Vec::len).product(),
-            Rows::Side(columns) => columns.first().map_or(1, Vec::len),
-            Rows::List(rows) => rows.len(),
+            Rows::Grid(levels) => levels.iter().map(Levels::len).product(),
+            Rows::Side(columns) => columns.first().map_or(1, Levels::len),
+            Rows::Table(table) => table.len(),
         }
     }
 
@@ -85,37 +87,39 @@ impl Sweep {
         &self.names
     }
 
-    /// The texts of the columns in row `i`.
-    pub fn cells(&self, i: usize) -> Vec<String> {
+    /// The texts of the columns, row by row. A table is read from its file meanwhile.
+    ///
+    /// # Errors
+    /// [`Error::Io`] when the table cannot be opened. A row is an error when the file has changed since it was checked.
+    pub fn rows(&self) -> Result<RowCells<'_>> {
         let text_of = |value: f64| format!("{value:e}");
-        match &self.rows {
-            Rows::List(rows) => rows[i].clone(),
-            Rows::Side(columns) => columns.iter().map(|values| text_of(values[i])).collect(),
-            Rows::Grid(levels) => {
+        Ok(match &self.rows {
+            Rows::Table(table) => table.rows()?,
+            Rows::Side(columns) => Box::new(
+                (0..self.len())
+                    .map(move |i| Ok(columns.iter().map(|values| text_of(values.at(i))).collect())),
+            ),
+            Rows::Grid(levels) => Box::new((0..self.len()).map(move |i| {
                 let mut rest = i;
-                let mut cells: Vec<String> = levels
-                    .iter()
-                    .rev()
-                    .map(|l| {
-                        let value = l[rest % l.len()];
-                        rest /= l.len();
-                        text_of(value)
-                    })
-                    .collect();
+                let cell = |l: &Levels| {
+                    let value = l.at(rest % l.len());
+                    rest /= l.len();
+                    text_of(value)
+                };
+                let mut cells: Vec<String> = levels.iter().rev().map(cell).collect();
                 cells.reverse();
-                cells
-            }
-        }
+                Ok(cells)
+            })),
+        })
     }
 
-    /// The case of row `i`. Its name is in the column `name`; otherwise it is `row-1` and so on.
+    /// The case of row `i`, whose texts are `cells`. Its name is in the column `name`; otherwise it is `row-1` and so on.
     ///
     /// # Errors
     /// [`Error::Value`] about the first value of the row that is not legal.
-    pub fn case(&self, i: usize) -> Result<Case> {
+    pub fn case(&self, i: usize, cells: &[String]) -> Result<Case> {
         let mut draft = self.base.clone().named(format!("row-{}", i + 1));
-        for ((cell, column), name) in self.cells(i).into_iter().zip(&self.columns).zip(&self.names)
-        {
+        for ((cell, column), name) in cells.iter().zip(&self.columns).zip(&self.names) {
             let keys = match column {
                 Column::Numbers(keys) => keys,
                 Column::Name => {
@@ -125,7 +129,7 @@ impl Sweep {
             };
             let value: f64 = cell.parse().map_err(|_| Error::Value {
                 key: name.clone(),
-                value: cell,
+                value: cell.clone(),
                 reason: "a number belongs here".into(),
                 remedy: "write for example 1.5".into(),
             })?;

@@ -3,28 +3,37 @@
 use super::document::nearest;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
-use super::levels::MAX_ROWS;
 use super::model::Case;
 use super::sweep::{Column, Rows, Sweep};
+use super::sweep_table::Table;
 use crate::base::{Error, Result};
-use crate::host::{check_memory, read_text};
+use crate::host::read_text;
 use std::path::Path;
 
 /// Columns that give both bodies the same value.
 const BOTH: [&str; 2] = ["young_pa", "poisson"];
 
-/// Size above which tables are refused (bytes); [`MAX_ROWS`] rows are smaller.
+/// Size above which tables are refused (bytes); the most rows that are allowed are smaller.
 const MAX_BYTES: u64 = 4 << 30;
-
-/// Memory of a table in units of its file's size; cells have about six letters.
-const GROWTH: f64 = 15.0;
 
 impl Sweep {
     pub(super) fn read_csv(path: &Path, base: Option<&Case>) -> Result<Sweep> {
         let remedy = "split it into several files";
-        let size = std::fs::metadata(path).map_or(0, |m| m.len());
-        check_memory(&format!("the table {}", path.display()), size as f64 * GROWTH, remedy)?;
-        Sweep::parse_csv(&read_text(path, MAX_BYTES, remedy)?, path, base)
+        let file = std::fs::metadata(path).ok();
+        if file.as_ref().is_some_and(|file| file.len() > MAX_BYTES) {
+            return Err(Error::File {
+                path: path.to_path_buf(),
+                line: None,
+                message: format!("is larger than {} MiB", MAX_BYTES >> 20),
+                remedy: remedy.into(),
+            });
+        }
+        // What is no file, a pipe for example, cannot be read twice.
+        let text = match file.is_some_and(|file| !file.is_file()) {
+            true => Some(read_text(path, MAX_BYTES, remedy)?),
+            false => None,
+        };
+        Sweep::of_table(Table::new(path, text)?, path, base)
     }
 
     /// Parses a CSV table with a column for each number and optionally a column `name`. `base`
@@ -33,21 +42,17 @@ impl Sweep {
     /// # Errors
     /// As [`Sweep::read`].
     pub fn parse_csv(text: &str, path: &Path, base: Option<&Case>) -> Result<Sweep> {
-        let refuse = |line: Option<usize>, message: String, remedy: String| Error::File {
+        Sweep::of_table(Table::new(path, Some(text.to_string()))?, path, base)
+    }
+
+    fn of_table(table: Table, path: &Path, base: Option<&Case>) -> Result<Sweep> {
+        let in_header = |(message, remedy)| Error::File {
             path: path.to_path_buf(),
-            line,
+            line: Some(1),
             message,
             remedy,
         };
-        let in_header = |(message, remedy)| refuse(Some(1), message, remedy);
-        let broken = |e: csv::Error| {
-            let line = e.position().map(|p| p.line() as usize);
-            refuse(line, e.to_string(), "give as many cells in every row as in the header".into())
-        };
-        let mut reader =
-            csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-        let names: Vec<String> =
-            reader.headers().map_err(broken)?.iter().map(str::to_string).collect();
+        let names = table.header.clone();
         let columns = names
             .iter()
             .map(|name| column(name))
@@ -62,15 +67,7 @@ impl Sweep {
                 Draft::new("", form)
             }
         };
-        let mut rows = Vec::new();
-        for record in reader.records() {
-            rows.push(record.map_err(broken)?.iter().map(str::to_string).collect());
-        }
-        if rows.is_empty() || rows.len() > MAX_ROWS {
-            let message = format!("has {} rows", rows.len());
-            return Err(refuse(None, message, format!("give between 1 and {MAX_ROWS}")));
-        }
-        Ok(Sweep { columns, names, base, rows: Rows::List(rows) })
+        Ok(Sweep { columns, names, base, rows: Rows::Table(table.counted()?) })
     }
 }
 

@@ -7,12 +7,10 @@ use super::keys::Key;
 use super::levels::{Levels, MAX_ROWS, levels};
 use super::sweep::{Column, Rows, Sweep};
 use crate::base::Result;
-use crate::host::check_memory;
 use std::path::Path;
 
-/// Memory of a row of a running sweep, and of each number in parallel lists (bytes).
-const ROW_BYTES: f64 = 300.0;
-const CELL_BYTES: f64 = 8.0;
+/// Size of a row of the results (bytes).
+const ROW_BYTES: f64 = 330.0;
 
 /// A number that varies: its place in the file, and its values.
 struct Varying<'d> {
@@ -61,7 +59,7 @@ impl Sweep {
         varying.sort_by_key(|v| v.entry.place());
         check_rows(&varying, side_by_side, &root)?;
         let keys: Vec<&'static Key> = varying.iter().map(|v| v.key).collect();
-        let values = varying.into_iter().map(|v| v.levels.expand()).collect();
+        let values = varying.into_iter().map(|v| v.levels).collect();
         Ok(Sweep {
             columns: keys.iter().map(|&key| Column::Numbers(vec![key])).collect(),
             names: keys.iter().map(|key| key.path.to_string()).collect(),
@@ -98,19 +96,17 @@ fn check_rows(varying: &[Varying], side_by_side: bool, root: &Table) -> Result<(
             "give lists of one length, or [sweep] combine = \"grid\"",
         ));
     }
-    let (rows, columns) = match side_by_side {
-        true => (first as f64, varying.len()),
-        false => (varying.iter().map(|v| count(v) as f64).product(), 0),
+    let rows = match side_by_side {
+        true => first as f64,
+        false => varying.iter().map(|v| count(v) as f64).product(),
     };
-    let bytes = rows * (ROW_BYTES + CELL_BYTES * columns as f64);
-    let remedy = "give fewer values, or several files";
     if rows > MAX_ROWS as f64 {
-        let gib = bytes / (1u64 << 30) as f64;
+        let gib = rows * ROW_BYTES / (1u64 << 30) as f64;
         let message = format!(
-            "the lists combine to more than {MAX_ROWS} rows: {rows:.2e} rows would take about \
+            "the lists combine to more than {MAX_ROWS} rows: {rows:.2e} rows would be a file of about \
              {gib:.1e} GiB"
         );
-        return Err(root.error(message, remedy));
+        return Err(root.error(message, "give fewer values, or several files"));
     }
-    check_memory(&format!("a sweep of {rows} rows"), bytes, remedy)
+    Ok(())
 }

@@ -1,6 +1,6 @@
 //! Displacements at a depth, which the approach of the bodies is counted from.
 //!
-//! As [`crate::contact::reference`] has it, a wave of wavenumber k across the contact fades like e^(-k d) with the depth d. Its
+//! As [`crate::contact::Reference`] has it, a wave of wavenumber k across the contact fades like e^(-k d) with the depth d. Its
 //! kernel 2 K0(k u) then sums to (2 / pi^2) Re f(d + i x, u), f(w, u) = arcosh(w / u) / sqrt(w^2 - u^2) (Gradshteyn and
 //! Ryzhik 2007, 6.611 9.), at the distances u along the contact and x across it; at d = 0 it is 1 / (pi r).
 

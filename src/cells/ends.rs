@@ -213,7 +213,7 @@ impl FreeEnds {
     }
 
     /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on
-    /// `grid` has it; see [`contact::reference`].
+    /// `grid` has it; see [`contact::Reference`].
     pub(super) fn reference(&self, pressure: &dyn Load, grid: &Grid, depth: f64) -> f64 {
         let wavenumbers = self.resolving(grid);
         let rigid = self.bodies[0].long.nrows();
@@ -230,7 +230,7 @@ impl FreeEnds {
         let matrices: Vec<DMatrix<f64>> = all.map(compliance).collect();
         let compliance = contact::Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
         let transform = |k: f64| pressure.transforms(&[k]).column(0).into_owned();
-        contact::reference(&compliance, transform, depth)
+        contact::Reference::new(&compliance, transform).at(depth)
     }
 
     /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to

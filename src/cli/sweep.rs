@@ -7,17 +7,18 @@ use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
 use crate::host::prepare_folder;
-use crate::report::sweep::{RowLabel, SweepFile};
-use crate::study::sweep::{self, Group, Settings, Shard};
+use crate::report::sweep::{Label, SweepFile};
+use crate::report::sweep_target::Target;
+use crate::study::sweep::{self, Done, Outcome, Rows, Settings, Shard};
 use clap::{Args, ValueHint};
+use indicatif::ProgressBar;
 use serde_json::json;
 use std::path::{Path, PathBuf};
-use std::sync::Mutex;
 use std::time::Instant;
 
 /// Solves many cases: a grid or lists of parameters.
 ///
-/// Writes one CSV file with one row per case, in the order of the input: pressures at the centre
+/// Writes one file with one row per case, in the order of the input: pressures at the centre
 /// and towards the end, the largest stress and its place, and the approach. The row of a case that
 /// cannot be solved gives the reason in `err`. The next run continues a sweep that was stopped.
 /// Cases that differ only in scale are solved once. A case takes about ten milliseconds of
@@ -28,8 +29,8 @@ pub(super) struct Arguments {
     /// each parameter (CSV)
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
-    /// The CSV file of the results; existing rows are kept
-    #[arg(long, value_name = "CSV", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
+    /// The file of the results, CSV or, if its name ends in .parquet, Parquet; existing rows are kept
+    #[arg(long, value_name = "FILE", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
     out: PathBuf,
     /// A case file or built-in case for the values that a table has no column for
     #[arg(long, value_name = "CASE", value_hint = ValueHint::FilePath)]
@@ -59,49 +60,32 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         method: arguments.method,
         tolerance: arguments.tolerance.map(checked_tolerance).transpose()?,
     };
-    let groups = sweep::groups(&sweep, &settings, arguments.shard);
-    let mut order: Vec<usize> = groups.iter().flat_map(|g| g.rows.iter().copied()).collect();
-    order.sort_unstable();
-    let rows = order.len();
-
     if let Some(folder) = arguments.out.parent().filter(|p| *p != Path::new("")) {
         prepare_folder(folder)?;
     }
-    let label = |row: usize| RowLabel {
-        cells: sweep.cells(row),
-        method: settings.method.name(),
-        tolerance: settings.tolerance,
-    };
-    let file = SweepFile::open(&arguments.out, sweep.columns(), order, label)?;
-    let kept = file.kept();
-    let todo: Vec<Group> = groups
-        .into_iter()
-        .map(|g| Group { rows: g.rows.into_iter().filter(|&r| file.wants(r)).collect() })
-        .filter(|g| !g.rows.is_empty())
-        .collect();
+    let label = Label { method: settings.method.name(), tolerance: settings.tolerance };
+    let mut target = Target::new(&arguments.out)?;
+    let file = target.open(sweep.columns(), label)?;
 
     let bar = progress_bar();
-    bar.set_length(rows as u64);
-    bar.set_position(kept as u64);
-    let file = Mutex::new(file);
+    bar.set_length((sweep.len() / arguments.shard.map_or(1, |shard| shard.count)) as u64);
+    let mut rows = Shown { file, bar };
     let solving = Instant::now();
-    let done = sweep::run(&sweep, &settings, &todo, jobs(&arguments), &|row, outcome| {
-        file.lock().unwrap_or_else(|e| e.into_inner()).add(row, &label(row), &outcome)?;
-        bar.inc(1);
-        Ok(())
-    });
+    let done = sweep::run(&sweep, &settings, arguments.shard, jobs(&arguments), &mut rows);
+    let Shown { mut file, bar } = rows;
     bar.finish_and_clear();
-    done?;
-    let file = file.into_inner().unwrap_or_else(|e| e.into_inner());
-    file.finish()?;
+    let done = done.and_then(|done| file.finish().map(|()| done));
+    let Done { rows, problems } = done.inspect_err(|_| target.leave())?;
+    let solving = solving.elapsed().as_secs_f64();
+    target.finish()?;
     let summary = SweepSummary {
         rows_of_sweep: sweep.len(),
         rows,
-        kept,
+        kept: file.kept(),
         failed: file.failed(),
-        problems: todo.len(),
+        problems,
         seconds: began.elapsed().as_secs_f64(),
-        solving: solving.elapsed().as_secs_f64(),
+        solving,
     };
     if arguments.json {
         print_json(&summary.json(&arguments))?;
@@ -109,6 +93,25 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         print(&summary.text(&arguments))?;
     }
     Ok(Exit::Done)
+}
+
+/// The rows of a file with a bar of how many are there.
+struct Shown {
+    file: SweepFile,
+    bar: ProgressBar,
+}
+
+impl Rows<Vec<String>> for Shown {
+    fn has(&mut self, row: usize, cells: &Vec<String>) -> Result<bool> {
+        let there = self.file.has(row, cells)?;
+        self.bar.inc(u64::from(there));
+        Ok(there)
+    }
+
+    fn add(&mut self, row: usize, cells: &Vec<String>, outcome: &Outcome) -> Result<()> {
+        self.bar.inc(1);
+        self.file.add(row, cells, outcome)
+    }
 }
 
 /// Number of cases solved at the same time.

@@ -9,48 +9,81 @@ use std::f64::consts::PI;
 /// of the surface.
 const LONG: f64 = 0.6;
 
-/// Mean displacement along the line, in units of C^2 / (2 R), that the load causes at `depth`, from the
-/// `transform` of its pressure at the nodes for any wavenumber: with the kernel e^(-k depth) the logarithmic growth of the displacement with the extent of the bodies
-/// cancels in the difference from the approach.
+/// The mean displacement along the line that the load causes at any depth: with the kernel e^(-k depth) the logarithmic
+/// growth of the displacement with the extent of the bodies cancels in the difference from the approach.
 ///
 /// The error of the contact's few nodes for displacements like 1/k and ln k cancels too: below a
 /// wavenumber the sum over the same nodes is taken, less the integral of the part that decays with
 /// depth.
-pub fn reference(
-    compliance: &Compliance,
-    transform: impl Fn(f64) -> DVector<f64>,
-    depth: f64,
-) -> f64 {
-    let wavenumbers = compliance.wavenumbers;
-    let fine = wavenumbers.fine();
-    let numbers = fine.nodes();
-    // The remainder beyond the plane, screened part is interpolated, as in the contact itself.
-    let rests: Vec<DVector<f64>> = wavenumbers
-        .coarse()
-        .nodes()
-        .iter()
-        .zip(compliance.matrices)
-        .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
-        .collect();
-    let mean_at = |(i, &k): (usize, &f64)| -> f64 {
-        let transform = transform(k);
-        let (first, shares) = wavenumbers.interpolation(i);
-        let rests = shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
-        plane(k) * transform.mean() + rests.sum::<f64>()
-    };
-    let means: Vec<f64> = numbers.iter().enumerate().map(mean_at).collect();
-    let first = fine.breaks()[1];
-    let top = fine.breaks().partition_point(|k| *k < LONG).min(fine.panel_count());
-    let top = fine.breaks()[top];
-    let below = numbers.partition_point(|k| *k < top);
+#[derive(Debug, Clone, PartialEq)]
+pub struct Reference {
+    fine: Panels,
+    /// The mean displacement along the line of each fine wavenumber.
+    means: Vec<f64>,
+    /// alpha, beta, gamma of alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
+    fit: Vector3<f64>,
+}
 
-    // alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
-    let ends = [0, fine.order() / 2, fine.order() - 1];
-    let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
-    let system = Matrix3::from_fn(|i, j| rows[i][j]);
-    let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
-    let mean = |k: f64| {
-        if k < first {
+impl Reference {
+    /// That of a load whose pressure has the `transform` at the nodes, for any wavenumber.
+    pub fn new(compliance: &Compliance, transform: impl Fn(f64) -> DVector<f64>) -> Self {
+        let wavenumbers = compliance.wavenumbers;
+        let fine = wavenumbers.fine().clone();
+        let numbers = fine.nodes();
+        // The remainder beyond the plane, screened part is interpolated, as in the contact itself.
+        let rests: Vec<DVector<f64>> = wavenumbers
+            .coarse()
+            .nodes()
+            .iter()
+            .zip(compliance.matrices)
+            .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
+            .collect();
+        let mean_at = |(i, &k): (usize, &f64)| -> f64 {
+            let transform = transform(k);
+            let (first, shares) = wavenumbers.interpolation(i);
+            let rests =
+                shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
+            plane(k) * transform.mean() + rests.sum::<f64>()
+        };
+        let means: Vec<f64> = numbers.iter().enumerate().map(mean_at).collect();
+        let ends = [0, fine.order() / 2, fine.order() - 1];
+        let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
+        let system = Matrix3::from_fn(|i, j| rows[i][j]);
+        let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
+        Self { fine, means, fit }
+    }
+
+    /// The displacement at `depth` (C), in units of C^2 / (2 R).
+    pub fn at(&self, depth: f64) -> f64 {
+        let numbers = self.fine.nodes();
+        let first = self.fine.breaks()[1];
+        let top = self.fine.breaks().partition_point(|k| *k < LONG).min(self.fine.panel_count());
+        let top = self.fine.breaks()[top];
+        let below = numbers.partition_point(|k| *k < top);
+        let own = fading_panels(depth, first, top);
+        let faded: f64 = own
+            .nodes()
+            .iter()
+            .zip(own.weights())
+            .map(|(&k, w)| -(-k * depth).exp_m1() * w * self.mean(k))
+            .sum();
+        let terms = || numbers.iter().zip(self.fine.weights()).zip(&self.means);
+        let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
+        let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
+        (long - faded + short) / (PI * PI)
+    }
+
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        // The nodes, their weights and their means.
+        size_of::<Self>() + 3 * size_of::<f64>() * self.means.len()
+    }
+
+    /// The mean displacement of the wavenumber `k`.
+    fn mean(&self, k: f64) -> f64 {
+        let Self { fine, means, fit } = self;
+        let numbers = fine.nodes();
+        if k < fine.breaks()[1] {
             return fit[0] / k + fit[1] + fit[2] * k.ln();
         }
         // k times the mean is smooth in ln k: 2 pi / k for waves shorter than the line.
@@ -61,18 +94,7 @@ pub fn reference(
             numbers[from + i] * means[from + i] * basis.product::<f64>()
         };
         (0..4).map(term).sum::<f64>() / k
-    };
-    let own = fading_panels(depth, first, top);
-    let faded: f64 = own
-        .nodes()
-        .iter()
-        .zip(own.weights())
-        .map(|(&k, w)| -(-k * depth).exp_m1() * w * mean(k))
-        .sum();
-    let terms = || numbers.iter().zip(fine.weights()).zip(&means);
-    let long: f64 = terms().take(below).map(|((_, w), m)| w * m).sum();
-    let short: f64 = terms().skip(below).map(|((k, w), m)| w * (-k * depth).exp() * m).sum();
-    (long - faded + short) / (PI * PI)
+    }
 }
 
 /// Panels that resolve e^(-k `depth`) and the decay of the mean up to the wavenumber `top`, with a

@@ -18,6 +18,9 @@ pub mod study_rows;
 pub mod study_summary;
 pub mod summarise;
 pub mod sweep;
+#[cfg(feature = "parquet")]
+mod sweep_parquet;
+pub mod sweep_target;
 pub mod table;
 mod tables;
 pub mod uncertainty;

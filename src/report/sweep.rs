@@ -5,25 +5,17 @@ use super::columns::Value;
 use super::table::number;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::host::check_memory;
 use crate::solve::{END_DISTANCES, KeyResults};
-use crate::study::sweep::Outcome;
-use std::collections::BTreeMap;
+use crate::study::sweep::{Outcome, Rows};
+use csv::StringRecord;
 use std::fs::{File, OpenOptions, TryLockError};
-use std::io::{Read, Seek, SeekFrom, Write};
+use std::io::{BufRead, BufReader, Lines, Read, Seek, SeekFrom, Take, Write};
 use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 
-/// What a row says besides its number, its parameters and its results.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RowLabel {
-    /// The cells of the sweep's own columns.
-    pub cells: Vec<String>,
-    /// The edge model.
-    pub method: &'static str,
-    /// The tolerance of the command line.
-    pub tolerance: Option<f64>,
-}
+/// The columns of texts; all others but `row` are numbers.
+#[cfg(feature = "parquet")]
+pub(super) const TEXTS: [&str; 4] = ["name", "method", "critical_body", "err"];
 
 /// A number of a row's results.
 type Number = fn(&Case, &KeyResults) -> f64;
@@ -82,7 +74,7 @@ fn one_line(text: &str) -> String {
 }
 
 /// One line of CSV with its end.
-fn line(cells: &[String]) -> String {
+pub(super) fn line(cells: &[String]) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(cells).expect("a vector takes a record");
     let bytes = writer.into_inner().expect("a vector takes all bytes");
@@ -104,16 +96,27 @@ fn open_locked(path: &Path) -> Result<File> {
     }
 }
 
-/// The file of a running sweep, locked for other processes.
+/// What stands in the rows of a sweep besides its own columns and its results.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Label {
+    /// The edge model.
+    pub method: &'static str,
+    /// The tolerance of the command line.
+    pub tolerance: Option<f64>,
+}
+
+/// The file of a running sweep, locked for other processes. It is read and written row by row.
 #[derive(Debug)]
 pub struct SweepFile {
     path: PathBuf,
     file: File,
-    /// The rows of the file in order, and the place of the next one.
-    order: Vec<usize>,
-    next: usize,
-    /// Rows that wait for an earlier row.
-    waiting: BTreeMap<usize, String>,
+    label: Label,
+    /// The rows of an earlier run that are still to be recognised.
+    before: Option<Lines<Take<BufReader<File>>>>,
+    /// Where they end (bytes).
+    whole: u64,
+    /// The line of the next row, from 1.
+    line: usize,
     /// Number of rows of an earlier run.
     kept: usize,
     /// Number of rows with an `err`, including those of an earlier run.
@@ -121,89 +124,64 @@ pub struct SweepFile {
 }
 
 impl SweepFile {
-    /// Creates the file or continues an existing one. `columns` are the sweep's own; `order` holds
-    /// the indices of the rows of the file, ascending; `label` gives the label of a row, by which
-    /// the file of another sweep is recognised and refused.
+    /// Creates the file or continues an existing one. `columns` are the sweep's own.
     ///
     /// An incomplete last line, which a killed run may leave, is removed.
     ///
     /// # Errors
-    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it is not the
-    /// beginning of this sweep, and [`Error::Io`].
-    pub fn open(
-        path: &Path,
-        columns: &[String],
-        order: Vec<usize>,
-        label: impl Fn(usize) -> RowLabel,
-    ) -> Result<Self> {
+    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it is not that of a sweep with these columns,
+    /// and [`Error::Io`].
+    pub fn open(path: &Path, columns: &[String], label: Label) -> Result<Self> {
         let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
-        let mut file = open_locked(path)?;
-        let header: Vec<String> = std::iter::once("row".to_string())
-            .chain(columns.iter().map(|c| one_line(c)))
-            .chain(["method".to_string()])
-            .chain(results(&Err(String::new())).into_iter().map(|(name, _)| name))
-            .collect();
-        let header = line(&header);
-        let size = file.metadata().map_err(io("read"))?.len();
-        let what = format!("continuing {}", path.display());
-        check_memory(&what, size as f64, "give another --out")?;
-        let mut bytes = Vec::new();
-        file.read_to_end(&mut bytes).map_err(io("read"))?;
-        let whole = bytes.iter().rposition(|b| *b == b'\n').map_or(0, |end| end + 1);
-        // An incomplete row may end within a character.
-        let text = String::from_utf8_lossy(&bytes[..whole]);
+        let file = open_locked(path)?;
+        let whole = whole_lines(&file).map_err(io("read"))?;
+        let header = line(&header_names(columns));
+        let reader = BufReader::new(file.try_clone().map_err(io("read"))?);
         let mut own = Self {
             path: path.to_path_buf(),
             file,
-            order,
-            next: 0,
-            waiting: BTreeMap::new(),
+            label,
+            before: None,
+            whole,
+            line: 2,
             kept: 0,
             failed: 0,
         };
+        let mut reader = reader.take(header.len() as u64);
+        let mut start = Vec::new();
+        reader.read_to_end(&mut start).map_err(io("read"))?;
         if whole == 0 {
-            if !header.as_bytes().starts_with(&bytes) {
+            if !header.as_bytes().starts_with(&start) {
                 return Err(own.refuse(1, "holds something else than a sweep's rows".into()));
             }
             own.file.set_len(0).map_err(io("write"))?;
-            own.append(&header, 0)?;
+            own.file.seek(SeekFrom::Start(0)).map_err(io("write"))?;
+            own.append(&header)?;
             return Ok(own);
         }
-        if !text.starts_with(&header) {
+        if start != header.as_bytes() {
             return Err(own.refuse(1, "has the columns of something else".into()));
         }
-        own.recognise(&text, &label)?;
-        own.file.set_len(whole as u64).map_err(io("write"))?;
-        own.file.seek(SeekFrom::Start(whole as u64)).map_err(io("write"))?;
+        own.before = Some(reader.into_inner().take(whole - header.len() as u64).lines());
         Ok(own)
     }
 
-    /// Checks the existing rows.
-    fn recognise(&mut self, text: &str, label: &impl Fn(usize) -> RowLabel) -> Result<()> {
-        let mut reader = csv::Reader::from_reader(text.as_bytes());
-        for (i, record) in reader.records().enumerate() {
-            let place = i + 2;
-            let record = record.map_err(|e| self.refuse(place, e.to_string()))?;
-            let Some(&row) = self.order.get(i) else {
-                return Err(self.refuse(place, "has more rows than this sweep".into()));
-            };
-            let label = label(row);
-            let start: Vec<String> = std::iter::once((row + 1).to_string())
-                .chain(label.cells.iter().map(|c| one_line(c)))
-                .chain([label.method.to_string()])
-                .collect();
-            let solved = record.get(start.len()).unwrap_or_default();
-            let same = record.iter().zip(&start).all(|(a, b)| a == b)
-                && label.tolerance.is_none_or(|t| solved.is_empty() || solved == number(t));
-            if !same {
-                let message = format!("is not row {} of this sweep by this method", row + 1);
-                return Err(self.refuse(place, message));
-            }
-            self.failed += usize::from(record.iter().next_back().is_some_and(|e| !e.is_empty()));
-            self.next = i + 1;
-        }
-        self.kept = self.next;
-        Ok(())
+    /// The next row of an earlier run, its cells; none if there is no more, and new ones can be added.
+    fn next_before(&mut self) -> Result<Option<StringRecord>> {
+        let io = |action, source| Error::Io { action, path: self.path.clone(), source };
+        let Some(lines) = &mut self.before else { return Ok(None) };
+        let Some(line) = lines.next() else {
+            self.before = None;
+            self.file.set_len(self.whole).map_err(|e| io("write", e))?;
+            self.file.seek(SeekFrom::Start(self.whole)).map_err(|e| io("write", e))?;
+            return Ok(None);
+        };
+        let line = line.map_err(|e| io("read", e))?;
+        let mut reader = csv::ReaderBuilder::new().has_headers(false).from_reader(line.as_bytes());
+        let mut record = StringRecord::new();
+        let read = reader.read_record(&mut record);
+        read.map_err(|e| self.refuse(self.line, e.to_string()))?;
+        Ok(Some(record))
     }
 
     fn refuse(&self, line: usize, message: String) -> Error {
@@ -213,6 +191,14 @@ impl SweepFile {
             message,
             remedy: "give another --out, or remove the file".into(),
         }
+    }
+
+    /// The cells of a row before its results.
+    fn start(&self, row: usize, cells: &[String]) -> Vec<String> {
+        std::iter::once((row + 1).to_string())
+            .chain(cells.iter().map(|c| one_line(c)))
+            .chain([self.label.method.to_string()])
+            .collect()
     }
 
     /// Number of rows of an earlier run.
@@ -225,37 +211,7 @@ impl SweepFile {
         self.failed
     }
 
-    /// Whether a row is still to be written.
-    pub fn wants(&self, row: usize) -> bool {
-        self.order[self.next..].binary_search(&row).is_ok()
-    }
-
-    /// Adds a row. It is written as soon as all rows before it are written.
-    ///
-    /// # Errors
-    /// [`Error::Io`] when the file cannot be written.
-    pub fn add(&mut self, row: usize, label: &RowLabel, outcome: &Outcome) -> Result<()> {
-        let mut cells = vec![(row + 1).to_string()];
-        cells.extend(label.cells.iter().map(|c| one_line(c)));
-        cells.push(label.method.to_string());
-        cells.extend(results(outcome).into_iter().map(|(_, value)| match value {
-            Value::Number(value) => number(value),
-            Value::Text(text) => one_line(&text),
-        }));
-        self.failed += usize::from(outcome.is_err());
-        self.waiting.insert(row, line(&cells));
-        let mut ready = String::new();
-        let mut rows = 0;
-        while let Some(text) =
-            self.order.get(self.next + rows).and_then(|row| self.waiting.remove(row))
-        {
-            ready.push_str(&text);
-            rows += 1;
-        }
-        if rows == 0 { Ok(()) } else { self.append(&ready, rows) }
-    }
-
-    fn append(&mut self, text: &str, rows: usize) -> Result<()> {
+    fn append(&mut self, text: &str) -> Result<()> {
         let io = |source| Error::Io { action: "write", path: self.path.clone(), source };
         // Rows in a removed file would be lost: it has no name any more.
         let identity = |data: std::fs::Metadata| (data.dev(), data.ino());
@@ -265,17 +221,85 @@ impl SweepFile {
                 "another file was put in its place; run again to write all rows",
             )));
         }
-        self.file.write_all(text.as_bytes()).map_err(io)?;
-        self.next += rows;
-        Ok(())
+        self.file.write_all(text.as_bytes()).map_err(io)
     }
 
     /// Stores the rows on the disk, so that they survive a power cut.
     ///
     /// # Errors
-    /// [`Error::Io`] when they cannot be stored.
-    pub fn finish(&self) -> Result<()> {
+    /// [`Error::Io`] when they cannot be stored, [`Error::File`] when the file has more rows than the sweep.
+    pub fn finish(&mut self) -> Result<()> {
+        if self.next_before()?.is_some() {
+            return Err(self.refuse(self.line, "has more rows than this sweep".into()));
+        }
         let io = |source| Error::Io { action: "write", path: self.path.clone(), source };
         self.file.sync_data().map_err(io)
     }
+}
+
+impl Rows<Vec<String>> for SweepFile {
+    /// Checks a row of an earlier run.
+    fn has(&mut self, row: usize, cells: &Vec<String>) -> Result<bool> {
+        let Some(record) = self.next_before()? else { return Ok(false) };
+        let start = self.start(row, cells);
+        let solved = record.get(start.len()).unwrap_or_default();
+        let same = record.iter().zip(&start).all(|(a, b)| says_same(a, b))
+            && self.label.tolerance.is_none_or(|t| solved.is_empty() || solved == number(t));
+        if !same {
+            let message = format!("is not row {} of this sweep by this method", row + 1);
+            return Err(self.refuse(self.line, message));
+        }
+        self.failed += usize::from(record.iter().next_back().is_some_and(|e| !e.is_empty()));
+        self.kept += 1;
+        self.line += 1;
+        Ok(true)
+    }
+
+    fn add(&mut self, row: usize, cells: &Vec<String>, outcome: &Outcome) -> Result<()> {
+        let mut cells = self.start(row, cells);
+        cells.extend(results(outcome).into_iter().map(|(_, value)| match value {
+            Value::Number(value) => number(value),
+            Value::Text(text) => one_line(&text),
+        }));
+        self.failed += usize::from(outcome.is_err());
+        self.append(&line(&cells))
+    }
+}
+
+/// The header of a sweep with these columns of its own.
+pub(super) fn header_names(columns: &[String]) -> Vec<String> {
+    let results = results(&Err(String::new())).into_iter().map(|(name, _)| name);
+    let own = columns.iter().map(|c| one_line(c));
+    let start = std::iter::once("row".to_string()).chain(own).chain(["method".to_string()]);
+    start.chain(results).collect()
+}
+
+/// Whether a cell of an earlier run says what is now to stand there. Numbers may be written otherwise, and what was no
+/// number may be missing.
+fn says_same(before: &str, now: &str) -> bool {
+    let number = |text: &str| text.parse::<f64>().ok();
+    before == now
+        || match number(now) {
+            Some(now) => number(before) == Some(now),
+            None => before.is_empty(),
+        }
+}
+
+/// Length of a file up to its last end of a line (bytes).
+fn whole_lines(mut file: &File) -> std::io::Result<u64> {
+    let mut end = file.metadata()?.len();
+    let mut part = vec![0; 1 << 16];
+    while end > 0 {
+        let start = end.saturating_sub(part.len() as u64);
+        let part = &mut part[..(end - start) as usize];
+        file.seek(SeekFrom::Start(start))?;
+        file.read_exact(part)?;
+        if let Some(at) = part.iter().rposition(|b| *b == b'\n') {
+            end = start + at as u64 + 1;
+            break;
+        }
+        end = start;
+    }
+    file.seek(SeekFrom::Start(0))?;
+    Ok(end)
 }

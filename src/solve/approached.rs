@@ -2,7 +2,7 @@
 
 use super::options::Options;
 use super::scene::Scene;
-use super::solved_scene::SolvedScene;
+use super::solved_scene::{Approaches, SolvedScene};
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Result};
 use crate::case::Case;
@@ -38,9 +38,9 @@ const MOST_SECANTS: usize = 20;
 const LARGEST_STEP: f64 = 8.0;
 
 /// Approach of points one roller radius below the surfaces (m), at the roller's middle.
-pub(super) fn approach_m(scene: &SolvedScene, case: &Case) -> f64 {
+pub(super) fn approach_m(approaches: &Approaches, case: &Case) -> f64 {
     let (c_m, radius_m) = (case.hertz().c_m, case.roller.radius_m);
-    scene.approach(radius_m / c_m) * (c_m * c_m / (2.0 * case.equivalent_radius_m()))
+    approaches.at(radius_m / c_m) * (c_m * c_m / (2.0 * case.equivalent_radius_m()))
 }
 
 /// The solved scene of `case`, and the case with its force. A force that is given by its approach is
@@ -111,7 +111,7 @@ impl<'a> Search<'a> {
                 Err(e @ Error::Unsound { .. }) => (SolvedScene::roughly(&scene)?, Some(e)),
                 found => (found?, None),
             };
-            let off = approach_m(&scene, &case) / self.wanted_m - 1.0;
+            let off = approach_m(&scene.approaches(), &case) / self.wanted_m - 1.0;
             self.seconds += scene.seconds.total;
             let settled = self.tell(off, JUMP * tolerance);
             let met = if trial < PATIENCE { met } else { met.max(ROUNDED) };

@@ -4,11 +4,10 @@
 use super::approached::{approach_m, with_force};
 use super::cells::{largest, pressure_cells};
 use super::options::Options;
-use super::scene::Scene;
 use super::shaping::Shaping;
 use super::solved::place_of;
-use super::solved_scene::SolvedScene;
-use crate::base::{HertzScales, Result};
+use super::solved_scene::{Approaches, SolvedScene};
+use crate::base::{HertzScales, PerBody, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::Case;
 use crate::stress::{
@@ -43,48 +42,93 @@ pub struct KeyResults {
 /// A stress at a place, in units of C and p0.
 type Sample = (BodyKind, [f64; 3], RoundStress);
 
-/// Main results of `cases`, all of which have one [`Scene`] by `method`; `each` is called with them
-/// one after the other. The contact is solved once; a case whose approach is given stands alone. The largest stress is sought on all standard
-/// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
-/// which finds it within 2e-3 p0 (a test of this module checks that).
-///
-/// # Errors
-/// [`crate::base::Error::NotConverged`] when the contact does not settle.
-pub fn key_results(
-    cases: &[Case],
-    method: EdgeModel,
-    mut each: impl FnMut(usize, KeyResults),
-) -> Result<()> {
-    let Some(first) = cases.first() else { return Ok(()) };
-    let (first, solved) = with_force(first, &Options::new(method))?;
-    let (scene, others) = (&solved.scene, &cases[1..]);
-    debug_assert!(others.iter().all(|c| Scene::new(c, method, None).key() == scene.key()));
-    let samples = samples(&solved);
-    let cells = pressure_cells(&solved);
-    let top = largest(&cells);
-    let along = |s: f64| {
-        let y = scene.half_length - s;
-        (y >= 0.0).then(|| solved.pressure.at(0.0, scene.middle + y))
-    };
-    let at_end = END_DISTANCES.map(along);
-    let centre = solved.pressure.at(0.0, scene.span().centre());
-    for (i, case) in std::iter::once(&first).chain(others).enumerate() {
-        let hertz = case.hertz();
-        each(
-            i,
-            KeyResults {
-                hertz,
-                load_n: case.load.force_n,
-                approach_m: approach_m(&solved, case),
-                p_centre: centre,
-                p_max: top.p,
-                p_max_at: place_of(&solved, top),
-                p_at: at_end,
-                critical: critical(&samples, &Shaping::of(case)),
-            },
-        );
+/// Largest C / R for which samples are kept. Only closely conforming raceways under the largest loads exceed it.
+const LARGEST_CURVATURE: f64 = 1.0;
+
+/// What the main results of all cases of one [`Scene`] are read from: small, so that many of them can be kept.
+#[derive(Debug)]
+pub struct KeySolution {
+    approaches: Approaches,
+    p_centre: f64,
+    p_max: f64,
+    p_max_at: [f64; 2],
+    p_at: [Option<f64>; END_DISTANCES.len()],
+    /// Largest C / R of the cases whose critical stress is among the samples.
+    curvature: f64,
+    samples: Vec<Sample>,
+}
+
+impl KeySolution {
+    /// Solves the contact of `case` by `method`, and returns the case with its force, which is found first if the
+    /// approach is given in its place. The largest stress is sought on all standard
+    /// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
+    /// which finds it within 2e-3 p0 (a test of this module checks that).
+    ///
+    /// # Errors
+    /// [`crate::base::Error::NotConverged`] when the contact does not settle.
+    pub fn new(case: &Case, method: EdgeModel) -> Result<(Case, Self)> {
+        let (case, solved) = with_force(case, &Options::new(method))?;
+        let scene = &solved.scene;
+        let cells = pressure_cells(&solved);
+        let top = largest(&cells);
+        let along = |s: f64| {
+            let y = scene.half_length - s;
+            (y >= 0.0).then(|| solved.pressure.at(0.0, scene.middle + y))
+        };
+        let curvature = Shaping::of(&case).largest_curvature().max(LARGEST_CURVATURE);
+        let mut samples = samples(&solved);
+        if !scene.slides {
+            keep_candidates(&mut samples, curvature);
+        }
+        let own = Self {
+            approaches: solved.approaches(),
+            p_centre: solved.pressure.at(0.0, scene.span().centre()),
+            p_max: top.p,
+            p_max_at: place_of(&solved, top),
+            p_at: END_DISTANCES.map(along),
+            curvature,
+            samples,
+        };
+        Ok((case, own))
     }
-    Ok(())
+
+    /// Whether the main results of a case of the scene can be read from this.
+    pub fn serves(&self, case: &Case) -> bool {
+        Shaping::of(case).largest_curvature() <= self.curvature
+    }
+
+    /// The main results of a case of the scene that this [`KeySolution::serves`].
+    pub fn of(&self, case: &Case) -> KeyResults {
+        KeyResults {
+            hertz: case.hertz(),
+            load_n: case.load.force_n,
+            approach_m: approach_m(&self.approaches, case),
+            p_centre: self.p_centre,
+            p_max: self.p_max,
+            p_max_at: self.p_max_at,
+            p_at: self.p_at,
+            critical: critical(&self.samples, &Shaping::of(case)),
+        }
+    }
+
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        size_of::<Self>() + self.approaches.bytes() + size_of_val(self.samples.as_slice())
+    }
+}
+
+/// Removes samples that are critical for no C / R up to `largest`, where there is no friction.
+fn keep_candidates(samples: &mut Vec<Sample>, largest: f64) {
+    let at = |curvature: f64, (body, _, stress): &Sample| {
+        let curvatures = PerBody { block: curvature, roller: curvature };
+        Shaping { curvatures, friction: 0.0 }.stress(*body, stress).von_mises()
+    };
+    // Von Mises' stress is convex in the curvature.
+    let most = |s: &Sample| at(largest, s).max(at(-largest, s));
+    let least = |s: &Sample| 2.0 * at(0.0, s) - most(s);
+    let bound = samples.iter().map(least).fold(0.0, f64::max);
+    samples.retain(|s| most(s) >= bound);
+    samples.shrink_to_fit();
 }
 
 /// The largest von Mises stress of the samples.
@@ -239,9 +283,8 @@ mod tests {
             let whole = solve(&case, &Options::new(method)).unwrap();
             let p0 = whole.curves.hertz.p0_pa;
             let all = whole.summary.critical.unwrap();
-            let mut found = None;
-            key_results(&[case], method, |_, results| found = Some(results.critical)).unwrap();
-            let found = found.unwrap();
+            let (case, solution) = KeySolution::new(&case, method).unwrap();
+            let found = solution.of(&case).critical;
             let less = all.value_pa / p0 - found.value;
             assert!(less < 2e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
         }

@@ -40,7 +40,7 @@ pub use cells::PressureCell;
 pub use extent::{Extent, Outside};
 pub use grid::MOST_GRID_POINTS;
 pub use group::{solve, solve_group};
-pub use key_results::{END_DISTANCES, KeyResults, key_results};
+pub use key_results::{END_DISTANCES, KeyResults, KeySolution};
 pub use laminae::{Lamina, laminae};
 pub use lines::Stresses;
 pub use options::{Options, Point};

@@ -25,6 +25,11 @@ impl Shaping {
         Self { curvatures, friction }
     }
 
+    /// The larger C / R of the bodies, whatever its sign.
+    pub fn largest_curvature(&self) -> f64 {
+        self.curvatures.block.abs().max(self.curvatures.roller.abs())
+    }
+
     /// Whether the stress of a body is more than that of a flat one under the pressure alone.
     pub fn adds_to(&self, body: BodyKind) -> bool {
         self.curvatures[body] != 0.0 || self.friction != 0.0

@@ -105,7 +105,7 @@ impl SolvedCase {
 
     /// Approach of points one roller radius below the surfaces (m).
     pub(super) fn approach_m(&self) -> f64 {
-        approach_m(&self.scene, &self.case)
+        approach_m(&self.scene.approaches(), &self.case)
     }
 
     /// y of the line of action of the pressure's resultant (m).

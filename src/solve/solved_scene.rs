@@ -6,7 +6,9 @@ use super::tilt;
 use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
-use crate::contact::{self, Compliance, ContactSettings, ContactSolution, Problem, Shaped, Slices};
+use crate::contact::{
+    self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Shaped, Slices,
+};
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
 use std::time::Instant;
@@ -237,9 +239,14 @@ impl SolvedScene {
 
     /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
     pub fn approach(&self, depth: f64) -> f64 {
+        self.approaches().at(depth)
+    }
+
+    /// The approach of points at any depth.
+    pub(super) fn approaches(&self) -> Approaches {
         let own = &self.own.contact;
-        let below = contact::reference(&self.compliance(), |k| own.transform(k), depth / self.unit);
-        (own.approach - below) * self.unit * self.unit
+        let reference = Reference::new(&self.compliance(), |k| own.transform(k));
+        Approaches { approach: own.approach, reference, unit: self.unit }
     }
 
     /// Tilt in units of C / (2 R) of lines `depth` (C) below the surface.
@@ -252,6 +259,28 @@ impl SolvedScene {
         let own = &self.own;
         let ends = own.pressure.ends();
         tilt::of_fields(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
+    }
+}
+
+/// The approach of the bodies at any depth, without the rest of a [`SolvedScene`].
+#[derive(Debug)]
+pub(super) struct Approaches {
+    /// The contact's, which lacks the reference.
+    approach: f64,
+    reference: Reference,
+    /// The unit of length, in C, of both.
+    unit: f64,
+}
+
+impl Approaches {
+    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
+    pub fn at(&self, depth: f64) -> f64 {
+        (self.approach - self.reference.at(depth / self.unit)) * self.unit * self.unit
+    }
+
+    /// Memory that it takes (bytes).
+    pub fn bytes(&self) -> usize {
+        self.reference.bytes()
     }
 }
 

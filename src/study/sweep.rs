@@ -1,15 +1,24 @@
-//! A run over thousands of cases. Similar cases are solved once. A case that fails has a row like
-//! any other. The rows can be divided into shards, and a stopped run can be continued.
+//! A run over any number of cases, of which a block is in memory at a time. Similar cases are solved once. A case that
+//! fails has a row like any other. The rows can be divided into shards, and a stopped run can be continued.
 
 use super::groups::groups as scenes;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
-use crate::solve::{KeyResults, Scene, SceneKey, key_results};
+use crate::solve::{KeyResults, KeySolution, Scene, SceneKey};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
+use std::collections::hash_map::{DefaultHasher, Entry, HashMap};
+use std::hash::{Hash, Hasher};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// Rows in memory at a time.
+const BLOCK: usize = 8192;
+
+/// Memory of the solutions that later blocks may need again (bytes).
+const KEPT_BYTES: usize = 256 << 20;
 
 /// One part of a sweep that is divided into several.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,32 +46,42 @@ impl std::str::FromStr for Shard {
 
 /// Where the cases of a sweep come from.
 pub trait Cases: Sync {
-    /// Number of rows.
-    fn rows(&self) -> usize;
+    /// What the input says of a row.
+    type Cells: Send + Sync;
+
+    /// The rows in their order.
+    ///
+    /// # Errors
+    /// When the input cannot be read.
+    fn rows(&self) -> Result<impl Iterator<Item = Result<Self::Cells>>>;
 
     /// The case of row `i`.
     ///
     /// # Errors
     /// What is wrong with the row.
-    fn row(&self, i: usize) -> Result<Case>;
+    fn row(&self, i: usize, cells: &Self::Cells) -> Result<Case>;
 }
 
 impl Cases for Sweep {
-    fn rows(&self) -> usize {
-        self.len()
+    type Cells = Vec<String>;
+
+    fn rows(&self) -> Result<impl Iterator<Item = Result<Vec<String>>>> {
+        Sweep::rows(self)
     }
 
-    fn row(&self, i: usize) -> Result<Case> {
-        self.case(i)
+    fn row(&self, i: usize, cells: &Vec<String>) -> Result<Case> {
+        self.case(i, cells)
     }
 }
 
 impl Cases for Vec<Case> {
-    fn rows(&self) -> usize {
-        self.len()
+    type Cells = ();
+
+    fn rows(&self) -> Result<impl Iterator<Item = Result<()>>> {
+        Ok(self.iter().map(|_| Ok(())))
     }
 
-    fn row(&self, i: usize) -> Result<Case> {
+    fn row(&self, i: usize, _: &()) -> Result<Case> {
         Ok(self[i].clone())
     }
 }
@@ -79,51 +98,294 @@ pub struct Settings {
 /// The outcome of a row: its case and key results, or the error in words.
 pub type Outcome = std::result::Result<(Case, KeyResults), String>;
 
-/// Rows that share one contact problem.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Group {
-    /// Their indices, ascending.
-    pub rows: Vec<usize>,
+/// Where the rows of a sweep go to, in their order.
+pub trait Rows<Cells>: Send {
+    /// Whether the row is there from an earlier run.
+    ///
+    /// # Errors
+    /// When something else is there in its place.
+    fn has(&mut self, row: usize, cells: &Cells) -> Result<bool>;
+
+    /// Adds a row.
+    ///
+    /// # Errors
+    /// When it cannot be written, which ends the run.
+    fn add(&mut self, row: usize, cells: &Cells, outcome: &Outcome) -> Result<()>;
+}
+
+/// How much a run has done.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Done {
+    /// Rows of the part of the sweep.
+    pub rows: usize,
+    /// Contact problems solved.
+    pub problems: usize,
+}
+
+/// A row of a block.
+struct Row<Cells> {
+    index: usize,
+    cells: Cells,
+    case: std::result::Result<Case, String>,
+    /// The contact problem that it shares with others.
+    key: Option<SceneKey>,
+}
+
+/// Chooses the rows of a shard: every n-th problem with all of its rows, so that no two shards solve the same problem.
+struct Selection {
+    shard: Option<Shard>,
+    /// The places of the problems, in the order of their first rows, by the hash of their keys.
+    places: HashMap<u64, usize>,
+    problems: usize,
+}
+
+impl Selection {
+    fn new(shard: Option<Shard>) -> Self {
+        Self { shard, places: HashMap::new(), problems: 0 }
+    }
+
+    fn takes(&mut self, key: Option<&SceneKey>) -> bool {
+        let Some(shard) = self.shard else { return true };
+        let mut next = || {
+            self.problems += 1;
+            self.problems - 1
+        };
+        let place = match key {
+            None => next(),
+            Some(key) => {
+                let mut hasher = DefaultHasher::new();
+                key.hash(&mut hasher);
+                match self.places.entry(hasher.finish()) {
+                    Entry::Occupied(place) => *place.get(),
+                    Entry::Vacant(place) => *place.insert(next()),
+                }
+            }
+        };
+        place % shard.count == shard.index - 1
+    }
+}
+
+/// The rows of `cases` in blocks, those of the shard alone.
+///
+/// # Errors
+/// An iterator's item is the error of the input.
+fn blocks<C: Cases>(
+    cases: &C,
+    settings: &Settings,
+    shard: Option<Shard>,
+) -> Result<impl Iterator<Item = Result<Vec<Row<C::Cells>>>>> {
+    let mut rows = cases.rows()?.enumerate();
+    let mut selection = Selection::new(shard);
+    let row = |(index, cells): (usize, C::Cells)| {
+        let case = case_of(cases, index, &cells, settings);
+        let key = case.as_ref().ok().and_then(|case| key_of(case, settings));
+        Row { index, cells, case, key }
+    };
+    Ok(std::iter::from_fn(move || {
+        let read: Result<Vec<_>> =
+            rows.by_ref().take(BLOCK).map(|(i, cells)| Ok((i, cells?))).collect();
+        let mut block: Vec<Row<C::Cells>> = match read {
+            Ok(read) if read.is_empty() => return None,
+            Ok(read) => read.into_par_iter().map(row).collect(),
+            Err(e) => return Some(Err(e)),
+        };
+        block.retain(|row| selection.takes(row.key.as_ref()));
+        Some(Ok(block))
+    }))
 }
 
 /// The case of row `i` under `settings`.
-fn case_of(sweep: &dyn Cases, i: usize, settings: &Settings) -> std::result::Result<Case, String> {
-    let case = sweep.row(i).map_err(|e| e.to_string())?;
+fn case_of<C: Cases>(
+    cases: &C,
+    i: usize,
+    cells: &C::Cells,
+    settings: &Settings,
+) -> std::result::Result<Case, String> {
+    let case = cases.row(i, cells).map_err(|e| e.to_string())?;
     Ok(match settings.tolerance {
         Some(tolerance) => case.with_tolerance(tolerance),
         None => case,
     })
 }
 
-/// The sweep's rows by contact problem, in the order of their first rows.
-///
-/// A shard has every n-th problem with all of its rows, so that no two shards solve the same
-/// problem.
-pub fn groups(sweep: &dyn Cases, settings: &Settings, shard: Option<Shard>) -> Vec<Group> {
-    // A force that has to be found first is found for a row alone.
-    let known = |case: &Case| case.load.approach_m.is_none();
-    let key = |case: Case| known(&case).then(|| Scene::new(&case, settings.method, None).key());
-    let keys: Vec<Option<SceneKey>> = (0..sweep.rows())
-        .into_par_iter()
-        .map(|i| case_of(sweep, i, settings).ok().and_then(key))
-        .collect();
-    let groups = scenes(keys).into_iter().map(|rows| Group { rows }).collect::<Vec<_>>();
-    let Some(shard) = shard else { return groups };
-    groups.into_iter().skip(shard.index - 1).step_by(shard.count).collect()
+/// The contact problem of a case. A force that has to be found first is found for a row alone.
+fn key_of(case: &Case, settings: &Settings) -> Option<SceneKey> {
+    let known = case.load.approach_m.is_none();
+    known.then(|| Scene::new(case, settings.method, None).key())
 }
 
-/// Solves `groups` on `jobs` threads. Each thread passes the outcome of a row to `done` as soon as
-/// it is known. One thread solves one problem: with many problems no thread is idle.
+/// Number of rows of a shard.
 ///
 /// # Errors
-/// The first error of `done`, which also stops the run; or [`Error::Io`] when no thread can be
+/// That of the input.
+pub fn count<C: Cases>(cases: &C, settings: &Settings, shard: Option<Shard>) -> Result<usize> {
+    blocks(cases, settings, shard)?.map(|block| Ok(block?.len())).sum()
+}
+
+/// Solves the rows of a shard on `jobs` threads and hands them to `rows` in their order, each as soon as it and all before it
+/// are known. One thread solves one problem: with many problems no thread is idle. Memory does not grow with the number
+/// of rows: a block of them is read at a time, and solutions are kept for later blocks up to a limit.
+///
+/// # Errors
+/// The first error of the input or of `rows`, which also stops the run; or [`Error::Io`] when no thread can be
 /// started.
-pub fn run(
-    sweep: &dyn Cases,
+pub fn run<C: Cases>(
+    cases: &C,
     settings: &Settings,
-    groups: &[Group],
+    shard: Option<Shard>,
     jobs: usize,
-    done: &(dyn Fn(usize, Outcome) -> Result<()> + Sync),
+    rows: &mut dyn Rows<C::Cells>,
+) -> Result<Done> {
+    let mut done = Done::default();
+    let known = Known::default();
+    for block in blocks(cases, settings, shard)? {
+        let mut todo = block?;
+        done.rows += todo.len();
+        let mut kept = 0;
+        while let Some(row) = todo.get(kept)
+            && rows.has(row.index, &row.cells)?
+        {
+            kept += 1;
+        }
+        todo.drain(..kept);
+        solve_block(settings, jobs, &todo, &known, rows)?;
+    }
+    done.problems = known.solved.into_inner();
+    Ok(done)
+}
+
+/// A solution, or why there is none.
+type Shared = std::result::Result<Arc<KeySolution>, String>;
+
+/// The solutions so far, those of the first problems up to [`KEPT_BYTES`].
+#[derive(Default)]
+struct Known {
+    solutions: Mutex<HashMap<SceneKey, Shared>>,
+    bytes: AtomicUsize,
+    /// Number of contact problems solved.
+    solved: AtomicUsize,
+}
+
+impl Known {
+    fn solutions(&self) -> MutexGuard<'_, HashMap<SceneKey, Shared>> {
+        self.solutions.lock().unwrap_or_else(|e| e.into_inner())
+    }
+
+    fn keep(&self, key: &SceneKey, solution: &Shared) {
+        let bytes = size_of::<SceneKey>()
+            + match solution {
+                Ok(solution) => solution.bytes(),
+                Err(message) => message.len(),
+            };
+        if self.bytes.fetch_add(bytes, Ordering::Relaxed) + bytes <= KEPT_BYTES {
+            self.solutions().insert(key.clone(), solution.clone());
+        }
+    }
+
+    /// The solution that all rows of `key` share, among which `case` is.
+    fn shared(&self, key: &SceneKey, case: &Case, method: EdgeModel) -> Shared {
+        let found = self.solutions().get(key).cloned();
+        found.unwrap_or_else(|| {
+            let solution = self.solve(case, method).map(|(_, solution)| Arc::new(solution));
+            self.keep(key, &solution);
+            solution
+        })
+    }
+
+    /// The outcome of a row with a solution of its own.
+    fn alone(&self, case: &Case, method: EdgeModel) -> Outcome {
+        let (case, solution) = self.solve(case, method)?;
+        let results = solution.of(&case);
+        Ok((case, results))
+    }
+
+    /// The solution of a contact, and the case with its force. A panic in one case must not end the run: it becomes the
+    /// error of that case.
+    fn solve(
+        &self,
+        case: &Case,
+        method: EdgeModel,
+    ) -> std::result::Result<(Case, KeySolution), String> {
+        self.solved.fetch_add(1, Ordering::Relaxed);
+        let solved = catch_unwind(AssertUnwindSafe(|| KeySolution::new(case, method)));
+        match solved {
+            Ok(solved) => solved.map_err(|e| e.to_string()),
+            Err(_) => Err("the program failed at this case; please report it".to_string()),
+        }
+    }
+}
+
+/// Hands the outcomes of a block to its rows' place in their order.
+struct InOrder<'a, Cells> {
+    block: &'a [Row<Cells>],
+    rows: &'a mut dyn Rows<Cells>,
+    /// The next one to be handed on.
+    next: usize,
+    /// Those that wait for an earlier one.
+    waiting: BTreeMap<usize, Outcome>,
+}
+
+impl<Cells> InOrder<'_, Cells> {
+    /// Takes the outcome of the row at the place `at` of the block.
+    fn add(&mut self, at: usize, outcome: Outcome) -> Result<()> {
+        self.waiting.insert(at, outcome);
+        while let Some(outcome) = self.waiting.remove(&self.next) {
+            let row = &self.block[self.next];
+            self.rows.add(row.index, &row.cells, &outcome)?;
+            self.next += 1;
+        }
+        Ok(())
+    }
+}
+
+/// Solves the rows of a block.
+fn solve_block<Cells: Send + Sync>(
+    settings: &Settings,
+    jobs: usize,
+    block: &[Row<Cells>],
+    known: &Known,
+    rows: &mut dyn Rows<Cells>,
+) -> Result<()> {
+    let groups = scenes(block.iter().map(|row| row.key.clone()));
+    let found = Mutex::new(InOrder { block, rows, next: 0, waiting: BTreeMap::new() });
+    let add = |at: usize, outcome: Outcome| {
+        found.lock().unwrap_or_else(|e| e.into_inner()).add(at, outcome)
+    };
+    let solve = |group: &Vec<usize>| solve_rows(settings.method, block, group, known, &add);
+    side_by_side(&groups, jobs, &solve)
+}
+
+/// Solves the rows of one problem, which are at the places `group` of the block.
+fn solve_rows<Cells>(
+    method: EdgeModel,
+    block: &[Row<Cells>],
+    group: &[usize],
+    known: &Known,
+    add: &impl Fn(usize, Outcome) -> Result<()>,
+) -> Result<()> {
+    let mut shared: Option<Shared> = None;
+    for &at in group {
+        let row = &block[at];
+        let outcome = row.case.clone().and_then(|case| {
+            let Some(key) = &row.key else { return known.alone(&case, method) };
+            let solution =
+                shared.get_or_insert_with(|| known.shared(key, &case, method)).clone()?;
+            if !solution.serves(&case) {
+                return known.alone(&case, method);
+            }
+            let results = solution.of(&case);
+            Ok((case, results))
+        });
+        add(at, outcome)?;
+    }
+    Ok(())
+}
+
+/// Does `work` for all `groups` on `jobs` threads.
+fn side_by_side(
+    groups: &[Vec<usize>],
+    jobs: usize,
+    work: &(impl Fn(&Vec<usize>) -> Result<()> + Sync),
 ) -> Result<()> {
     let next = AtomicUsize::new(0);
     let stop = AtomicBool::new(false);
@@ -132,7 +394,7 @@ pub fn run(
         stop.store(true, Ordering::Relaxed);
         failed.lock().unwrap_or_else(|e| e.into_inner()).get_or_insert(e);
     };
-    let work = || {
+    let thread = || {
         // Parallel parts of a problem run on this thread alone.
         let pool = match rayon::ThreadPoolBuilder::new().num_threads(1).build() {
             Ok(pool) => pool,
@@ -146,58 +408,18 @@ pub fn run(
             while !stop.load(Ordering::Relaxed) {
                 let i = next.fetch_add(1, Ordering::Relaxed);
                 let Some(group) = groups.get(i) else { return };
-                if let Err(e) = solve_rows(sweep, settings, &group.rows, done) {
+                if let Err(e) = work(group) {
                     return fail(e);
                 }
             }
         });
     };
     std::thread::scope(|scope| {
-        for _ in 0..jobs.clamp(1, groups.len().max(1)) {
-            scope.spawn(work);
+        for _ in 0..jobs.min(groups.len()).max(1) {
+            scope.spawn(thread);
         }
     });
     failed.into_inner().unwrap_or_else(|e| e.into_inner()).map_or(Ok(()), Err)
-}
-
-/// Solves the rows of one problem.
-fn solve_rows(
-    sweep: &dyn Cases,
-    settings: &Settings,
-    rows: &[usize],
-    done: &(dyn Fn(usize, Outcome) -> Result<()> + Sync),
-) -> Result<()> {
-    let mut cases = Vec::with_capacity(rows.len());
-    let mut of = Vec::with_capacity(rows.len());
-    for &row in rows {
-        match case_of(sweep, row, settings) {
-            Ok(case) => {
-                cases.push(case);
-                of.push(row);
-            }
-            Err(message) => done(row, Err(message))?,
-        }
-    }
-    let mut handed = 0;
-    let mut fault = Ok(());
-    // A panic in one case must not end the run: it becomes the error of that case.
-    let solved = catch_unwind(AssertUnwindSafe(|| {
-        key_results(&cases, settings.method, |i, results| {
-            if fault.is_ok() {
-                handed = i + 1;
-                // A force that was found becomes the case's.
-                let case = cases[i].clone().with_force(results.load_n);
-                fault = done(of[i], Ok((case, results)));
-            }
-        })
-    }));
-    fault?;
-    let message = match solved {
-        Ok(Ok(())) => return Ok(()),
-        Ok(Err(e)) => e.to_string(),
-        Err(_) => "the program failed at this case; please report it".to_string(),
-    };
-    of[handed..].iter().try_for_each(|&row| done(row, Err(message.clone())))
 }
 
 #[cfg(test)]
@@ -215,56 +437,141 @@ mod tests {
 
     const SETTINGS: Settings = Settings { method: EdgeModel::QuarterSpace, tolerance: Some(1e-2) };
 
+    /// The rows in memory; the first `there` of them are from an earlier run.
+    #[derive(Default)]
+    struct Kept {
+        there: usize,
+        rows: Vec<(usize, Outcome)>,
+    }
+
+    impl<Cells> Rows<Cells> for Kept {
+        fn has(&mut self, row: usize, _: &Cells) -> Result<bool> {
+            Ok(row < self.there)
+        }
+
+        fn add(&mut self, row: usize, _: &Cells, outcome: &Outcome) -> Result<()> {
+            self.rows.push((row, outcome.clone()));
+            Ok(())
+        }
+    }
+
+    fn rows_of(sweep: &Sweep, shard: Option<Shard>) -> Vec<usize> {
+        let blocks = blocks(sweep, &SETTINGS, shard).unwrap();
+        blocks.flat_map(|block| block.unwrap()).map(|row| row.index).collect()
+    }
+
     #[test]
     fn similar_rows_are_one_problem_and_bad_ones_stand_alone() {
         let sweep = sweep("[dimensionless]\nW = [1e-4, 1e-3]\nS_l = [5, 6]\nL_r = [1.0, 2e3]\n");
-        let rows: Vec<Vec<usize>> =
-            groups(&sweep, &SETTINGS, None).into_iter().map(|g| g.rows).collect();
-        assert_eq!(rows, [vec![0, 4], vec![1], vec![2, 6], vec![3], vec![5], vec![7]]);
-        let shards: Vec<usize> = (1..=3)
-            .flat_map(|index| groups(&sweep, &SETTINGS, Some(Shard { index, count: 3 })))
-            .flat_map(|g| g.rows)
-            .collect();
-        let mut sorted = shards.clone();
-        sorted.sort_unstable();
-        assert_eq!(sorted, (0..8).collect::<Vec<_>>());
-        assert_eq!(shards[..3], [0, 4, 3]);
+        let block = blocks(&sweep, &SETTINGS, None).unwrap().next().unwrap().unwrap();
+        let groups = scenes(block.into_iter().map(|row| row.key));
+        assert_eq!(groups, [vec![0, 4], vec![1], vec![2, 6], vec![3], vec![5], vec![7]]);
+        let shards = [1, 2, 3].map(|index| rows_of(&sweep, Some(Shard { index, count: 3 })));
+        assert_eq!(shards, [vec![0, 3, 4], vec![1, 5], vec![2, 6, 7]]);
+        let second = Some(Shard { index: 2, count: 3 });
+        assert_eq!(count(&sweep, &SETTINGS, second).unwrap(), 2);
     }
 
     #[test]
     fn rows_of_one_problem_differ_by_their_scale() {
         let sweep = sweep("[dimensionless]\nW = [1e-4, 4e-4, 9.0]\nS_l = 5\nL_r = 1.0\n");
-        let found: Mutex<Vec<(usize, Outcome)>> = Mutex::new(Vec::new());
-        let groups = groups(&sweep, &SETTINGS, None);
-        run(&sweep, &SETTINGS, &groups, 2, &|row, outcome| {
-            found.lock().unwrap().push((row, outcome));
-            Ok(())
-        })
-        .unwrap();
-        let mut found = found.into_inner().unwrap();
-        found.sort_by_key(|f| f.0);
-        let of = |i: usize| &found[i].1.as_ref().unwrap().1;
+        let mut found = Kept::default();
+        let done = run(&sweep, &SETTINGS, None, 2, &mut found).unwrap();
+        assert_eq!(done, Done { rows: 3, problems: 1 });
+        let of = |i: usize| &found.rows[i].1.as_ref().unwrap().1;
         // p0 grows with the root of W, and so does everything that is proportional to it.
         let p_centre_pa = |i: usize| of(i).p_centre * of(i).hertz.p0_pa;
         let critical_y_m = |i: usize| of(i).critical.at[1] * of(i).hertz.c_m;
         assert!((p_centre_pa(1) / p_centre_pa(0) - 2.0).abs() < 1e-9);
         assert!((critical_y_m(1) / critical_y_m(0) - 2.0).abs() < 1e-9);
-        assert!(found[2].1.as_ref().unwrap_err().contains("dimensionless.W = 9e0"));
+        assert!(found.rows[2].1.as_ref().unwrap_err().contains("dimensionless.W = 9e0"));
+    }
+
+    #[test]
+    fn blocks_share_solutions_and_are_read_one_at_a_time() {
+        let sweep = sweep(&format!(
+            "[dimensionless]\nW = {{ from = 1e-4, to = 1e-3, count = {} }}\nS_l = 5\nL_r = [0.9, 1.0]\n",
+            BLOCK + 100
+        ));
+        assert!(sweep.len() > 2 * BLOCK);
+        let read = AtomicUsize::new(0);
+        let counted = Counted { sweep: &sweep, read: &read };
+        /// Counts the rows that are read.
+        struct Counted<'a> {
+            sweep: &'a Sweep,
+            read: &'a AtomicUsize,
+        }
+        impl Cases for Counted<'_> {
+            type Cells = Vec<String>;
+            fn rows(&self) -> Result<impl Iterator<Item = Result<Vec<String>>>> {
+                let count = |row| {
+                    self.read.fetch_add(1, Ordering::Relaxed);
+                    row
+                };
+                Ok(self.sweep.rows()?.map(count))
+            }
+            fn row(&self, i: usize, cells: &Vec<String>) -> Result<Case> {
+                self.sweep.case(i, cells)
+            }
+        }
+        /// Checks that rows come in their order, and never more than a block behind those that are read.
+        struct Watched<'a> {
+            next: usize,
+            read: &'a AtomicUsize,
+        }
+        impl Rows<Vec<String>> for Watched<'_> {
+            fn has(&mut self, row: usize, _: &Vec<String>) -> Result<bool> {
+                self.next += usize::from(row < 10);
+                Ok(row < 10)
+            }
+            fn add(&mut self, row: usize, _: &Vec<String>, outcome: &Outcome) -> Result<()> {
+                assert!(outcome.is_ok() && row == self.next);
+                assert!(self.read.load(Ordering::Relaxed) <= row + BLOCK);
+                self.next += 1;
+                Ok(())
+            }
+        }
+        let mut watched = Watched { next: 0, read: &read };
+        let done = run(&counted, &SETTINGS, None, 2, &mut watched).unwrap();
+        assert_eq!((done, watched.next), (Done { rows: sweep.len(), problems: 2 }, sweep.len()));
+    }
+
+    #[test]
+    fn solutions_are_kept_up_to_a_limit() {
+        let sweep = sweep("[dimensionless]\nW = [1e-4, 1e-3]\nS_l = 5\nL_r = 1.0\n");
+        let block = blocks(&sweep, &SETTINGS, None).unwrap().next().unwrap().unwrap();
+        let (case, key) = (block[0].case.as_ref().unwrap(), block[0].key.as_ref().unwrap());
+        let known = Known::default();
+        let solution = known.shared(key, case, SETTINGS.method);
+        let bytes = known.bytes.load(Ordering::Relaxed);
+        assert!((1_000..40_000).contains(&bytes), "{bytes} bytes");
+        assert!(Arc::ptr_eq(
+            &solution.unwrap(),
+            &known.shared(key, case, SETTINGS.method).unwrap()
+        ));
+        let full = Known { bytes: AtomicUsize::new(KEPT_BYTES), ..Known::default() };
+        full.shared(key, case, SETTINGS.method).unwrap();
+        assert!(full.solutions().is_empty());
     }
 
     #[test]
     fn an_output_that_fails_stops_the_run() {
+        struct Refusing(usize);
+        impl Rows<Vec<String>> for Refusing {
+            fn has(&mut self, _: usize, _: &Vec<String>) -> Result<bool> {
+                Ok(false)
+            }
+            fn add(&mut self, _: usize, _: &Vec<String>, _: &Outcome) -> Result<()> {
+                self.0 += 1;
+                let source = std::io::Error::other("full");
+                Err(Error::Io { action: "write", path: "there".into(), source })
+            }
+        }
         let sweep = sweep("[dimensionless]\nW = 1e-4\nS_l = 5\nL_r = [1.1, 1.2, 1.3]\n");
-        let calls = AtomicUsize::new(0);
-        let refuse = |_: usize, _: Outcome| {
-            calls.fetch_add(1, Ordering::Relaxed);
-            let source = std::io::Error::other("full");
-            Err(Error::Io { action: "write", path: "there".into(), source })
-        };
-        let groups = groups(&sweep, &SETTINGS, None);
-        let said = run(&sweep, &SETTINGS, &groups, 1, &refuse).unwrap_err().to_string();
+        let mut rows = Refusing(0);
+        let said = run(&sweep, &SETTINGS, None, 1, &mut rows).unwrap_err().to_string();
         assert!(said.contains("full"), "{said}");
-        assert_eq!(calls.load(Ordering::Relaxed), 1);
+        assert_eq!(rows.0, 1);
     }
 
     #[test]

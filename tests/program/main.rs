@@ -14,3 +14,4 @@ mod recorded;
 mod study;
 #[path = "../support/mod.rs"]
 mod support;
+mod sweep;

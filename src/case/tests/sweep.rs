@@ -12,6 +12,16 @@ fn parse(text: &str) -> Result<Sweep> {
     Sweep::parse(text, Path::new("s.toml"))
 }
 
+/// The texts of all rows.
+fn cells(sweep: &Sweep) -> Vec<Vec<String>> {
+    sweep.rows().unwrap().map(|row| row.unwrap()).collect()
+}
+
+/// The case of row `i`.
+fn case(sweep: &Sweep, i: usize) -> Result<Case> {
+    sweep.case(i, &cells(sweep)[i])
+}
+
 fn table(text: &str, base: Option<&str>) -> Result<Sweep> {
     let base = base.map(|name| crate::case::builtin_case(name).unwrap().unwrap());
     Sweep::parse_csv(text, Path::new("s.csv"), base.as_ref())
@@ -22,10 +32,10 @@ fn a_grid_is_every_combination_and_the_last_varies_fastest() {
     let sweep = parse(GRID).unwrap();
     assert_eq!(sweep.columns(), ["roller.poisson", "dimensionless.W", "dimensionless.L_r"]);
     assert_eq!(sweep.len(), 12);
-    let cells: Vec<String> = (0..12).map(|i| sweep.cells(i).join(" ")).collect();
+    let cells: Vec<String> = cells(&sweep).iter().map(|row| row.join(" ")).collect();
     assert_eq!(cells[..3], ["3e-1 1e-4 5e-1", "3e-1 1e-4 1e0", "3e-1 1e-3 5e-1"]);
     assert_eq!(cells[11], "2.5e-1 1e-2 1e0");
-    let case = sweep.case(9).unwrap();
+    let case = case(&sweep, 9).unwrap();
     assert_eq!((case.name.as_str(), case.roller.material.poisson), ("row-10", 0.25));
     let factors = case.factors();
     assert!((factors.load - 1e-3).abs() < 1e-15 && (factors.slenderness - 5.0).abs() < 1e-12);
@@ -37,8 +47,8 @@ fn lists_side_by_side_are_rows() {
     let text = GRID.replace("{ from = 1e-4, to = 1e-2, count = 3, spacing = \"log\" }", "1e-3")
         + "[sweep]\ncombine = \"list\"\n[accuracy]\ntolerance = 1e-2\n";
     let sweep = parse(&text).unwrap();
-    assert_eq!((sweep.len(), sweep.cells(1)), (2, vec!["2.5e-1".into(), "1e0".into()]));
-    assert_eq!(sweep.case(1).unwrap().accuracy.tolerance, 1e-2);
+    assert_eq!(cells(&sweep), [["3e-1", "5e-1"], ["2.5e-1", "1e0"]]);
+    assert_eq!(case(&sweep, 1).unwrap().accuracy.tolerance, 1e-2);
     let uneven = text.replace("[0.5, 1.0]", "[0.5, 0.7, 1.0]");
     let said = parse(&uneven).unwrap_err().to_string();
     assert!(said.contains("s.toml:11: dimensionless.L_r") && said.contains("side by side"));
@@ -49,14 +59,14 @@ fn the_example_is_what_it_promises() {
     let sweep = parse(include_str!("../../../examples/sweep.toml")).unwrap();
     assert_eq!(sweep.len(), 1050);
     assert_eq!(sweep.columns(), ["dimensionless.W", "dimensionless.S_l", "dimensionless.L_r"]);
-    assert!((0..sweep.len()).all(|i| sweep.case(i).is_ok()));
+    assert!(cells(&sweep).iter().enumerate().all(|(i, row)| sweep.case(i, row).is_ok()));
 }
 
 #[test]
 fn one_case_is_a_sweep_of_one_row() {
     let sweep = parse(include_str!("../../../cases/flush-short.toml")).unwrap();
     assert_eq!((sweep.len(), sweep.columns().len()), (1, 0));
-    assert!((sweep.case(0).unwrap().factors().load - 5e-4).abs() < 1e-15);
+    assert!((case(&sweep, 0).unwrap().factors().load - 5e-4).abs() < 1e-15);
 }
 
 #[test]
@@ -89,8 +99,8 @@ fn what_is_wrong_with_the_file_is_an_error() {
 #[test]
 fn what_is_wrong_with_a_row_belongs_to_the_row() {
     let sweep = parse(&GRID.replace("[0.5, 1.0]", "[0.5, 1500]")).unwrap();
-    assert!(sweep.case(0).is_ok());
-    let said = sweep.case(1).unwrap_err().to_string();
+    assert!(case(&sweep, 0).is_ok());
+    let said = case(&sweep, 1).unwrap_err().to_string();
     assert!(said.starts_with("dimensionless.L_r = 1.5e3 is not valid: L_r"), "{said}");
 }
 
@@ -99,21 +109,21 @@ fn a_table_takes_short_names_and_a_base() {
     let text = "name,W,S_l,L_r,poisson\na,1e-4,5,1,0.3\nb, 2e-4 ,6,0.5,0.25\nc,x,6,0.5,0.25\n";
     let sweep = table(text, Some("half-short")).unwrap();
     assert_eq!((sweep.len(), sweep.columns().len()), (3, 5));
-    let b = sweep.case(1).unwrap();
+    let b = case(&sweep, 1).unwrap();
     assert_eq!((b.name.as_str(), b.roller.radius_m), ("b", 10e-3));
     assert_eq!((b.block.material.poisson, b.roller.material.poisson), (0.25, 0.25));
-    assert!(sweep.case(2).unwrap_err().to_string().starts_with("W = x is not valid"));
+    assert!(case(&sweep, 2).unwrap_err().to_string().starts_with("W = x is not valid"));
     let said = table(text, None).unwrap_err().to_string();
     assert!(said.contains("s.csv:1: has no column for roller.radius_m"), "{said}");
 
     let loads = "force_n,roller_length_m,block.length_m\n1500,1e-3,2e-3\nnan,1e-3,2e-3\n";
     let sweep = table(loads, Some("half-short")).unwrap();
-    assert_eq!(sweep.case(0).unwrap().load.force_n, 1500.0);
-    assert!(sweep.case(1).unwrap_err().to_string().contains("a finite number belongs here"));
+    assert_eq!(case(&sweep, 0).unwrap().load.force_n, 1500.0);
+    assert!(case(&sweep, 1).unwrap_err().to_string().contains("a finite number belongs here"));
     // The loads alone take the base's lengths.
     let sweep = table("force_n\n100\n", Some("half-short")).unwrap();
     let base = crate::case::builtin_case("half-short").unwrap().unwrap();
-    assert!((sweep.case(0).unwrap().roller.length_m / base.roller.length_m - 1.0).abs() < 1e-14);
+    assert!((case(&sweep, 0).unwrap().roller.length_m / base.roller.length_m - 1.0).abs() < 1e-14);
 }
 
 #[test]
@@ -147,13 +157,34 @@ const TABLE: &str =
 
 /// Every row of a sweep is a legal case or says what is wrong and what to do.
 fn check_rows(sweep: &Sweep) {
-    for i in 0..sweep.len().min(50) {
-        assert_eq!(sweep.cells(i).len(), sweep.columns().len());
-        match sweep.case(i) {
+    assert_eq!(sweep.rows().unwrap().count(), sweep.len());
+    for (i, row) in sweep.rows().unwrap().take(50).enumerate() {
+        let row = row.unwrap();
+        assert_eq!(row.len(), sweep.columns().len());
+        match sweep.case(i, &row) {
             Ok(case) => case.check().unwrap(),
             Err(e) => assert!(matches!(e, crate::base::Error::Value { .. }), "{e}"),
         }
     }
+}
+
+#[test]
+fn a_table_is_read_again_from_its_file_and_must_not_change() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("t.csv");
+    let write =
+        |rows: usize| std::fs::write(&file, "force_n\n".to_string() + &"100\n".repeat(rows));
+    write(3).unwrap();
+    let base = crate::case::builtin_case("half-short").unwrap().unwrap();
+    let sweep = Sweep::read(&file, Some(&base)).unwrap();
+    assert_eq!((sweep.len(), cells(&sweep).len()), (3, 3));
+    for rows in [2, 4] {
+        write(rows).unwrap();
+        let said = sweep.rows().unwrap().find_map(Result::err).unwrap().to_string();
+        assert!(said.contains("t.csv: has changed since the sweep began; leave it"), "{said}");
+    }
+    std::fs::remove_file(&file).unwrap();
+    assert!(sweep.rows().is_err());
 }
 
 proptest! {
