@@ -70,6 +70,7 @@ fn the_version_is_the_same_everywhere() {
     for (file, wanted) in [
         ("python/Cargo.toml", format!("\nversion = \"{version}\"\n")),
         ("CITATION.cff", format!("\nversion: {version}\n")),
+        ("CHANGELOG.md", format!("\n## {version} - ")),
     ] {
         let text = fs::read_to_string(root().join(file)).unwrap();
         assert!(text.contains(&wanted), "{file} does not say {wanted:?}");
