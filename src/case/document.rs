@@ -94,11 +94,23 @@ impl<'d> Table<'d> {
             "" => "the top level".to_string(),
             name => format!("[{name}]"),
         };
-        Err(self.document.error(
-            Some(key.span()),
-            format!("unknown key {}", self.full_key(key.get_ref())),
-            format!("did you mean {nearest}? {place} takes {}", known.join(", ")),
-        ))
+        let takes = format!("did you mean {nearest}? {place} takes {}", known.join(", "));
+        Err(self.unknown(key.get_ref(), takes))
+    }
+
+    /// An error about a key that the table does not take, with what to do.
+    pub fn unknown(&self, key: &str, remedy: String) -> Error {
+        let own = self.entries.keys().find(|own| own.get_ref() == key);
+        let message = format!("unknown key {}", self.full_key(key));
+        self.document.error(own.map(|own| own.span()), message, remedy)
+    }
+
+    /// All keys and their values.
+    pub fn all(&self) -> Vec<(&'d str, Entry<'d>)> {
+        let entry =
+            |key: &str, value| Entry { document: self.document, key: self.full_key(key), value };
+        let entries: &'d DeTable<'d> = self.entries;
+        entries.iter().map(|(key, v)| (&**key.get_ref(), entry(key.get_ref(), v))).collect()
     }
 
     /// The value of `key`, if the file has it.

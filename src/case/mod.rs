@@ -7,6 +7,8 @@ mod check;
 mod design_file;
 mod document;
 mod draft;
+#[cfg(feature = "cli")]
+mod factor;
 mod keys;
 #[cfg(feature = "cli")]
 mod levels;
@@ -31,8 +33,10 @@ mod sweep_table;
 mod sweep_toml;
 #[cfg(all(test, feature = "cli"))]
 mod tests;
+#[cfg(feature = "cli")]
+pub mod two_level;
 
-pub use builtin::{BUILTIN_CASES, builtin_case};
+pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
@@ -42,7 +46,8 @@ pub use surface::Surface;
 #[cfg(feature = "cli")]
 pub use {
     design_file::{Design, DesignLoad, Parameter},
+    factor::FactorKey,
     schema::case_schema,
-    study_file::{DEFAULT_STUDY, Study},
+    study_file::{DEFAULT_STUDY, Study, Varied},
     sweep::Sweep,
 };

@@ -297,12 +297,21 @@ impl Case {
         self.roller.length_m.min(self.block.length_m)
     }
 
+    /// Length of a body (m).
+    pub(super) fn length_m(&self, body: BodyKind) -> f64 {
+        match body {
+            BodyKind::Block => self.block.length_m,
+            BodyKind::Roller => self.roller.length_m,
+        }
+    }
+
     /// y of both ends of a body, from the roller's middle (m).
     pub fn ends_m(&self, body: BodyKind) -> [f64; 2] {
-        let (middle, half) = match body {
-            BodyKind::Block => (self.pose.offset_m, 0.5 * self.block.length_m),
-            BodyKind::Roller => (0.0, 0.5 * self.roller.length_m),
+        let middle = match body {
+            BodyKind::Block => self.pose.offset_m,
+            BodyKind::Roller => 0.0,
         };
+        let half = 0.5 * self.length_m(body);
         [middle - half, middle + half]
     }
 

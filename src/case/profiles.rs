@@ -23,10 +23,7 @@ impl Case {
     /// part K2 a of each half, with A = 2 Q / (pi L E'), E' = 2 E*.
     pub fn profile(&self, body: BodyKind) -> Option<Profile> {
         let spec = self.profile_spec(body)?;
-        let length = match body {
-            BodyKind::Block => self.block.length_m,
-            BodyKind::Roller => self.roller.length_m,
-        };
+        let length = self.length_m(body);
         let half = 0.5 * length;
         let number = |value: Option<f64>| value.unwrap_or(f64::NAN);
         let e_star = self.contact_modulus();
@@ -107,10 +104,7 @@ impl Case {
                 _ => {}
             }
         }
-        let [from, to] = match body {
-            BodyKind::Block => [-0.5, 0.5].map(|s| s * self.block.length_m),
-            BodyKind::Roller => [-0.5, 0.5].map(|s| s * self.roller.length_m),
-        };
+        let [from, to] = [-0.5, 0.5].map(|s| s * self.length_m(body));
         let half = to;
         if let Some(straight) = spec.straight_m.filter(|s| *s >= 2.0 * half) {
             let reason = "the straight part is as long as the body, so nothing is left to relieve";

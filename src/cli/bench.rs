@@ -32,8 +32,8 @@ use std::path::{Path, PathBuf};
 /// default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Case or study files, built-in cases, cases of the built-in study, or `factorial` for all of
-    /// it; its four corners of the lower load by default
+    /// Case or study files, built-in cases, cases of the built-in studies, or `factorial` or `profiled`
+    /// for all of one; the four corners of `factorial` of the lower load by default
     #[arg(value_hint = ValueHint::FilePath, value_name = "CASE")]
     cases: Vec<PathBuf>,
     /// Folder for the results; created if it does not exist
@@ -91,16 +91,16 @@ fn level(text: &str) -> std::result::Result<f64, String> {
 
 /// The cases of the arguments, each once.
 fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
-    let built_in = Study::built_in();
+    let built_in: Vec<Study> = Study::all_built_in().collect();
     let mut all: Vec<Case> = Vec::new();
     for path in named {
-        let of_study = built_in.cases().find(|c| path.as_os_str() == c.name.as_str());
-        let found: Vec<Case> = if path.as_os_str() == built_in.name.as_str() && !path.exists() {
-            built_in.cases().cloned().collect()
-        } else if let Some(case) = of_study.filter(|_| !path.exists()) {
+        let is = |name: &str| path.as_os_str() == name && !path.exists();
+        let of_studies = || built_in.iter().flat_map(Study::cases);
+        let found: Vec<Case> = if let Some(study) = built_in.iter().find(|s| is(&s.name)) {
+            study.cases().cloned().collect()
+        } else if let Some(case) = of_studies().find(|c| is(&c.name)) {
             vec![case.clone()]
-        } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| text.contains("[factors]"))
-        {
+        } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| text.contains("[factors")) {
             Study::read(path)?.cases().cloned().collect()
         } else {
             let case = Case::find(path)?;
@@ -110,9 +110,10 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
         all.extend(found);
     }
     if named.is_empty() {
-        let low = built_in.load_levels.iter().copied().fold(f64::INFINITY, f64::min);
+        let corners = &built_in[0].corners;
+        let low = corners.iter().map(|c| c.factors().load).fold(f64::INFINITY, f64::min);
         let light = |c: &&Case| c.factors().load < 1.01 * low;
-        all.extend(built_in.corners.iter().filter(light).cloned());
+        all.extend(corners.iter().filter(light).cloned());
     }
     for i in 1..all.len() {
         if all[..i].iter().any(|c| c.name == all[i].name) {

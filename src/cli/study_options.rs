@@ -8,7 +8,7 @@ use super::published;
 use super::records::Records;
 use super::values::{chosen_models, source};
 use crate::base::Result;
-use crate::case::{Case, Study};
+use crate::case::{BUILTIN_STUDIES, Case, Study};
 use crate::fem::{Code, FemResults};
 use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
@@ -24,7 +24,7 @@ use std::path::PathBuf;
 /// The study, and how it is run.
 #[derive(Args)]
 pub(super) struct StudyOptions {
-    /// A study file; the built-in two-level factorial study by default
+    /// A study file, or a built-in study: `factorial`, the default, or `profiled`
     #[arg(value_hint = ValueHint::FilePath)]
     pub(super) study: Option<PathBuf>,
     /// Folder for the results; created if it does not exist
@@ -75,9 +75,15 @@ impl RangeOptions {
 const CASE_BYTES: f64 = 2e6;
 
 impl StudyOptions {
-    /// The study of a file, or the built-in one.
+    /// The study of a file, or a built-in one.
     pub(super) fn find_study(&self) -> Result<Study> {
-        self.study.as_deref().map_or_else(|| Ok(Study::built_in()), Study::read)
+        self.study.as_deref().map_or_else(|| Ok(Study::built_in()), Study::find)
+    }
+
+    /// Whether it is the default study, on which the built-in gates rest.
+    pub(super) fn is_default(&self) -> bool {
+        let default = BUILTIN_STUDIES[0].0;
+        self.study.as_ref().is_none_or(|path| path.as_os_str() == default && !path.exists())
     }
 
     /// The range of the errors.

@@ -113,7 +113,7 @@ const MEASURES: [(&str, Measure); 5] = [
 
 by_name!(Origin);
 
-columns!(ParetoRow, _range, {
+columns!(ParetoRow, _layout, {
     case,
     source,
     origin,

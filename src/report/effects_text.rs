@@ -75,7 +75,7 @@ fn words(run: &StudyRun, effects: &Effects) -> String {
     let mut ranked: Vec<_> = analysis.effects.iter().collect();
     ranked.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
     let describe = |e: &Effect| {
-        let name = term(&run.factors, &e.factors);
+        let name = sum_of_terms(run, e);
         match e.factors[..] {
             [i] => {
                 let f = &run.factors[i];
@@ -106,6 +106,16 @@ fn words(run: &StudyRun, effects: &Effects) -> String {
     }
     text.push('.');
     text
+}
+
+/// The name of an effect with its aliases of up to two factors, which may be as large.
+fn sum_of_terms(run: &StudyRun, effect: &Effect) -> String {
+    let mut name = term(&run.factors, &effect.factors);
+    for alias in effect.aliases.iter().filter(|alias| alias.len() <= 2) {
+        let sign = if alias.sign() < 0 { "-" } else { "+" };
+        name += &format!(" {sign} {}", term(&run.factors, &alias.factors()));
+    }
+    name
 }
 
 /// The effects, largest first, that exceed Lenth's limits.

@@ -4,12 +4,12 @@
 use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
 use super::study_summary::StudySummary;
 use super::summarise::{Context, study_summary};
-use super::table::{self, Row, from_csv, to_csv};
+use super::table::{self, Layout, Row, Short, from_csv, to_csv};
 use super::tables;
 use crate::base::{Error, Result};
 use crate::study::effects;
 use crate::study::verification::VerificationRow;
-use crate::study::{ErrorRow, Range, Source, StudyRun};
+use crate::study::{ErrorRow, Source, StudyRun};
 use serde::Serialize;
 use std::path::Path;
 
@@ -38,29 +38,31 @@ impl StudyFiles {
     /// The files of a run. Numbers have the digits that the files hold, as if they had been read.
     pub fn of(run: &StudyRun, context: &Context) -> Self {
         let (effects, not_analysed) = effects::analyse(run);
+        let summary = study_summary(run, context, &effects, &not_analysed);
+        let layout = summary.layout();
         Self {
-            summary: study_summary(run, context, &effects, &not_analysed),
-            study: as_written(&tables::study(run), &run.range),
-            curves: as_written(&tables::curves(run), &run.range),
-            pressure: as_written(&tables::pressure(run), &run.range),
-            fem_error: as_written(&tables::own_errors(run), &run.range),
-            errors: as_written(&tables::errors(run), &run.range),
-            effects: as_written(&tables::effects(run, &effects), &run.range),
-            verification: as_written(context.verification, &run.range),
+            study: as_written(&tables::study(run), layout),
+            curves: as_written(&tables::curves(run), layout),
+            pressure: as_written(&tables::pressure(run), layout),
+            fem_error: as_written(&tables::own_errors(run), layout),
+            errors: as_written(&tables::errors(run), layout),
+            effects: as_written(&tables::effects(run, &effects), layout),
+            verification: as_written(context.verification, layout),
+            summary,
         }
     }
 
     /// The run's own files by name: the tables, and `summary.json` last.
     pub fn contents(&self) -> Vec<(String, Vec<u8>)> {
-        let range = &self.summary.range;
+        let layout = self.summary.layout();
         [
-            ("study.csv", to_csv(&self.study, range)),
-            ("curves.csv", to_csv(&self.curves, range)),
-            ("pressure.csv", to_csv(&self.pressure, range)),
-            ("fem_error.csv", to_csv(&self.fem_error, range)),
-            ("errors.csv", to_csv(&self.errors, range)),
-            ("effects.csv", to_csv(&self.effects, range)),
-            ("verification.csv", to_csv(&self.verification, range)),
+            ("study.csv", to_csv(&self.study, layout)),
+            ("curves.csv", to_csv(&self.curves, layout)),
+            ("pressure.csv", to_csv(&self.pressure, layout)),
+            ("fem_error.csv", to_csv(&self.fem_error, layout)),
+            ("errors.csv", to_csv(&self.errors, layout)),
+            ("effects.csv", to_csv(&self.effects, layout)),
+            ("verification.csv", to_csv(&self.verification, layout)),
             ("summary.json", pretty(&self.summary)),
         ]
         .map(|(name, text)| (name.to_string(), text.into_bytes()))
@@ -81,15 +83,15 @@ impl StudyFiles {
             message: format!("is not the summary of a study: {e}"),
             remedy: "give the folder that `edgeline study --out` wrote".to_string(),
         })?;
-        let range = &summary.range;
+        let layout = summary.layout();
         Ok(Self {
-            study: read(folder, "study.csv", range)?,
-            curves: read(folder, "curves.csv", range)?,
-            pressure: read(folder, "pressure.csv", range)?,
-            fem_error: read(folder, "fem_error.csv", range)?,
-            errors: read(folder, "errors.csv", range)?,
-            effects: read(folder, "effects.csv", range)?,
-            verification: read(folder, "verification.csv", range)?,
+            study: read(folder, "study.csv", layout)?,
+            curves: read(folder, "curves.csv", layout)?,
+            pressure: read(folder, "pressure.csv", layout)?,
+            fem_error: read(folder, "fem_error.csv", layout)?,
+            errors: read(folder, "errors.csv", layout)?,
+            effects: read(folder, "effects.csv", layout)?,
+            verification: read(folder, "verification.csv", layout)?,
             summary,
         })
     }
@@ -105,6 +107,19 @@ impl StudyFiles {
         all
     }
 
+    /// The value of the factor called `name` in a row of `study.csv`.
+    pub fn factor(&self, row: &StudyRow, name: &str) -> Option<f64> {
+        match name {
+            "W" => Some(row.load),
+            "S_l" => Some(row.slenderness),
+            "L_r" => Some(row.length_ratio),
+            _ => {
+                let place = self.summary.further_factors.iter().position(|own| own == name)?;
+                row.factors.get(place).copied().flatten().map(|Short(value)| value)
+            }
+        }
+    }
+
     /// The row of `study.csv` of a case and source.
     pub fn row(&self, case: &str, source: &Source) -> Option<&StudyRow> {
         self.study.iter().find(|row| row.case == case && row.source == *source)
@@ -112,15 +127,15 @@ impl StudyFiles {
 }
 
 /// Reads a table of a run.
-fn read<R: Row>(folder: &Path, name: &str, range: &Range) -> Result<Vec<R>> {
+fn read<R: Row>(folder: &Path, name: &str, layout: Layout) -> Result<Vec<R>> {
     let path = folder.join(name);
-    from_csv(&table::read(&path)?, &path, range)
+    from_csv(&table::read(&path)?, &path, layout)
 }
 
 /// The rows with the digits that a file holds.
-fn as_written<R: Row>(rows: &[R], range: &Range) -> Vec<R> {
-    let text = to_csv(rows, range);
-    from_csv(&text, Path::new("a table"), range).expect("a table is read as it is written")
+fn as_written<R: Row>(rows: &[R], layout: Layout) -> Vec<R> {
+    let text = to_csv(rows, layout);
+    from_csv(&text, Path::new("a table"), layout).expect("a table is read as it is written")
 }
 
 /// JSON with indents and a newline at its end.

@@ -1,14 +1,14 @@
 //! The rows of a study's tables, with their columns.
 
 use super::study_summary::RoleName;
-use super::table::{by_name, columns};
+use super::table::{Short, by_name, columns};
 use crate::base::BodyKind;
 use crate::body::EdgeModel;
 use crate::stress::Quantity;
 use crate::study::factorial::Verdict;
 use crate::study::response::Response;
 use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
-use crate::study::{ErrorRow, FactorName, Range, Source};
+use crate::study::{ErrorRow, Range, Source};
 
 by_name!(
     BodyKind,
@@ -94,15 +94,17 @@ pub struct StudyRow {
     pub timed_on: Option<String>,
     /// Unknowns of both bodies.
     pub unknowns: Option<u64>,
+    /// The case's values of the factors that the study varies beside W, S_l and L_r.
+    pub factors: Vec<Option<Short>>,
 }
 
-columns!(StudyRow, range, {
+columns!(StudyRow, layout, {
     case,
     source,
     role,
-    load as Short => [FactorName::Load.name()],
-    slenderness as Short => [FactorName::Slenderness.name()],
-    length_ratio as Short => [FactorName::LengthRatio.name()],
+    load as Short => ["W"],
+    slenderness as Short => ["S_l"],
+    length_ratio as Short => ["L_r"],
     c_m,
     p0_pa,
     load_n,
@@ -118,7 +120,7 @@ columns!(StudyRow, range, {
     critical_von_mises_pa,
     critical_at_m => ["critical_x_m", "critical_y_m", "critical_z_m"],
     responses => Response::all().map(Response::name),
-    pressure_further => further(range),
+    pressure_further => further(layout.range),
     fem_error_pressure,
     fem_error_stress,
     seconds,
@@ -131,6 +133,7 @@ columns!(StudyRow, range, {
     stages => ["seconds_setup", "seconds_contact", "seconds_stress"],
     timed_on,
     unknowns,
+    factors => layout.further.iter().cloned(),
 });
 
 /// The columns of the pressure's errors for each range but the first, which is that of the
@@ -145,15 +148,6 @@ impl StudyRow {
     pub fn response(&self, response: Response) -> Option<f64> {
         let at = Response::all().position(|r| r == response)?;
         self.responses.get(at).copied().flatten()
-    }
-
-    /// The case's value of a factor.
-    pub fn factor(&self, factor: FactorName) -> f64 {
-        match factor {
-            FactorName::Load => self.load,
-            FactorName::Slenderness => self.slenderness,
-            FactorName::LengthRatio => self.length_ratio,
-        }
     }
 }
 
@@ -174,7 +168,7 @@ pub struct CurveRow {
     pub stress_pa: [f64; Quantity::ALL.len()],
 }
 
-columns!(CurveRow, _range, {
+columns!(CurveRow, _layout, {
     case,
     source,
     body,
@@ -210,7 +204,7 @@ pub struct PressureRow {
     pub p_pa: f64,
 }
 
-columns!(PressureRow, _range, {
+columns!(PressureRow, _layout, {
     case,
     source,
     line,
@@ -237,7 +231,7 @@ pub struct OwnErrorRow {
     pub source: Source,
 }
 
-columns!(OwnErrorRow, _range, {
+columns!(OwnErrorRow, _layout, {
     case,
     body,
     curve,
@@ -255,7 +249,7 @@ impl OwnErrorRow {
 }
 
 // `errors.csv`.
-columns!(ErrorRow, _range, {
+columns!(ErrorRow, _layout, {
     case,
     method,
     body,
@@ -304,9 +298,11 @@ pub struct EffectRow {
     pub centre: Option<f64>,
     /// Mean of the corners less the value at the centre.
     pub curvature: Option<f64>,
+    /// In a fractional design the effects that this one cannot be told from, by the factors' letters.
+    pub aliases: Vec<String>,
 }
 
-columns!(EffectRow, _range, {
+columns!(EffectRow, layout, {
     method,
     response,
     unit,
@@ -320,10 +316,11 @@ columns!(EffectRow, _range, {
     mean,
     centre,
     curvature,
+    aliases => layout.aliases.then_some("aliases"),
 });
 
 // `verification.csv`.
-columns!(VerificationRow, _range, {
+columns!(VerificationRow, _layout, {
     case,
     held_back,
     source,

@@ -1,5 +1,6 @@
 //! `summary.json` of a study: the facts about a run beside its tables.
 
+use super::table::Layout;
 use crate::base::HertzScales;
 use crate::body::EdgeModel;
 use crate::case::{Block, Roller};
@@ -45,6 +46,12 @@ pub struct StudySummary {
     pub range: Range,
     /// The factors with two levels.
     pub factors: Vec<Factor>,
+    /// The two-level design of these factors.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design: Option<DesignSummary>,
+    /// The factors that the study varies beside W, S_l and L_r, which have columns of their own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub further_factors: Vec<String>,
     /// Number of contact problems solved.
     pub contact_problems_solved: usize,
     /// The worst numbers of each model.
@@ -71,6 +78,26 @@ pub struct StudySummary {
     pub cases: Vec<CaseSummary>,
     /// The verdict, the most important sentence first.
     pub verdict: Vec<String>,
+}
+
+/// A two-level design.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct DesignSummary {
+    /// Its name, such as `2^(5-1), resolution V`.
+    pub name: String,
+    /// Number of its runs.
+    pub runs: usize,
+    /// Its resolution; none of a full design.
+    pub resolution: Option<usize>,
+    /// The factors' letters, in the order of the factors.
+    pub letters: Vec<char>,
+    /// The words of the defining relation, which are +1 in all runs; none of a full design.
+    pub defining_relation: Vec<String>,
+    /// The sums of effects that can be estimated, without aliases that are long; none for a full
+    /// design.
+    pub aliases: Vec<String>,
+    /// The mean that the centre point is for each factor, `geometric` or `arithmetic`.
+    pub centre: Vec<String>,
 }
 
 /// A program and its version.
@@ -177,6 +204,9 @@ pub struct CaseSummary {
     /// L_r.
     #[serde(rename = "L_r")]
     pub length_ratio: f64,
+    /// The further factors of the study, see [`StudySummary::further_factors`].
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub factors: Vec<Option<f64>>,
     /// The scales.
     pub hertz: HertzScales,
     /// Load (N).
@@ -239,6 +269,14 @@ pub enum CaseMethod {
         /// The resolution and other details of the solver.
         details: Box<Details>,
     },
+}
+
+impl StudySummary {
+    /// What the columns of the run's tables depend on.
+    pub fn layout(&self) -> Layout<'_> {
+        let aliases = self.design.as_ref().is_some_and(|design| design.resolution.is_some());
+        Layout { range: &self.range, further: &self.further_factors, aliases }
+    }
 }
 
 impl RoleName {

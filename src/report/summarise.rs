@@ -2,17 +2,21 @@
 
 use super::effects_text;
 use super::study_summary::{
-    CaseMethod, CaseReference, CaseSummary, FemError, FemOrigin, MethodSummary, Program,
-    PublishedSummary, RoleName, Span, StudySummary,
+    CaseMethod, CaseReference, CaseSummary, DesignSummary, FemError, FemOrigin, MethodSummary,
+    Program, PublishedSummary, RoleName, Span, StudySummary,
 };
 use super::verdict;
 use crate::body::EdgeModel;
+use crate::case::FactorKey;
+use crate::case::two_level::{TwoLevel, Word, positive, short, sum};
 use crate::study::bench::{Machine, Speedup};
 use crate::study::effects::{Effects, NotAnalysed};
 use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
 use crate::study::verification::VerificationRow;
-use crate::study::{CaseRun, Engine, MethodDetails, MethodRun, ReferenceRun, Source, StudyRun};
+use crate::study::{
+    CaseRun, Engine, Factor, MethodDetails, MethodRun, ReferenceRun, Role, Source, StudyRun,
+};
 
 /// The facts about a run beside its numbers.
 pub struct Context<'a> {
@@ -57,6 +61,8 @@ pub fn study_summary(
         methods: run.methods.clone(),
         range: run.range.clone(),
         factors: run.factors.clone(),
+        design: run.design.as_ref().map(|design| design_summary(run, design)),
+        further_factors: run.further.iter().map(|key| key.name().to_string()).collect(),
         contact_problems_solved: run.solves,
         published: published(run),
         published_speedups: context.published_speedups.to_vec(),
@@ -67,14 +73,37 @@ pub fn study_summary(
         effects_in_words: effects_text::told(run, effects),
         speedups: context.speedups.to_vec(),
         not_done: not_done(run, not_analysed),
-        cases: run.cases.iter().map(case_summary).collect(),
+        cases: run.cases.iter().map(|case| case_summary(case, &run.further)).collect(),
         verdict: Vec::new(),
     };
     summary.verdict = verdict::sentences(&summary);
     summary
 }
 
-fn case_summary(run: &CaseRun) -> CaseSummary {
+/// The design of a run.
+fn design_summary(run: &StudyRun, design: &TwoLevel) -> DesignSummary {
+    let mean = |factor: &Factor| {
+        let by_ratio = FactorKey::find(&factor.name).is_some_and(FactorKey::is_by_ratio);
+        if by_ratio { "geometric" } else { "arithmetic" }.to_string()
+    };
+    let has_centre = run.cases.iter().any(|case| case.role == Role::Centre);
+    let fractional = design.is_fractional();
+    let estimated = |set: &Vec<Word>| {
+        let set = positive(set);
+        sum(&[&set[..1], short(&set[1..])].concat())
+    };
+    DesignSummary {
+        name: design.to_string(),
+        runs: 1 << design.basic(),
+        resolution: design.resolution(),
+        letters: (0..design.factors()).map(TwoLevel::letter).collect(),
+        defining_relation: design.defining_relation().iter().map(Word::to_string).collect(),
+        aliases: design.aliases().iter().filter(|_| fractional).map(estimated).collect(),
+        centre: run.factors.iter().filter(|_| has_centre).map(mean).collect(),
+    }
+}
+
+fn case_summary(run: &CaseRun, further: &[FactorKey]) -> CaseSummary {
     let (case, factors) = (&run.case, run.case.factors());
     let method = |m: &MethodRun| {
         let Source::Model(method) = m.source else { return None };
@@ -95,6 +124,7 @@ fn case_summary(run: &CaseRun) -> CaseSummary {
         load: factors.load,
         slenderness: factors.slenderness,
         length_ratio: factors.length_ratio,
+        factors: further.iter().map(|key| key.of(case)).collect(),
         hertz: case.hertz(),
         load_n: case.load.force_n,
         tolerance: case.accuracy.tolerance,

@@ -30,10 +30,27 @@ pub trait Cells: Sized {
     fn read(cells: &[&str]) -> Option<Self>;
 }
 
+/// What the columns of a table depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct Layout<'a> {
+    /// The range of the errors.
+    pub range: &'a Range,
+    /// The names of the factors that a study varies beside W, S_l and L_r.
+    pub further: &'a [String],
+    /// Whether effects have aliases.
+    pub aliases: bool,
+}
+
+impl<'a> From<&'a Range> for Layout<'a> {
+    fn from(range: &'a Range) -> Self {
+        Self { range, further: &[], aliases: false }
+    }
+}
+
 /// A row of a table. The macro `columns!` implements it.
 pub trait Row: Sized {
-    /// The names of the columns that each field takes. Some depend on the range of the errors.
-    fn columns(range: &Range) -> Vec<Vec<String>>;
+    /// The names of the columns that each field takes.
+    fn columns(layout: Layout) -> Vec<Vec<String>>;
 
     /// The texts of each field.
     fn cells(&self) -> Vec<Vec<String>>;
@@ -46,12 +63,12 @@ pub trait Row: Sized {
 }
 
 /// Implements [`Row`] for a struct by the list of its fields in the order of the file. A field is
-/// the column of its name; `field => [names]` names its columns, which may depend on the range of
-/// the errors. [`Short`] writes the number of `field as Short`.
+/// the column of its name; `field => [names]` names its columns, which may depend on the
+/// [`Layout`]. [`Short`] writes the number of `field as Short`.
 macro_rules! columns {
-    ($row:ty, $range:ident, { $($field:ident $(as $form:ident)? $(=> $names:expr)?,)* }) => {
+    ($row:ty, $layout:ident, { $($field:ident $(as $form:ident)? $(=> $names:expr)?,)* }) => {
         impl $crate::report::table::Row for $row {
-            fn columns($range: &$crate::study::Range) -> Vec<Vec<String>> {
+            fn columns($layout: $crate::report::table::Layout) -> Vec<Vec<String>> {
                 vec![$(
                     $crate::report::table::columns!(@names $field $(, $names)?)
                         .into_iter()
@@ -211,8 +228,8 @@ pub(super) fn from_name<T: DeserializeOwned>(name: &str) -> Option<T> {
 }
 
 /// Rows as CSV, with a header.
-pub fn to_csv<R: Row>(rows: &[R], range: &Range) -> String {
-    let header = R::columns(range).concat();
+pub fn to_csv<'a, R: Row>(rows: &[R], layout: impl Into<Layout<'a>>) -> String {
+    let header = R::columns(layout.into()).concat();
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Writing to memory fails only for rows of another width than the header.
     writer.write_record(&header).expect("a vector takes all bytes");
@@ -227,14 +244,18 @@ pub fn to_csv<R: Row>(rows: &[R], range: &Range) -> String {
 ///
 /// # Errors
 /// [`Error::File`] with the line where the file has other columns, or a cell holds no such value.
-pub fn from_csv<R: Row>(text: &str, path: &Path, range: &Range) -> Result<Vec<R>> {
+pub fn from_csv<'a, R: Row>(
+    text: &str,
+    path: &Path,
+    layout: impl Into<Layout<'a>>,
+) -> Result<Vec<R>> {
     let refuse = |line: Option<u64>, message: String| Error::File {
         path: path.to_path_buf(),
         line: line.map(|l| l as usize),
         message,
         remedy: "run the study again".to_string(),
     };
-    let columns = R::columns(range);
+    let columns = R::columns(layout.into());
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let of_csv = |e: csv::Error| refuse(e.position().map(|p| p.line()), e.to_string());
     let header = reader.headers().map_err(of_csv)?;
@@ -311,12 +332,12 @@ mod tests {
         errors: Vec<Option<f64>>,
     }
 
-    columns!(Sample, range, {
+    columns!(Sample, layout, {
         name,
         source,
         at => ["x", "y"],
         level as Short,
-        errors => range.pressure_c.iter().map(|c| format!("error_{c}C")),
+        errors => layout.range.pressure_c.iter().map(|c| format!("error_{c}C")),
     });
 
     fn sample() -> Sample {

@@ -2,6 +2,8 @@
 
 use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
 use super::study_summary::RoleName;
+use super::table::Short;
+use crate::case::two_level::{TwoLevel, short, sum};
 use crate::stress::{Critical, Curves, Quantity};
 use crate::study::effects::{self, Effects};
 use crate::study::factorial::half_normal_quantile;
@@ -16,7 +18,11 @@ const HERE: &str = "this machine";
 pub fn study(run: &StudyRun) -> Vec<StudyRow> {
     let of_case = |case: &CaseRun| -> Vec<StudyRow> {
         let methods = case.methods.iter().map(|m| method_row(case, m, &run.range));
-        methods.chain(case.references.iter().map(|r| reference_row(case, r, &run.range))).collect()
+        let references = case.references.iter().map(|r| reference_row(case, r, &run.range));
+        let factors: Vec<Option<Short>> =
+            run.further.iter().map(|key| key.of(&case.case).map(Short)).collect();
+        let with_factors = |row: StudyRow| StudyRow { factors: factors.clone(), ..row };
+        methods.chain(references).map(with_factors).collect()
     };
     run.cases.iter().flat_map(of_case).collect()
 }
@@ -60,6 +66,7 @@ impl StudyRow {
             stages: [None; 3],
             timed_on: None,
             unknowns: None,
+            factors: Vec::new(),
         }
     }
 
@@ -229,6 +236,7 @@ pub fn errors(run: &StudyRun) -> Vec<ErrorRow> {
 
 /// The effects on every response of every model.
 pub fn effects(run: &StudyRun, all: &[Effects]) -> Vec<EffectRow> {
+    let fractional = run.design.as_ref().is_some_and(TwoLevel::is_fractional);
     let of_response = |e: &Effects| -> Vec<EffectRow> {
         let a = &e.analysis;
         let mut order: Vec<usize> = (0..a.effects.len()).collect();
@@ -248,6 +256,7 @@ pub fn effects(run: &StudyRun, all: &[Effects]) -> Vec<EffectRow> {
             mean: a.mean,
             centre: e.centre,
             curvature: a.curvature,
+            aliases: fractional.then(|| sum(short(&effect.aliases))).into_iter().collect(),
         };
         a.effects.iter().enumerate().map(row).collect()
     };

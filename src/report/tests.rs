@@ -1,10 +1,12 @@
 //! What a study's run leaves behind, made from synthetic solutions.
 
 use super::study_files::StudyFiles;
+use super::study_rows::EffectRow;
 use super::study_summary::{CaseMethod, FemOrigin};
 use super::summarise::Context;
 use super::*;
 use crate::body::EdgeModel;
+use crate::case::Study;
 use crate::solve::{Avoided, WorkSummary};
 use crate::study::bench::Machine;
 use crate::study::gate::{self, Baseline, Gates};
@@ -12,6 +14,7 @@ use crate::study::response::Response;
 use crate::study::synthetic::{self, Twist};
 use crate::study::verification::{self, Convergence, Finding, VerificationRow};
 use crate::study::{Source, StudyRun};
+use std::path::Path;
 
 /// The differences of a run's quarter-space, whose refined solution is off by 1e-4 p0.
 fn verification(run: &StudyRun) -> Vec<VerificationRow> {
@@ -34,9 +37,12 @@ fn verification(run: &StudyRun) -> Vec<VerificationRow> {
 
 /// Files of a run on made-up solutions.
 fn files(twist: Twist) -> StudyFiles {
-    let run = synthetic::run(twist);
+    files_of(&synthetic::run(twist))
+}
+
+fn files_of(run: &StudyRun) -> StudyFiles {
     let gates: Gates = Gates::built_in().unwrap();
-    let outcomes = gate::evaluate(&run, &gates, Some(&Baseline::of(&run)));
+    let outcomes = gate::evaluate(run, &gates, Some(&Baseline::of(run)));
     let context = Context {
         date: "2026-01-01T00:00:00Z",
         command: "edgeline study --out out",
@@ -46,9 +52,9 @@ fn files(twist: Twist) -> StudyFiles {
         gates: &outcomes,
         speedups: &[],
         published_speedups: &[],
-        verification: &verification(&run),
+        verification: &verification(run),
     };
-    StudyFiles::of(&run, &context)
+    StudyFiles::of(run, &context)
 }
 
 #[test]
@@ -62,6 +68,73 @@ fn a_run_is_read_back_as_it_was_written() {
     // Nine cases (eight corners and the centre), four methods and FEM.
     assert_eq!(read.study.len(), 45);
     assert!(StudyFiles::read(&folder.path().join("nowhere")).is_err());
+}
+
+#[test]
+fn a_fractional_study_names_its_design_and_what_it_cannot_tell_apart() {
+    let study = Study::find(Path::new("profiled")).unwrap();
+    let written = files_of(&synthetic::run_of(&study, Twist::None));
+    let folder = tempfile::tempdir().unwrap();
+    crate::host::write_set(folder.path(), &written.contents()).unwrap();
+    let read = StudyFiles::read(folder.path()).unwrap();
+    assert!(read == written, "every number has the digits of the files");
+    let design = read.summary.design.as_ref().unwrap();
+    assert_eq!((&*design.name, design.runs), ("2^(5-1), resolution V", 16));
+    assert_eq!(design.defining_relation, ["ABCDE"]);
+    assert_eq!(design.aliases[..3], ["A + BCDE", "B + ACDE", "AB + CDE"]);
+    let names: Vec<&str> = read.summary.factors.iter().map(|f| f.name.as_str()).collect();
+    assert_eq!(names, ["W", "S_l", "L_r", "roller.end_drop", "eccentricity"]);
+    let means = ["geometric", "geometric", "arithmetic", "geometric", "arithmetic"];
+    assert_eq!(design.centre, means);
+    let header = std::fs::read_to_string(folder.path().join("study.csv")).unwrap();
+    assert!(header.lines().next().unwrap().ends_with(",unknowns,roller.end_drop,eccentricity"));
+    let row = read.row("w1e-4_sl5_lr1_drop0.5_ecc0", &EdgeModel::Mirror.into()).unwrap();
+    assert_eq!(read.factor(row, "roller.end_drop"), Some(0.5));
+    assert_eq!(read.factor(row, "eccentricity"), Some(0.0));
+    // Fifteen estimates of each response, all named by one or two factors.
+    let own = |e: &&EffectRow| e.method == EdgeModel::Mirror && e.response == Response::STRESS_RMS;
+    let effects: Vec<&EffectRow> = read.effects.iter().filter(own).collect();
+    assert_eq!(effects.len(), 15);
+    let of = |term: &str| &effects.iter().find(|e| e.term == term).expect(term).aliases[0];
+    assert_eq!(of("eccentricity"), "ABCD");
+    assert_eq!(of("roller.end_drop x eccentricity"), "ABC");
+    for text in [page::html(&read).unwrap(), page::markdown(&read).unwrap()] {
+        for wanted in [
+            "D = roller.end_drop (0.5 and 3)",
+            "16 runs, 2^(5-1), resolution V",
+            "Defining relation: I = ABCDE",
+            "AB + CDE",
+            "E + ABCD",
+        ] {
+            assert!(text.contains(wanted), "{wanted}");
+        }
+    }
+    keep(&read, "profiled");
+}
+
+/// A full design has no further column.
+#[test]
+fn the_columns_of_a_study_of_three_factors_are_what_they_were() {
+    let full = files(Twist::None);
+    let of = |name: &str| {
+        let contents = full.contents();
+        let (_, bytes) = contents.iter().find(|(own, _)| own == name).unwrap();
+        let text = String::from_utf8(bytes.clone()).unwrap();
+        text.lines().next().unwrap().to_string()
+    };
+    assert!(of("study.csv").ends_with(",timed_on,unknowns"));
+    assert!(of("effects.csv").ends_with(",centre,curvature"));
+    assert_eq!(full.summary.design.as_ref().unwrap().name, "2^3, full");
+    assert!(full.summary.further_factors.is_empty());
+}
+
+/// Writes page and plots to look at, below the folder of this variable.
+fn keep(files: &StudyFiles, name: &str) {
+    if let Ok(folder) = std::env::var("EDGELINE_KEEP_PLOTS") {
+        let folder = Path::new(&folder).join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        page::write_run(files, &folder).unwrap();
+    }
 }
 
 #[test]
@@ -111,11 +184,7 @@ fn plots_are_well_formed_and_hold_every_source() {
     for word in ["half-space", "mirror", "guilbault", "quarter-space", "FEM", "y / C", "p / p0"] {
         assert!(pressure.contains(word), "{word}");
     }
-    if let Ok(folder) = std::env::var("EDGELINE_KEEP_PLOTS") {
-        std::fs::create_dir_all(&folder).unwrap();
-        let f = files(Twist::None);
-        page::write_run(&f, folder.as_ref()).unwrap();
-    }
+    keep(&files(Twist::None), "factorial");
 }
 
 #[test]

@@ -4,6 +4,7 @@ use super::factorial::{self, Analysis};
 use super::response::Response;
 use super::run::{Factor, Role, StudyRun};
 use crate::body::EdgeModel;
+use crate::case::two_level::TwoLevel;
 
 /// One response of one method, analysed.
 #[derive(Debug, Clone)]
@@ -33,14 +34,14 @@ pub enum NotAnalysed {
 
 /// Analyses every response of every method. The second list has the analyses that are not possible.
 pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
-    if run.factors.is_empty() {
+    let Some(design) = &run.design else {
         return (Vec::new(), vec![NotAnalysed::NoDesign]);
-    }
+    };
     let mut all = Vec::new();
     let mut absent: Vec<(Response, Vec<EdgeModel>)> = Vec::new();
     for &method in &run.methods {
         for response in Response::all() {
-            match effects_of(run, method, response) {
+            match effects_of(run, design, method, response) {
                 Some(effects) => all.push(effects),
                 None => match absent.iter_mut().find(|(of, _)| *of == response) {
                     Some((_, methods)) => methods.push(method),
@@ -57,7 +58,12 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
 }
 
 /// The effects on one response of one method, where it has a value at every corner.
-fn effects_of(run: &StudyRun, method: EdgeModel, response: Response) -> Option<Effects> {
+fn effects_of(
+    run: &StudyRun,
+    design: &TwoLevel,
+    method: EdgeModel,
+    response: Response,
+) -> Option<Effects> {
     let (mut corners, mut centre) = (Vec::new(), None);
     for case in &run.cases {
         let Some(m) = case.methods.iter().find(|m| m.source == method.into()) else { continue };
@@ -68,11 +74,11 @@ fn effects_of(run: &StudyRun, method: EdgeModel, response: Response) -> Option<E
         }
     }
     let (levels, values): (Vec<_>, Vec<_>) = corners.iter().cloned().unzip();
-    let analysis = factorial::analyse(&levels, &values, centre).ok()?;
+    let analysis = factorial::analyse(design, &levels, &values, centre).ok()?;
     Some(Effects { method, response, analysis, corners, centre })
 }
 
 /// Name of an effect, e.g. `W x S_l`.
 pub fn term(run_factors: &[Factor], factors: &[usize]) -> String {
-    factors.iter().map(|&i| run_factors[i].name.name()).collect::<Vec<_>>().join(" x ")
+    factors.iter().map(|&i| &*run_factors[i].name).collect::<Vec<_>>().join(" x ")
 }

@@ -9,6 +9,7 @@
 //! twice the coefficient of a regression on coded levels -1 and +1.
 
 use crate::base::{Error, Result};
+use crate::case::two_level::{TwoLevel, Word, positive};
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 
@@ -17,8 +18,11 @@ use statrs::distribution::{ContinuousCDF, Normal, StudentsT};
 pub struct Effect {
     /// The factors it belongs to, as indices into the design's factors, ascending.
     pub factors: Vec<usize>,
-    /// Its value, in the response's unit.
+    /// Its value, in the response's unit; the sum of it and its aliases.
     pub value: f64,
+    /// The effects that it cannot be told from, with the signs in which they stand in the sum; short
+    /// ones first. None in a full design.
+    pub aliases: Vec<Word>,
 }
 
 /// The analysis of one response.
@@ -26,7 +30,8 @@ pub struct Effect {
 pub struct Analysis {
     /// Mean of the response over the corners.
     pub mean: f64,
-    /// All 2^k - 1 effects in standard order (A, B, AB, C, AC, BC, ABC).
+    /// One effect for each product of basic factors in standard order (A, B, AB, C, AC, BC, ABC): in a
+    /// full design all 2^k - 1 effects, else the shortest of each set of aliases.
     pub effects: Vec<Effect>,
     /// Lenth's limits; `None` for fewer than three effects.
     pub lenth: Option<Lenth>,
@@ -93,33 +98,31 @@ pub fn median(mut values: Vec<f64>) -> f64 {
     if n % 2 == 1 { values[n / 2] } else { 0.5 * (values[n / 2 - 1] + values[n / 2]) }
 }
 
-/// Analyses one response of a full two-level design.
-///
-/// `coded[i]` are the levels (-1 or +1) of the factors in run i, in any order of the runs;
-/// `response[i]` is the response of run i. `centre` is the response at the centre point, if there
-/// is one.
+/// The responses in the standard order of the basic factors' levels.
 ///
 /// # Errors
-/// [`Error::Value`] when the runs are not every combination exactly once, or a response is not
-/// finite.
-pub fn analyse(coded: &[Vec<i8>], response: &[f64], centre: Option<f64>) -> Result<Analysis> {
+/// As [`analyse`].
+fn in_standard_order(design: &TwoLevel, coded: &[Vec<i8>], response: &[f64]) -> Result<Vec<f64>> {
     let refuse = |value: String, reason: &str| Error::Value {
         key: "factorial design".to_string(),
         value,
         reason: reason.to_string(),
-        remedy: "give every combination of the two levels of each factor once".to_string(),
+        remedy: "give every run of the design once".to_string(),
     };
-    let k = coded.first().map_or(0, Vec::len);
-    let n = 1usize << k;
-    if k == 0 || coded.len() != n || response.len() != n {
-        return Err(refuse(format!("{} runs of {k} factors", coded.len()), "it is not full"));
+    let n = 1usize << design.basic();
+    if coded.len() != n || response.len() != n {
+        return Err(refuse(format!("{} runs", coded.len()), "it is not complete"));
     }
     let mut ordered = vec![f64::NAN; n];
     for (levels, &y) in coded.iter().zip(response) {
-        if levels.len() != k || levels.iter().any(|l| l.abs() != 1) {
+        if levels.len() != design.factors() || levels.iter().any(|l| l.abs() != 1) {
             return Err(refuse(format!("{levels:?}"), "a level is neither -1 nor +1"));
         }
-        let slot: usize = levels.iter().enumerate().map(|(i, &l)| usize::from(l > 0) << i).sum();
+        let (basic, generated) = levels.split_at(design.basic());
+        if design.generated(basic) != generated {
+            return Err(refuse(format!("{levels:?}"), "the design has no such run"));
+        }
+        let slot: usize = basic.iter().enumerate().map(|(i, &l)| usize::from(l > 0) << i).sum();
         if !y.is_finite() {
             return Err(refuse(format!("{y}"), "the response of a run is not finite"));
         }
@@ -128,7 +131,26 @@ pub fn analyse(coded: &[Vec<i8>], response: &[f64], centre: Option<f64>) -> Resu
         }
         ordered[slot] = y;
     }
+    Ok(ordered)
+}
 
+/// Analyses one response of a two-level design.
+///
+/// `coded[i]` are the levels (-1 or +1) of the factors in run i, in any order of the runs;
+/// `response[i]` is the response of run i. `centre` is the response at the centre point, if there
+/// is one.
+///
+/// # Errors
+/// [`Error::Value`] when the runs are not those of the design exactly once, or a response is not
+/// finite.
+pub fn analyse(
+    design: &TwoLevel,
+    coded: &[Vec<i8>],
+    response: &[f64],
+    centre: Option<f64>,
+) -> Result<Analysis> {
+    let mut ordered = in_standard_order(design, coded, response)?;
+    let (k, n) = (design.basic(), ordered.len());
     // Yates' algorithm: k passes of pairwise sums and differences leave the contrasts in standard
     // order.
     for _ in 0..k {
@@ -138,12 +160,14 @@ pub fn analyse(coded: &[Vec<i8>], response: &[f64], centre: Option<f64>) -> Resu
         ordered = sums.iter().copied().chain(differences).collect();
     }
     let mean = ordered[0] / n as f64;
-    let effects: Vec<Effect> = (1..n)
-        .map(|slot| Effect {
-            factors: (0..k).filter(|i| slot >> i & 1 == 1).collect(),
-            value: ordered[slot] / (n / 2) as f64,
-        })
-        .collect();
+    // The contrast of a product of basic factors is the sum of its set of aliases.
+    let effect = |(set, contrast): (Vec<Word>, &f64)| Effect {
+        factors: set[0].factors(),
+        value: f64::from(set[0].sign()) * contrast / (n / 2) as f64,
+        aliases: positive(&set)[1..].to_vec(),
+    };
+    let effects: Vec<Effect> =
+        design.aliases().into_iter().zip(&ordered[1..]).map(effect).collect();
     let lenth = Lenth::new(&effects.iter().map(|e| e.value).collect::<Vec<_>>());
     Ok(Analysis { mean, effects, lenth, curvature: centre.map(|c| mean - c) })
 }
@@ -156,20 +180,18 @@ pub fn half_normal_quantile(i: usize, m: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::case::two_level::{short, sum};
     use approx::assert_relative_eq;
 
-    /// All runs of `k` factors in standard order.
-    fn design(k: usize) -> Vec<Vec<i8>> {
-        (0..1usize << k)
-            .map(|run| (0..k).map(|i| if run >> i & 1 == 1 { 1 } else { -1 }).collect())
-            .collect()
+    fn full(factors: usize) -> TwoLevel {
+        TwoLevel::full(factors).unwrap()
     }
 
     #[test]
     fn coefficients_of_a_known_response_come_back() {
         // Coefficients on coded levels, indexed like the standard order: 1, A, B, AB, C, ...
         let beta = [10.0, 3.0, -2.0, 0.5, 0.25, -0.125, 1.75, -4.0];
-        let mut runs = design(3);
+        let mut runs = full(3).runs();
         runs.reverse();
         runs.swap(1, 5);
         let response: Vec<f64> = runs
@@ -184,7 +206,7 @@ mod tests {
                     .sum()
             })
             .collect();
-        let analysis = analyse(&runs, &response, Some(9.5)).unwrap();
+        let analysis = analyse(&full(3), &runs, &response, Some(9.5)).unwrap();
         assert_relative_eq!(analysis.mean, beta[0], epsilon = 1e-12);
         assert_relative_eq!(analysis.curvature.unwrap(), 0.5, epsilon = 1e-12);
         for (effect, b) in analysis.effects.iter().zip(&beta[1..]) {
@@ -204,7 +226,7 @@ mod tests {
             45.0, 71.0, 48.0, 65.0, 68.0, 60.0, 80.0, 65.0, 43.0, 100.0, 45.0, 104.0, 75.0, 86.0,
             70.0, 96.0,
         ];
-        let analysis = analyse(&design(4), &rate, None).unwrap();
+        let analysis = analyse(&full(4), &full(4).runs(), &rate, None).unwrap();
         let effect = |factors: &[usize]| {
             analysis.effects.iter().find(|e| e.factors == factors).unwrap().value
         };
@@ -228,12 +250,47 @@ mod tests {
 
     #[test]
     fn incomplete_designs_are_refused() {
-        let mut runs = design(2);
-        assert!(analyse(&runs[..3], &[1.0, 2.0, 3.0], None).is_err());
-        assert!(analyse(&runs, &[1.0, 2.0, 3.0, f64::NAN], None).is_err());
+        let full = full(2);
+        let mut runs = full.runs();
+        assert!(analyse(&full, &runs[..3], &[1.0, 2.0, 3.0], None).is_err());
+        assert!(analyse(&full, &runs, &[1.0, 2.0, 3.0, f64::NAN], None).is_err());
+        let half = TwoLevel::fractional(3, &["C = AB"]).unwrap();
+        let others: Vec<Vec<i8>> = runs.iter().map(|run| vec![run[0], run[1], 1]).collect();
+        let message = analyse(&half, &others, &[1.0; 4], None).unwrap_err().to_string();
+        assert!(message.contains("the design has no such run"), "{message}");
         runs[3] = vec![-1, -1];
-        let message = analyse(&runs, &[1.0, 2.0, 3.0, 4.0], None).unwrap_err().to_string();
+        let message = analyse(&full, &runs, &[1.0, 2.0, 3.0, 4.0], None).unwrap_err().to_string();
         assert!(message.contains("twice"), "{message}");
+    }
+
+    /// Montgomery, example 8.1: the filtration rates of the half fraction of four factors.
+    #[test]
+    fn the_filtration_rates_of_a_half_fraction_give_the_published_estimates() {
+        let half = TwoLevel::fractional(4, &["D = ABC"]).unwrap();
+        let rates = [45.0, 100.0, 45.0, 65.0, 75.0, 60.0, 80.0, 96.0];
+        let effects = analyse(&half, &half.runs(), &rates, None).unwrap().effects;
+        let found: Vec<(Vec<usize>, String, f64)> =
+            effects.iter().map(|e| (e.factors.clone(), sum(short(&e.aliases)), e.value)).collect();
+        let wanted = [
+            (vec![0], "BCD", 19.0),
+            (vec![1], "ACD", 1.5),
+            (vec![0, 1], "CD", -1.0),
+            (vec![2], "ABD", 14.0),
+            (vec![0, 2], "BD", -18.5),
+            (vec![0, 3], "BC", 19.0),
+            (vec![3], "ABC", 16.5),
+        ];
+        assert_eq!(found, wanted.map(|(own, aliases, value)| (own, aliases.to_string(), value)));
+    }
+
+    #[test]
+    fn a_negative_word_turns_its_estimate() {
+        let half = TwoLevel::fractional(3, &["C = -AB"]).unwrap();
+        // The response is the level of C.
+        let response: Vec<f64> = half.runs().iter().map(|run| f64::from(run[2])).collect();
+        let effects = analyse(&half, &half.runs(), &response, None).unwrap().effects;
+        assert_eq!((&effects[2].factors[..], effects[2].value), (&[2][..], 2.0));
+        assert_eq!(sum(&effects[2].aliases), "-AB");
     }
 
     #[test]

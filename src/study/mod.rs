@@ -6,7 +6,6 @@
 pub mod bench;
 pub mod brought;
 mod case_form;
-pub mod design;
 pub mod effects;
 pub mod errors;
 pub mod factorial;
@@ -30,8 +29,8 @@ pub use errors::{CONTACT, ErrorRow, Range};
 pub use models::{Cold, Models, Solver};
 pub use published::{GRIDS, Published};
 pub use run::{
-    CaseRun, Factor, FactorName, FoundReference, MethodDetails, MethodResult, MethodRun,
-    Provenance, Reference, ReferenceRun, Role, StudyRun, StudySetup, Timed, run,
+    CaseRun, Factor, FoundReference, MethodDetails, MethodResult, MethodRun, Provenance, Reference,
+    ReferenceRun, Role, StudyRun, StudySetup, Timed, run,
 };
 pub use source::{Engine, Source};
 

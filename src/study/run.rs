@@ -7,7 +7,8 @@ use super::source::{Engine, Source};
 use super::timing::Timing;
 use crate::base::Result;
 use crate::body::EdgeModel;
-use crate::case::{Case, Study};
+use crate::case::two_level::TwoLevel;
+use crate::case::{Case, FactorKey, Study};
 use crate::solve::{CellDetails, Details, Solution};
 use crate::stress::{Critical, Curves};
 use serde::{Deserialize, Serialize};
@@ -159,49 +160,20 @@ impl CaseRun {
     }
 }
 
-/// A factor of the design that has two levels.
+/// A factor of the design, with its two levels.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
     /// Its name.
-    pub name: FactorName,
+    pub name: String,
     /// Its low level.
     pub low: f64,
     /// Its high level.
     pub high: f64,
 }
 
-/// A factor of the study.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum FactorName {
-    /// The load factor W.
-    #[serde(rename = "W")]
-    Load,
-    /// The slenderness S_l.
-    #[serde(rename = "S_l")]
-    Slenderness,
-    /// The length ratio L_r.
-    #[serde(rename = "L_r")]
-    LengthRatio,
-}
-
-impl FactorName {
-    /// The name used in files.
-    pub fn name(self) -> &'static str {
-        match self {
-            FactorName::Load => "W",
-            FactorName::Slenderness => "S_l",
-            FactorName::LengthRatio => "L_r",
-        }
-    }
-
-    /// Its value for a case.
-    fn of(self, case: &Case) -> f64 {
-        let factors = case.factors();
-        match self {
-            FactorName::Load => factors.load,
-            FactorName::Slenderness => factors.slenderness,
-            FactorName::LengthRatio => factors.length_ratio,
-        }
+impl Factor {
+    fn of((key, [low, high]): (FactorKey, [f64; 2])) -> Self {
+        Self { name: key.name().to_string(), low, high }
     }
 }
 
@@ -212,6 +184,10 @@ pub struct StudyRun {
     pub study: String,
     /// The factors with two levels; empty when a factor has more than two.
     pub factors: Vec<Factor>,
+    /// The two-level design of these factors, if there are any.
+    pub design: Option<TwoLevel>,
+    /// The factors that the study varies beside W, S_l and L_r.
+    pub further: Vec<FactorKey>,
     /// The models.
     pub methods: Vec<EdgeModel>,
     /// The range of the errors.
@@ -238,31 +214,14 @@ pub struct StudySetup<'a> {
     pub progress: &'a (dyn Fn(usize, usize, &str) + Sync),
 }
 
-/// The factors with two levels. A factor with one level does not count; if any has three levels or
-/// more, there is no two-level design.
-fn design(study: &Study) -> Vec<Factor> {
-    let levels = [
-        (FactorName::Load, &study.load_levels),
-        (FactorName::Slenderness, &study.slenderness_levels),
-        (FactorName::LengthRatio, &study.length_ratio_levels),
-    ];
-    if levels.iter().any(|(_, l)| l.len() > 2) {
-        return Vec::new();
-    }
-    levels
-        .into_iter()
-        .filter(|(_, l)| l.len() == 2)
-        .map(|(name, l)| Factor { name, low: l[0].min(l[1]), high: l[0].max(l[1]) })
-        .collect()
-}
-
-fn role(case: &Case, study: &Study, factors: &[Factor]) -> Role {
+/// The role of a case in its study.
+fn role(case: &Case, study: &Study) -> Role {
     if study.corners.iter().any(|c| c.name == case.name) {
-        let code = |f: &Factor| {
-            let middle = (f.low * f.high).sqrt();
-            if f.name.of(case) > middle { 1 } else { -1 }
+        let code = |(key, [low, high]): (FactorKey, [f64; 2])| {
+            let value = key.of(case).unwrap_or(f64::NAN);
+            if value > 0.5 * (low + high) { 1 } else { -1 }
         };
-        Role::Corner(factors.iter().map(code).collect())
+        Role::Corner(study.pairs().into_iter().map(code).collect())
     } else if study.centre.as_ref().is_some_and(|c| c.name == case.name) {
         Role::Centre
     } else {
@@ -273,7 +232,6 @@ fn role(case: &Case, study: &Study, factors: &[Factor]) -> Role {
 /// Runs the study. A case or method that fails is kept with its error; the others still run.
 pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
     let cases: Vec<Case> = study.cases().cloned().collect();
-    let factors = design(study);
     let jobs = Jobs::new(&cases, &setup.models);
     let published = setup.models.published;
     let steps = cases.len() + jobs.steps() + published.map_or(0, |_| cases.len());
@@ -313,12 +271,14 @@ pub fn run(study: &Study, setup: &StudySetup) -> StudyRun {
             };
             let models = attempts.into_iter().map(model);
             let methods = models.chain(published.map(on_cells)).collect();
-            CaseRun { case: case.clone(), role: role(case, study, &factors), methods, references }
+            CaseRun { case: case.clone(), role: role(case, study), methods, references }
         });
     StudyRun {
         study: study.name.clone(),
         cases: runs.collect(),
-        factors,
+        factors: study.pairs().into_iter().map(Factor::of).collect(),
+        design: study.design.clone(),
+        further: study.further(),
         methods: setup.models.methods.clone(),
         range: setup.range.clone(),
         solves: jobs.solves(),

@@ -294,6 +294,11 @@ fn provenance(case: &Case) -> Provenance {
 
 /// The built-in study on made-up solutions.
 pub fn run(twist: Twist) -> StudyRun {
+    run_of(&Study::built_in(), twist)
+}
+
+/// A study on made-up solutions.
+pub fn run_of(study: &Study, twist: Twist) -> StudyRun {
     let solver = |cases: &[Case], method: EdgeModel| {
         cases.iter().map(|case| solve(case, method, &twist)).collect()
     };
@@ -305,7 +310,7 @@ pub fn run(twist: Twist) -> StudyRun {
         all
     };
     run_study(
-        &Study::built_in(),
+        study,
         &StudySetup {
             models: Models {
                 methods: EdgeModel::ALL.to_vec(),

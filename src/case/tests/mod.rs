@@ -1,4 +1,5 @@
 mod keys;
+mod study;
 mod sweep;
 
 use super::*;

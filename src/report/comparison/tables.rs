@@ -1,10 +1,10 @@
 //! The tables of a comparison: those of a study, with the file's name in front.
 
 use crate::report::study_rows::{CurveRow, PressureRow};
-use crate::report::table::{Row, to_csv};
+use crate::report::table::{Layout, Row, to_csv};
 use crate::stress::{Curves, Quantity};
 use crate::study::brought::{Comparison, FileRun};
-use crate::study::{Engine, Range, Source};
+use crate::study::{Engine, Source};
 
 /// A row about a file's curves.
 struct Of<R> {
@@ -13,9 +13,9 @@ struct Of<R> {
 }
 
 impl<R: Row> Row for Of<R> {
-    fn columns(range: &Range) -> Vec<Vec<String>> {
+    fn columns(layout: Layout) -> Vec<Vec<String>> {
         let own = std::iter::once(vec!["reference".to_string()]);
-        own.chain(R::columns(range)).collect()
+        own.chain(R::columns(layout)).collect()
     }
 
     fn cells(&self) -> Vec<Vec<String>> {

@@ -7,12 +7,13 @@ use crate::report::effects_text::{TOLD, label};
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::{EffectRow, StudyRow};
 use crate::report::study_summary::RoleName;
+use crate::study::Source;
 use crate::study::factorial::Verdict;
 use crate::study::response::Response;
-use crate::study::{FactorName, Source};
 
 /// The effects on one response of one model.
 struct EffectRows<'a> {
+    files: &'a StudyFiles,
     response: Response,
     look: Look,
     rows: Vec<&'a EffectRow>,
@@ -22,7 +23,7 @@ impl<'a> EffectRows<'a> {
     fn of(files: &'a StudyFiles, method: EdgeModel, response: Response) -> Option<Self> {
         let own = |row: &&EffectRow| row.method == method && row.response == response;
         let rows: Vec<&EffectRow> = files.effects.iter().filter(own).collect();
-        (!rows.is_empty()).then(|| Self { response, look: look(&method.into()), rows })
+        (!rows.is_empty()).then(|| Self { files, response, look: look(&method.into()), rows })
     }
 
     /// Lenth's limits, which are the same in all rows.
@@ -31,6 +32,17 @@ impl<'a> EffectRows<'a> {
         let (me, sme) = (first.and_then(|r| r.me), first.and_then(|r| r.sme));
         let all = [me.map(|v| (v, "ME".to_string())), sme.map(|v| (v, "SME".to_string()))];
         all.into_iter().flatten()
+    }
+
+    /// The name of an effect on a plot.
+    fn title(&self, row: &EffectRow) -> String {
+        match row.term.split(" x ").collect::<Vec<_>>()[..] {
+            [main] => factor(self.files, main).0,
+            ref several => {
+                let short = several.iter().map(|name| factor(self.files, name).1);
+                short.collect::<Vec<_>>().join(" × ")
+            }
+        }
     }
 
     fn half_normal(&self) -> Panel {
@@ -43,7 +55,7 @@ impl<'a> EffectRows<'a> {
         let second = largest.get(1).copied().unwrap_or(0.0);
         let notes = self.rows.iter().zip(&points).filter_map(|(row, &at)| {
             let named = at.1 >= second || row.verdict != Some(Verdict::Noise);
-            named.then(|| Note { at, text: title(row) })
+            named.then(|| Note { at, text: self.title(row) })
         });
         Panel {
             title: label(self.response),
@@ -63,7 +75,7 @@ impl<'a> EffectRows<'a> {
 
     fn pareto(&self) -> Panel {
         let bar = |row: &&EffectRow| Bar {
-            name: title(row),
+            name: self.title(row),
             value: row.effect.abs(),
             colour: self.look.colour,
             strong: row.verdict == Some(Verdict::Active),
@@ -80,24 +92,44 @@ impl<'a> EffectRows<'a> {
     }
 }
 
-/// The name of an effect on a plot.
-fn title(row: &EffectRow) -> String {
-    row.term.replace(" x ", " × ")
+/// A factor on a plot: its name, and its letter where names may be long.
+fn factor(files: &StudyFiles, name: &str) -> (String, String) {
+    let summary = &files.summary;
+    let place = summary.factors.iter().position(|f| f.name == name);
+    let letter = place.and_then(|i| summary.design.as_ref()?.letters.get(i).copied());
+    match letter.filter(|_| !summary.further_factors.is_empty()) {
+        Some(letter) => (format!("{letter} = {name}"), letter.to_string()),
+        None => (name.to_string(), name.to_string()),
+    }
 }
 
+/// Most interactions of a response that are drawn.
+const MOST_INTERACTIONS: usize = 6;
+
 /// Interaction plots of a response: its mean over the corners at each pair of levels of two
-/// factors, all in the same limits.
-fn interactions(files: &StudyFiles, method: EdgeModel, response: Response) -> Vec<Panel> {
+/// factors, all in the same limits. Of many pairs those with the largest effects are drawn.
+fn interactions(of: &EffectRows) -> Vec<Panel> {
+    let files = of.files;
+    let Some(method) = of.rows.first().map(|row| row.method) else { return Vec::new() };
     let source = Source::from(method);
     let is_corner = |row: &&StudyRow| row.source == source && row.role == RoleName::Corner;
     let corners: Vec<&StudyRow> = files.study.iter().filter(is_corner).collect();
-    let names: Vec<FactorName> = files.summary.factors.iter().map(|f| f.name).collect();
-    let pairs =
-        names.iter().enumerate().flat_map(|(i, a)| names[i + 1..].iter().map(move |b| [*a, *b]));
+    let names = || files.summary.factors.iter().map(|f| f.name.as_str()).enumerate();
+    let size = |[a, b]: [&str; 2]| {
+        let name = format!("{a} x {b}");
+        of.rows.iter().find(|row| row.term == name).map_or(0.0, |row| row.effect.abs())
+    };
+    let mut pairs: Vec<[&str; 2]> =
+        names().flat_map(|(i, a)| names().skip(i + 1).map(move |(_, b)| [a, b])).collect();
+    if pairs.len() > MOST_INTERACTIONS {
+        pairs.sort_by(|a, b| size(*b).total_cmp(&size(*a)));
+        pairs.truncate(MOST_INTERACTIONS);
+    }
     let mut panels: Vec<Panel> = pairs
+        .into_iter()
         .map(|pair| Panel {
-            y_label: format!("mean of the corners ({})", response.unit()),
-            ..interaction(&corners, look(&source), response, pair)
+            y_label: format!("mean of the corners ({})", of.response.unit()),
+            ..interaction(&corners, of, pair)
         })
         .collect();
     let means = panels.iter().flat_map(|p| &p.series).flat_map(|s| &s.points).map(|p| p.1);
@@ -109,23 +141,23 @@ fn interactions(files: &StudyFiles, method: EdgeModel, response: Response) -> Ve
 }
 
 /// Means of a response over the first factor's levels, a line for each level of the second.
-fn interaction(
-    corners: &[&StudyRow],
-    Look { colour, .. }: Look,
-    response: Response,
-    [a, b]: [FactorName; 2],
-) -> Panel {
-    let levels = |factor: FactorName| {
-        let mut all: Vec<f64> = corners.iter().map(|row| row.factor(factor)).collect();
+fn interaction(corners: &[&StudyRow], of: &EffectRows, [a, b]: [&str; 2]) -> Panel {
+    let files = of.files;
+    let [first, second] = [a, b].map(|name| factor(files, name));
+    let levels = |factor: &str| {
+        let mut all: Vec<f64> =
+            corners.iter().filter_map(|row| files.factor(row, factor)).collect();
         all.sort_by(f64::total_cmp);
         all.dedup();
         all
     };
     let mean = |x: f64, line: f64| -> Option<f64> {
-        let here = corners.iter().filter(|row| row.factor(a) == x && row.factor(b) == line);
-        let all: Vec<f64> = here.filter_map(|row| row.response(response)).collect();
+        let at = |row: &StudyRow, factor, level| files.factor(row, factor) == Some(level);
+        let here = corners.iter().filter(|row| at(row, a, x) && at(row, b, line));
+        let all: Vec<f64> = here.filter_map(|row| row.response(of.response)).collect();
         (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
     };
+    let colour = of.look.colour;
     let looks = [
         Look { colour, dash: Some((6.0, 4.0)), marker: Marker::Square },
         Look { colour, dash: None, marker: Marker::Circle },
@@ -135,13 +167,16 @@ fn interaction(
         let at = levels(a).into_iter().enumerate();
         let means: Vec<(f64, f64)> =
             at.filter_map(|(i, x)| Some((i as f64, mean(x, line)?))).collect();
-        let text = format!("{} = {}", b.name(), level(line));
+        let text = format!("{} = {}", second.1, level(line));
         notes.extend(means.last().map(|at| Note { at: *at, text }));
         series.push(Series::curve("", look, means));
     }
     Panel {
-        title: format!("{}: {} × {}", label(response), a.name(), b.name()),
-        x_label: a.name().to_string(),
+        title: format!("{}: {} × {}", label(of.response), first.1, second.1),
+        x_label: match second.1 == b {
+            true => first.0,
+            false => format!("{}; lines: {}", first.0, second.0),
+        },
         series,
         notes,
         x_names: levels(a).into_iter().map(level).collect(),
@@ -175,7 +210,7 @@ fn of_method(files: &StudyFiles, method: EdgeModel) -> Vec<(String, Figure)> {
     let columns = if of.len() == 4 { 2 } else { 3 };
     let half_normal = of.iter().map(EffectRows::half_normal).collect();
     let pareto = of.iter().map(EffectRows::pareto).collect();
-    let interactions = of.iter().flat_map(|e| interactions(files, method, e.response)).collect();
+    let interactions = of.iter().flat_map(interactions).collect();
     vec![
         (
             format!("half-normal-{method}"),

@@ -11,7 +11,6 @@
 //! Source: D. C. Montgomery, "Design and Analysis of Experiments", 8th edition, 2013, chapter 8.
 //! Its examples are the tests.
 
-use super::factorial::Effect;
 use crate::base::{Error, Result};
 use std::fmt;
 
@@ -68,6 +67,12 @@ impl Word {
         if self.negative { -1 } else { 1 }
     }
 
+    /// The word with the other sign.
+    #[must_use]
+    pub fn negated(self) -> Self {
+        Self { negative: !self.negative, ..self }
+    }
+
     /// The product of two words; a factor that is in both drops out.
     #[must_use]
     pub fn times(self, other: Self) -> Self {
@@ -94,7 +99,7 @@ impl fmt::Display for Word {
 
 /// A two-level design 2^(k-p).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Design {
+pub struct TwoLevel {
     /// Number of basic factors, k - p.
     basic: usize,
     /// The words that make the other factors, in the order of these.
@@ -103,7 +108,7 @@ pub struct Design {
     relation: Vec<Word>,
 }
 
-impl Design {
+impl TwoLevel {
     /// The full design of `factors` factors, at least one.
     ///
     /// # Errors
@@ -144,6 +149,26 @@ impl Design {
         self.basic + self.generated.len()
     }
 
+    /// Number of basic factors, the first ones.
+    pub fn basic(&self) -> usize {
+        self.basic
+    }
+
+    /// Whether its runs are a fraction of all combinations.
+    pub fn is_fractional(&self) -> bool {
+        !self.generated.is_empty()
+    }
+
+    /// The letter of a factor.
+    pub fn letter(factor: usize) -> char {
+        char::from(LETTERS[factor])
+    }
+
+    /// The levels of the other factors at these levels of the basic ones.
+    pub fn generated(&self, basic: &[i8]) -> Vec<i8> {
+        self.generated.iter().map(|word| word.level(basic)).collect()
+    }
+
     /// The levels, +1 or -1, of all factors in each run, in standard order: the first factor
     /// changes fastest.
     pub fn runs(&self) -> Vec<Vec<i8>> {
@@ -151,7 +176,7 @@ impl Design {
         (0..1 << self.basic)
             .map(|run| {
                 let mut levels: Vec<i8> = (0..self.basic).map(|f| level(run, f)).collect();
-                levels.extend(self.generated.iter().map(|w| w.level(&levels)).collect::<Vec<_>>());
+                levels.extend(self.generated(&levels));
                 levels
             })
             .collect()
@@ -182,24 +207,51 @@ impl Design {
             })
             .collect()
     }
+}
 
-    /// What a full analysis of the basic factors, effects in standard order, says of the shortest
-    /// effect of each set of [`Design::aliases`]; it is the sum of the set's effects.
-    ///
-    /// # Errors
-    /// [`Error::Value`] when there is not one effect a set.
-    pub fn estimates(&self, of_basic: &[Effect]) -> Result<Vec<Effect>> {
-        let sets = self.aliases();
-        if sets.len() != of_basic.len() {
-            let reason = format!("the design has {} sets of aliases", sets.len());
-            return Err(refuse(&format!("{} effects", of_basic.len()), reason));
+impl fmt::Display for TwoLevel {
+    /// `2^3, full` or `2^(5-1), resolution V`.
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self.resolution() {
+            None => write!(f, "2^{}, full", self.basic),
+            Some(resolution) => {
+                let (factors, made) = (self.factors(), self.generated.len());
+                write!(f, "2^({factors}-{made}), resolution {}", roman(resolution))
+            }
         }
-        let estimate = |(set, effect): (&Vec<Word>, &Effect)| Effect {
-            factors: set[0].factors(),
-            value: f64::from(set[0].sign()) * effect.value,
-        };
-        Ok(sets.iter().zip(of_basic).map(estimate).collect())
     }
+}
+
+/// A number below 40 in Roman numerals, as resolutions are written.
+fn roman(number: usize) -> String {
+    let ones = ["", "I", "II", "III", "IV", "V", "VI", "VII", "VIII", "IX"];
+    "X".repeat(number / 10) + ones[number % 10]
+}
+
+/// Some effects as a sum: `AB + CE - ADF`.
+pub fn sum(words: &[Word]) -> String {
+    let mut text = String::new();
+    for (i, word) in words.iter().enumerate() {
+        match (i, word.negative) {
+            (0, _) => text += &word.to_string(),
+            (_, false) => text += &format!(" + {word}"),
+            (_, true) => text += &format!(" - {}", word.negated()),
+        }
+    }
+    text
+}
+
+/// A set of aliases with the signs that make the first positive.
+pub fn positive(set: &[Word]) -> Vec<Word> {
+    let turned = set.first().is_some_and(|word| word.negative);
+    set.iter().map(|word| if turned { word.negated() } else { *word }).collect()
+}
+
+/// The aliases of an effect that may matter: those of up to three factors, and the shortest in any
+/// case.
+pub fn short(aliases: &[Word]) -> &[Word] {
+    let most = aliases.first().map_or(0, |word| word.len().max(3));
+    &aliases[..aliases.partition_point(|word| word.len() <= most)]
 }
 
 /// By length, then by the alphabet.
@@ -246,7 +298,6 @@ fn refuse(value: &str, reason: String) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::super::factorial::analyse;
     use super::*;
 
     fn words(list: &[Word]) -> Vec<String> {
@@ -254,16 +305,16 @@ mod tests {
     }
 
     /// The set that `word` is in, without words of more than `longest` letters, joined by " + ".
-    fn set_of(design: &Design, word: &str, longest: usize) -> String {
+    fn set_of(design: &TwoLevel, word: &str, longest: usize) -> String {
         let wanted = Word::parse(word).unwrap();
         let set = design.aliases().into_iter().find(|set| set.contains(&wanted)).unwrap();
         let short: Vec<Word> = set.into_iter().filter(|w| w.len() <= longest).collect();
-        words(&short).join(" + ")
+        sum(&short)
     }
 
     /// What the words of the defining relation say holds in every run, and the runs are all
     /// different and balanced.
-    fn check_runs(design: &Design) {
+    fn check_runs(design: &TwoLevel) {
         let runs = design.runs();
         for word in design.defining_relation() {
             assert!(runs.iter().all(|run| word.level(run) == 1), "{word}");
@@ -287,11 +338,12 @@ mod tests {
     /// Montgomery, section 8.2: the half fraction of five factors.
     #[test]
     fn five_factors_in_sixteen_runs_have_resolution_five() {
-        let design = Design::fractional(5, &["E = ABCD"]).unwrap();
+        let design = TwoLevel::fractional(5, &["E = ABCD"]).unwrap();
         check_runs(&design);
         assert_eq!(design.runs().len(), 16);
         assert_eq!(words(design.defining_relation()), ["ABCDE"]);
         assert_eq!(design.resolution(), Some(5));
+        assert_eq!(design.to_string(), "2^(5-1), resolution V");
         assert_eq!(set_of(&design, "A", 5), "A + BCDE");
         assert_eq!(set_of(&design, "E", 5), "E + ABCD");
         assert_eq!(set_of(&design, "DE", 5), "DE + ABC");
@@ -304,7 +356,7 @@ mod tests {
     /// Montgomery, section 8.3: the quarter fraction of six factors, table 8.8.
     #[test]
     fn six_factors_in_sixteen_runs_have_resolution_four() {
-        let design = Design::fractional(6, &["E = ABC", "F = BCD"]).unwrap();
+        let design = TwoLevel::fractional(6, &["E = ABC", "F = BCD"]).unwrap();
         check_runs(&design);
         assert_eq!(words(design.defining_relation()), ["ABCE", "ADEF", "BCDF"]);
         assert_eq!(design.resolution(), Some(4));
@@ -332,7 +384,7 @@ mod tests {
     /// Montgomery, section 8.5: the saturated design of seven factors in eight runs.
     #[test]
     fn seven_factors_in_eight_runs_have_resolution_three() {
-        let design = Design::fractional(7, &["D = AB", "E = AC", "F = BC", "G = ABC"]).unwrap();
+        let design = TwoLevel::fractional(7, &["D = AB", "E = AC", "F = BC", "G = ABC"]).unwrap();
         check_runs(&design);
         let relation = "ABD ACE AFG BCF BEG CDG DEF ABCG ABEF ACDF ADEG BCDE BDFG CEFG ABCDEFG";
         assert_eq!(words(design.defining_relation()).join(" "), relation);
@@ -356,61 +408,19 @@ mod tests {
     /// The other half of three factors: I = -ABC, so A and -BC cannot be told apart.
     #[test]
     fn the_other_half_has_the_other_signs() {
-        let design = Design::fractional(3, &["C = -AB"]).unwrap();
+        let design = TwoLevel::fractional(3, &["C = -AB"]).unwrap();
         check_runs(&design);
         assert_eq!(words(design.defining_relation()), ["-ABC"]);
-        assert_eq!(set_of(&design, "A", 3), "A + -BC");
+        assert_eq!(set_of(&design, "A", 3), "A - BC");
         assert_eq!(set_of(&design, "AB", 3), "-C + AB");
-    }
-
-    /// Montgomery, example 8.1: the filtration rates of the half fraction of four factors.
-    #[test]
-    fn the_filtration_rates_give_the_published_estimates() {
-        let design = Design::fractional(4, &["D = ABC"]).unwrap();
-        check_runs(&design);
-        assert_eq!(design.resolution(), Some(4));
-        let rates = [45.0, 100.0, 45.0, 65.0, 75.0, 60.0, 80.0, 96.0];
-        let basic: Vec<Vec<i8>> = design.runs().iter().map(|run| run[..3].to_vec()).collect();
-        let effects = analyse(&basic, &rates, None).unwrap().effects;
-        let found: Vec<(String, f64)> = design
-            .estimates(&effects)
-            .unwrap()
-            .iter()
-            .zip(design.aliases())
-            .map(|(estimate, set)| {
-                assert_eq!(estimate.factors, set[0].factors());
-                (words(&set).join(" + "), estimate.value)
-            })
-            .collect();
-        let wanted = [
-            ("A + BCD", 19.0),
-            ("B + ACD", 1.5),
-            ("AB + CD", -1.0),
-            ("C + ABD", 14.0),
-            ("AC + BD", -18.5),
-            ("AD + BC", 19.0),
-            ("D + ABC", 16.5),
-        ];
-        assert_eq!(found, wanted.map(|(set, value)| (set.to_string(), value)));
-        assert!(design.estimates(&effects[1..]).is_err());
-    }
-
-    #[test]
-    fn a_negative_word_turns_its_estimate() {
-        let design = Design::fractional(3, &["C = -AB"]).unwrap();
-        // The response is the level of C.
-        let response: Vec<f64> = design.runs().iter().map(|run| f64::from(run[2])).collect();
-        let basic: Vec<Vec<i8>> = design.runs().iter().map(|run| run[..2].to_vec()).collect();
-        let effects = analyse(&basic, &response, None).unwrap().effects;
-        let estimates = design.estimates(&effects).unwrap();
-        assert_eq!(estimates[2], Effect { factors: vec![2], value: 2.0 });
     }
 
     #[test]
     fn a_full_design_has_no_aliases() {
-        let design = Design::full(3).unwrap();
+        let design = TwoLevel::full(3).unwrap();
         check_runs(&design);
         assert_eq!((design.runs().len(), design.resolution()), (8, None));
+        assert_eq!(design.to_string(), "2^3, full");
         assert!(design.aliases().iter().all(|set| set.len() == 1));
         assert_eq!(words(&design.aliases().concat()).join(" "), "A B AB C AC BC ABC");
     }
@@ -433,7 +443,7 @@ mod tests {
             (0, &[], "0 factors, 0 generators"),
             (14, &[], "up to 4096 runs"),
         ] {
-            let said = Design::fractional(factors, generators).unwrap_err().to_string();
+            let said = TwoLevel::fractional(factors, generators).unwrap_err().to_string();
             assert!(said.contains(wanted), "{generators:?}: {said}");
         }
     }
