@@ -75,7 +75,7 @@ def _probe(arguments):
 def _keep(arguments):
     from .record import keep
 
-    keep(arguments.runs, arguments.folder, _log)
+    keep(arguments.runs, arguments.folder, _log, arguments.study)
 
 
 def _cases(arguments):
@@ -134,6 +134,7 @@ def main():
     command = commands.add_parser("keep", help="add finished runs of `edgeline fem` to the recorded curves")
     command.add_argument("folder", type=Path, help="folder of the records, one subfolder a case")
     command.add_argument("runs", nargs="+", type=Path, help="output folders of finished runs")
+    command.add_argument("--study", help="built-in study of the cases, for the command in the record")
     command.set_defaults(run=_keep)
     command = commands.add_parser("cases", help="list the names of the cases that can be recorded")
     command.add_argument("folder", type=Path, help="folder with cases.toml")

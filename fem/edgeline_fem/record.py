@@ -341,10 +341,10 @@ def _record(case, size, target, log, run, overrides):
     return True
 
 
-def keep(runs, folder, log):
+def keep(runs, folder, log, study=None):
     """Add finished runs of ``edgeline fem``, the folders ``runs``, to the records in ``folder``, one a case.
 
-    Each run holds its request, and so its case: any that the model takes, of several sizes. What a record holds of
+    ``study``: the built-in study that the cases belong to, for the command in the record. Each run holds its request, and so its case: any that the model takes, of several sizes. What a record holds of
     that size is replaced. Raises :class:`FemError` where a run is not finished, or is of another case than
     its record.
     """
@@ -363,6 +363,8 @@ def keep(runs, folder, log):
             began = datetime.datetime.fromtimestamp((work / "request.json").stat().st_mtime, datetime.timezone.utc)
             size = request.mesh.size
             command = f"edgeline fem cases/{request.case.name}.toml --size {size:g}"
+            if study is not None:
+                command = f"edgeline study {study} --fem live --size {size:g}"
             _add(request.case, asked, size, data, work, target, (began, command))
         log(f"{request.case.name}, size {size:g}")
 

@@ -94,6 +94,9 @@ def test_finished_runs_become_a_record(tmp_path):
     data = json.loads((kept / "record.json").read_text())
     assert list(data["meshes"]) == ["4", "3"]
     assert data["meshes"]["3"]["command"] == "edgeline fem cases/test.toml --size 3"
+    keep(runs[-1:], tmp_path / "kept", print, "profiled")
+    data = json.loads((kept / "record.json").read_text())
+    assert data["meshes"]["3"]["command"] == "edgeline study profiled --fem live --size 3"
     assert data["case"]["eccentricity_m"] == 1e-4
     assert data["case"]["roller"]["profile"] == {"kind": "crown"}
     assert "profile_m" not in data["case"]["roller"]

@@ -1,7 +1,7 @@
 //! Scenes beyond the study against recorded finite elements.
 
 use edgeline::body::EdgeModel;
-use edgeline::case::Case;
+use edgeline::case::{Case, Study};
 use edgeline::fem::FemResults;
 use edgeline::solve::{Options, SolvedCase};
 use edgeline::stress::{BodyKind, EDGE, away_from_edges};
@@ -33,10 +33,10 @@ fn rms(differences: &[f64]) -> f64 {
 
 /// What quarter-space is off by, outside 0.1 C of the overlap's ends: the pressure on a line and the components on a
 /// curve of the block and of the roller, RMS; and the largest difference of a stress.
-fn compared(name: &str) -> ([Worst; 3], Worst) {
-    let case = Case::find(Path::new(name)).unwrap();
-    let recorded = FemResults::embedded_of(&case).unwrap().expect(name);
-    let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+fn compared(case: &Case) -> ([Worst; 3], Worst) {
+    let name = &case.name;
+    let recorded = FemResults::embedded_of(case).unwrap().expect(name);
+    let solved = SolvedCase::new(case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
     let solution = solved.solution();
     let c_m = solved.hertz().c_m;
     let [roller, block] = [BodyKind::Roller, BodyKind::Block].map(|kind| case.ends_m(kind));
@@ -85,8 +85,9 @@ fn compared(name: &str) -> ([Worst; 3], Worst) {
 }
 
 /// Asserts that all is within the limits: pressure, block, roller, RMS, and the largest difference of a stress.
-fn within(name: &str, limits: [f64; 3], most: f64) {
-    let (found, largest) = compared(name);
+fn within(case: &Case, limits: [f64; 3], most: f64) {
+    let name = &case.name;
+    let (found, largest) = compared(case);
     for (worst, limit) in found.iter().zip(limits) {
         assert!(worst.value <= limit, "{name}: {worst:?} > {limit}");
     }
@@ -96,7 +97,7 @@ fn within(name: &str, limits: [f64; 3], most: f64) {
 #[test]
 fn stresses_under_friction_are_those_of_finite_elements() {
     for name in ["sliding-flush", "sliding-half", "sliding-steel-aluminium"] {
-        within(name, [0.005, 0.005, 0.006], 0.02);
+        within(&Case::find(Path::new(name)).unwrap(), [0.005, 0.005, 0.006], 0.02);
     }
 }
 
@@ -114,6 +115,14 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
         ("offset-flush-end", [0.005, 0.013, 0.013], 0.07),
         ("logarithmic-eccentric", [0.022, 0.03, 0.03], 0.15),
     ] {
-        within(name, limits, most);
+        within(&Case::find(Path::new(name)).unwrap(), limits, most);
+    }
+}
+
+/// The study of profiled, eccentrically loaded rollers, at the tolerance of its file.
+#[test]
+fn profiled_rollers_have_the_stresses_of_finite_elements() {
+    for case in Study::find(Path::new("profiled")).unwrap().cases() {
+        within(case, [0.012, 0.013, 0.013], 0.07);
     }
 }
