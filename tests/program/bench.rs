@@ -121,7 +121,7 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
     std::fs::write(at.join("bad.toml"), "name = \"x\"\n[factors]\n").unwrap();
     for (arguments, wanted) in [
         (&["nowhere.toml"][..], "nowhere.toml"),
-        (&["bad.toml"], "[roller] is missing"),
+        (&["bad.toml"], "there is no factor"),
         (&["flush-short", "flush-short"], "twice"),
         (&["flush-short", "--tolerances", "2"], "--tolerance"),
         (&["flush-short", "--levels", "0"], "--levels"),
