@@ -230,11 +230,12 @@ impl<'a> Plot<'a> {
         if !series.markers {
             return;
         }
-        // Markers as near as they can be without touching each other.
+        // On a line as near as they can be without touching each other; points that are not joined are data.
         let mut last: Option<Point> = None;
         for p in points.filter(|p| self.x.shows(p.0) && self.y.shows(p.1)) {
             let at = (self.x.at(p.0), self.y.at(p.1));
-            if last.is_none_or(|l| (at.0 - l.0).hypot(at.1 - l.1) >= MARKERS_APART) {
+            let apart = |l: Point| (at.0 - l.0).hypot(at.1 - l.1) >= MARKERS_APART;
+            if !series.line || last.is_none_or(apart) {
                 draw_marker(picture, at, series.look);
                 last = Some(at);
             }

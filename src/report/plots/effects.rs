@@ -68,7 +68,8 @@ impl<'a> EffectRows<'a> {
                 .map(|(v, name)| Rule::Horizontal(v, name))
                 .chain([Rule::Horizontal(0.0, String::new())])
                 .collect(),
-            x_range: Some((0.0, 2.1)),
+            // Fifteen effects reach 2.13; names stand beside the points.
+            x_range: Some((0.0, points.iter().map(|p| 1.15 * p.0).fold(2.1, f64::max))),
             ..Default::default()
         }
     }
