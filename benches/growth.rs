@@ -4,7 +4,7 @@
 //! two. Memory is the largest number of bytes that were allocated at one time, counted by the
 //! allocator; the size of the process would hide it.
 
-use edgeline::base::Material;
+use edgeline::base::{Material, Parity};
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Scene, SolvedScene, solve, solve_group};
@@ -140,7 +140,7 @@ fn main() {
     let mut resolution = Resolution::for_tolerance(scene.tolerance);
     for halved in 0..3 {
         let cells = resolution.contact_axis(scene.half_length).len()
-            * resolution.wavenumbers(scene.bodies.block.half).coarse().len();
+            * resolution.wavenumbers(scene.bodies.block.half, Parity::Even).coarse().len();
         let work = || SolvedScene::with_resolution(&scene, &resolution).expect("it converges");
         growth.row(&halved.to_string(), cells, cost(work));
         resolution = resolution.refined();

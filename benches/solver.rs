@@ -84,7 +84,7 @@ fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let line = resolution.contact_axis(scene.half_length);
     let body =
         Body::new(&line, shape, scene.end(BodyKind::Block), (Parity::Even, false), resolution);
-    let wavenumbers = resolution.wavenumbers(block.half);
+    let wavenumbers = resolution.wavenumbers(block.half, Parity::Even);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)
 }
@@ -99,8 +99,10 @@ fn compliance_and_contact(c: &mut Criterion) {
             &scene,
             |b, scene| b.iter(|| layers(scene, &resolution)),
         );
-        let (wavenumbers, axis) =
-            (resolution.wavenumbers(slenderness), resolution.contact_axis(scene.half_length));
+        let (wavenumbers, axis) = (
+            resolution.wavenumbers(slenderness, Parity::Even),
+            resolution.contact_axis(scene.half_length),
+        );
         let (_, layers) = layers(&scene, &resolution);
         let matrices: Vec<_> = layers.into_iter().map(|l| l.compliance).collect();
         let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &matrices };

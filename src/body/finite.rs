@@ -102,14 +102,19 @@ pub struct Shape {
     pub nu: f64,
 }
 
-/// Shares of the last images of an alternating series, which close it (Euler's transformation of third
+/// Shares of the last images of an alternating series, which close it (Euler's transformation of fifth
 /// order).
-const CLOSING: [f64; 3] = [0.875, 0.5, 0.125];
+const CLOSING: [f64; 5] = [31.0 / 32.0, 26.0 / 32.0, 16.0 / 32.0, 6.0 / 32.0, 1.0 / 32.0];
+
+/// Longest waves of the odd part (half-lengths of the body, divided by 2 pi). Such a load bends the body as a
+/// plate, the less stiff the longer the wave: the equations become singular, and errors of the axes decide. The
+/// waves of an axis for odd loads are shorter, but for a body that is many times shorter than the other.
+const LONGEST: f64 = 250.0;
 
 /// A load at s >= 0 and its other half at -s, and their images in the end faces of a body.
 ///
 /// Even loads have the period 2 H of the body's length, and strips replace the images beyond the
-/// last. Odd loads change sign from one length to the next; [`CLOSING`] shares of three more images close
+/// last. Odd loads change sign from one length to the next; [`CLOSING`] shares of five more images close
 /// their series.
 fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<Image> {
     let image = |lengths: i32, weight: f64| {
@@ -147,7 +152,7 @@ impl Body {
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = half - contact.end();
         let contact = first..first + contact.len();
-        let face = Sources::new(resolution.face_axis(ledge, half));
+        let face = Sources::new(resolution.face_axis(ledge, half, parity));
         let surface = Sources::new(surface);
         let images = images(half, &end, parity, resolution);
         // An image that the displacement weighs has its full weight in the stresses.
@@ -334,6 +339,8 @@ impl Body {
 
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
+        let bends = self.end.freed && self.parity == Parity::Odd;
+        let k = if bends { k.max(1.0 / (LONGEST * self.half)) } else { k };
         let n = self.surface.axis.len();
         let mut displacement = Rows::new(&self.surface, n);
         let reach = self.reach(k);

@@ -19,7 +19,7 @@ const TAIL_MODES: usize = 3;
 const SHAPE_POINTS: i32 = 8;
 
 /// Part of a contact's half-length at a tip in which the square of the half-width is linear.
-const TIP_LENGTH: f64 = 0.04;
+const TIP_LENGTH: f64 = 0.003;
 
 /// Fewest free nodes in contact.
 const LEAST: usize = 2;

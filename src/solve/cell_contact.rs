@@ -4,7 +4,7 @@ use super::cells::{contact_ends, line_loads};
 use super::on_cells::Placed;
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
-use crate::base::{BodyKind, Error, Panels, PerBody, Result, Wavenumbers};
+use crate::base::{BodyKind, Error, Panels, Parity, PerBody, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Columns, Grid, Heights, RoughGap};
@@ -175,7 +175,7 @@ impl<'a> DeepTilt<'a> {
         let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
         let axis = resolution.line_axis([-scene.half_length, scene.half_length]);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
-        let wavenumbers = resolution.wavenumbers(longest);
+        let wavenumbers = resolution.wavenumbers(longest, Parity::Odd);
         let coarse = wavenumbers.coarse().nodes();
         let stack = |kind: BodyKind| {
             let SceneBody { half, middle, nu, .. } = scene.bodies[kind];

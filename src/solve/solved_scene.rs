@@ -4,7 +4,7 @@ use super::lines::{self, Stresses};
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
 use crate::base::stop::go_on;
-use crate::base::{Error, Panels, Result, Wavenumbers};
+use crate::base::{Error, Panels, Parity, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{
     self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Shaped, Slices,
@@ -450,13 +450,13 @@ impl Trial<'_> {
     fn parts(&self, line: &Line) -> Result<Parts> {
         let (scene, resolution) = (self.scene, self.resolution);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
-        let wavenumbers = resolution.wavenumbers(longest);
-        let coarse = wavenumbers.coarse().nodes();
         let symmetric = scene.is_symmetric();
-        let axis = match symmetric {
-            true => resolution.contact_axis(line.ends[1]),
-            false => resolution.line_axis(line.ends),
+        let (axis, parity) = match symmetric {
+            true => (resolution.contact_axis(line.ends[1]), Parity::Even),
+            false => (resolution.line_axis(line.ends), Parity::Odd),
         };
+        let wavenumbers = resolution.wavenumbers(longest, parity);
+        let coarse = wavenumbers.coarse().nodes();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
         // Bodies with the same ends and Poisson's ratio share one computation.
         let alike =

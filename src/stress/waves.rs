@@ -381,6 +381,7 @@ fn upon(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Parity;
     use crate::body::{EdgeModel, Resolution, Shape};
 
     #[test]
@@ -395,7 +396,7 @@ mod tests {
     fn compare(ledge: f64, everywhere: bool) {
         let resolution = Resolution::for_tolerance(1e-2);
         let shape = Shape { half: 5.0 + ledge, nu: 0.3 };
-        let numbers = resolution.wavenumbers(shape.half).resolving(1.0);
+        let numbers = resolution.wavenumbers(shape.half, Parity::Even).resolving(1.0);
         let line = resolution.contact_axis(5.0);
         let stack = Stack::new(
             &line,

@@ -2,7 +2,7 @@
 //! of C, stresses in units of p0.
 
 use crate::common::{apart, at, free_ends, half_of, near, small, solved, table, worse};
-use edgeline::base::{Material, Panels, StressTensor};
+use edgeline::base::{Material, Panels, Parity, StressTensor};
 use edgeline::body::{EdgeModel, Resolution, Shape, Stack};
 use edgeline::case::{Case, Factors};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
@@ -42,7 +42,7 @@ fn both_bodies_are_right_at_the_rollers_end_face() {
 /// along y.
 fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor {
     let resolution = Resolution::for_tolerance(1e-3);
-    let wavenumbers = resolution.wavenumbers(4.0);
+    let wavenumbers = resolution.wavenumbers(4.0, Parity::Even);
     let axis = resolution.contact_axis(3.0);
     let stack = Stack::new(
         &axis,

@@ -337,7 +337,7 @@ fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f
     let body =
         Body::new(&axis, shape, model.end(0.3, Some(psi)), (Parity::Even, false), &resolution);
     let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
-    let wavenumbers = resolution.wavenumbers(half);
+    let wavenumbers = resolution.wavenumbers(half, Parity::Even);
     let energies = wavenumbers.coarse().nodes().iter().map(|&k| {
         let c = body.layer(k).compliance;
         let energy = DMatrix::from_fn(root.len(), root.len(), |i, j| {
