@@ -45,7 +45,7 @@ type Sample = (BodyKind, [f64; 3], RoundStress);
 /// Largest C / R for which samples are kept. Only closely conforming raceways under the largest loads exceed it.
 const LARGEST_CURVATURE: f64 = 1.0;
 
-/// What the main results of all cases of one [`Scene`] are read from: small, so that many of them can be kept.
+/// What the main results of all cases of one [`Scene`](super::Scene) are read from: small, so that many of them can be kept.
 #[derive(Debug)]
 pub struct KeySolution {
     approaches: Approaches,
