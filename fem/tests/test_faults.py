@@ -2,6 +2,7 @@
 
 import json
 import os
+import re
 import shutil
 
 import pytest
@@ -80,13 +81,19 @@ def _copy(folder):
     return target
 
 
+# The names of the cases of cases/profiled.toml; its centre is recorded beside that of the default study.
+PROFILED = r"w1e-[34]_sl(5|10)_lr(0\.5|1)_drop(0\.5|3)_ecc0(\.05)?|profiled-centre"
+
+
 def test_every_record_is_what_was_recorded():
     folders = [path.parent for path in (FEM.parent / "results/reference").glob("*/record.json")]
-    # Those of cases.toml, and those kept from runs of case files.
+    # Those of cases.toml, those kept from runs of case files, and those of the study `profiled`.
     listed = set(read_cases(FEM.parent / "results/reference/cases.toml"))
     files = {path.stem for path in (FEM.parent / "cases").glob("*.toml")}
     names = {folder.name for folder in folders}
-    assert listed <= names <= listed | files
+    studied = {name for name in names if re.fullmatch(PROFILED, name)}
+    assert len(studied) == 17
+    assert listed <= names <= listed | files | studied
     for folder in folders:
         check_record(folder)
 
