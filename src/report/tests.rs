@@ -111,7 +111,7 @@ fn a_fractional_study_names_its_design_and_what_it_cannot_tell_apart() {
     }
     let plots = plots::all(&read);
     let (_, half_normal) =
-        plots.iter().find(|(n, _)| n.ends_with("half-normal-mirror.svg")).unwrap();
+        plots.iter().find(|(n, _)| n.ends_with("half-normal-quarter-space.svg")).unwrap();
     assert_eq!(half_normal.matches("<circle").count(), 4 * 15, "no point is left out");
     keep(&read, "profiled");
 }
