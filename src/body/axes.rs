@@ -487,6 +487,15 @@ impl Resolution {
         Panels::new(breaks.collect(), self.order)
     }
 
+    /// The contact line between its `ends`, or one half of it if all is `symmetric`; and the parity that its
+    /// wavenumbers have to serve.
+    pub fn contact_line(&self, ends: [f64; 2], symmetric: bool) -> (Panels, Parity) {
+        match symmetric {
+            true => (self.contact_axis(ends[1]), Parity::Even),
+            false => (self.line_axis(ends), Parity::Odd),
+        }
+    }
+
     /// The `contact` on one side of a body's middle, continued by panels to the middle and to the end
     /// face at `half`, graded towards the contact and the face.
     pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
@@ -548,8 +557,8 @@ impl Resolution {
     /// End of the first panel of wavenumbers: waves longer than the body and the contact's width
     /// depend on little more than the total load.
     ///
-    /// Under odd loads the answer grows as 1 / k, and below 0.01 wavelengths the equations are close to singular:
-    /// the panel is the widest whose integral is that of narrower ones, within 0.3 % of the tilt.
+    /// Under odd loads the answer grows as 1 / k, and below k `half` = 0.01 the equations are close to singular:
+    /// the panel is wide enough for its nodes to stay above, and gives the tilt of narrower ones within 0.3 %.
     fn smallest_wavenumber(&self, half: f64, parity: Parity) -> f64 {
         match parity {
             Parity::Even => self.k_min.min(1.0 / half),

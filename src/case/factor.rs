@@ -178,7 +178,7 @@ impl FactorKey {
                 draft.case.load.eccentricity_m = Some(level * sized.shorter_m());
             }
             Self::EndDrop(body) => {
-                let drop_m = level * unit_drop_m(&sized);
+                let drop_m = level * sized.gap_unit_m();
                 let half_m = 0.5 * sized.length_m(body);
                 let Some(spec) = draft.profile_mut(body) else { return };
                 match spec.kind {
@@ -206,7 +206,7 @@ impl FactorKey {
             }
             Self::EndDrop(body) => {
                 let drop_m = case.profile(body)?.drop(0.5 * case.length_m(body));
-                Some(drop_m / unit_drop_m(case)).filter(|drop| drop.is_finite())
+                Some(drop_m / case.gap_unit_m()).filter(|drop| drop.is_finite())
             }
             Self::Eccentricity => Some(case.load.eccentricity_m? / case.shorter_m()),
         }
@@ -216,11 +216,6 @@ impl FactorKey {
         let (key, value) = (self.path().to_string(), "a factor".to_string());
         Error::Value { key, value, reason, remedy: remedy.into() }
     }
-}
-
-/// C^2 / (2 R) of a case (m).
-fn unit_drop_m(case: &Case) -> f64 {
-    case.hertz().c_m.powi(2) / (2.0 * case.equivalent_radius_m())
 }
 
 /// The number of a profile that any drop at the end asks for a value of, the others fixed.

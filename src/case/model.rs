@@ -292,6 +292,12 @@ impl Case {
         self.block.radius_m.map_or(roller_m, |block_m| 1.0 / (1.0 / roller_m + 1.0 / block_m))
     }
 
+    /// C^2 / (2 R) (m), R the equivalent radius: the gap between the round bodies at x = C. Gaps, drops and
+    /// displacements are in this unit.
+    pub fn gap_unit_m(&self) -> f64 {
+        self.hertz().c_m.powi(2) / (2.0 * self.equivalent_radius_m())
+    }
+
     /// Length of the shorter body (m), on which W, S_l, C and p0 rest.
     pub fn shorter_m(&self) -> f64 {
         self.roller.length_m.min(self.block.length_m)

@@ -22,7 +22,7 @@ use super::grid::Grid;
 use super::influence::HalfTransform;
 use super::means::means;
 use super::pressure::CellPressure;
-use crate::base::{Panels, Parity, Wavenumbers};
+use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
 use crate::contact;
 use crate::stress::{Field, Load};
@@ -86,10 +86,7 @@ impl FreeEnds {
     /// in x and y if it is `symmetric`.
     pub fn new(half_length: f64, bodies: &[FreeBody], symmetric: bool) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
-        let (axis, parity) = match symmetric {
-            true => (resolution.contact_axis(half_length), Parity::Even),
-            false => (resolution.line_axis([-half_length, half_length]), Parity::Odd),
-        };
+        let (axis, parity) = resolution.contact_line([-half_length, half_length], symmetric);
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let distinct = distinct(bodies);

@@ -31,7 +31,7 @@ use std::time::Instant;
 /// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
 /// curves it takes about a minute, nearly all of it for timing and for the published method on cells
 /// (half as long with --repeats 0); with --fem live it takes minutes per case. `edgeline study profiled` runs
-/// the other built-in study, five factors in 16 runs and a centre point, in about ten minutes.
+/// the other built-in study, five factors in 16 runs and a centre point; it takes several times as long.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]

@@ -39,8 +39,7 @@ const LARGEST_STEP: f64 = 8.0;
 
 /// Approach of points one roller radius below the surfaces (m), at the roller's middle.
 pub(super) fn approach_m(approaches: &Approaches, case: &Case) -> f64 {
-    let (c_m, radius_m) = (case.hertz().c_m, case.roller.radius_m);
-    approaches.at(radius_m / c_m) * (c_m * c_m / (2.0 * case.equivalent_radius_m()))
+    approaches.at(case.roller.radius_m / case.hertz().c_m) * case.gap_unit_m()
 }
 
 /// The solved scene of `case`, and the case with its force. A force that is given by its approach is

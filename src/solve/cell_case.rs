@@ -250,7 +250,7 @@ pub fn loads_on_cells(
     let region = Region::new(case, &scene, cells);
     let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
     let HertzScales { c_m, p0_pa, .. } = case.hertz();
-    let unit_m = c_m * c_m / (2.0 * case.equivalent_radius_m());
+    let unit_m = case.gap_unit_m();
     let step = |&force_n: &f64| {
         contact.problem.load = scene.load * force_n / case.load.force_n;
         let (pressure, _) = covering(&mut contact, &region)?;
@@ -374,7 +374,7 @@ impl Found<'_> {
             tolerance: self.problem.tolerance,
             residual: self.pressure.residual,
             contact_area_m2: self.pressure.contact_area() * c_m * c_m,
-            mean_gap_m: self.mean_gap * c_m * c_m / (2.0 * case.equivalent_radius_m()),
+            mean_gap_m: self.mean_gap * case.gap_unit_m(),
             approach_reference_m: radius_m,
             roller_diametral_tension_pa: round::DIAMETRAL_TENSION * c_m / radius_m * p0_pa,
         }

@@ -41,7 +41,7 @@ impl<'a> CellContact<'a> {
         progress: &'a dyn Fn(usize, f64),
     ) -> Self {
         let c_m = case.hertz().c_m;
-        let unit_m = c_m * c_m / (2.0 * case.equivalent_radius_m());
+        let unit_m = case.gap_unit_m();
         let depth = case.roller.radius_m / c_m;
         Self {
             problem: scene.on_cells(grid, tolerance),

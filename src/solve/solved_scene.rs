@@ -4,7 +4,7 @@ use super::lines::{self, Stresses};
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
 use crate::base::stop::go_on;
-use crate::base::{Error, Panels, Parity, Result, Wavenumbers};
+use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{
     self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Shaped, Slices,
@@ -451,10 +451,7 @@ impl Trial<'_> {
         let (scene, resolution) = (self.scene, self.resolution);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let symmetric = scene.is_symmetric();
-        let (axis, parity) = match symmetric {
-            true => (resolution.contact_axis(line.ends[1]), Parity::Even),
-            false => (resolution.line_axis(line.ends), Parity::Odd),
-        };
+        let (axis, parity) = resolution.contact_line(line.ends, symmetric);
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let coarse = wavenumbers.coarse().nodes();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
