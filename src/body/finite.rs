@@ -13,7 +13,7 @@ use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
 use crate::kernels::wave::{Direction, WaveTable, WwPlaces};
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::DMatrix;
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -542,10 +542,9 @@ impl<'a> Rows<'a> {
 
     /// The matrix over the nodes.
     fn finish(self) -> DMatrix<f64> {
-        let (rows, count) = (self.nodes.len() / self.columns, self.sources.charge_count());
-        let charges = DMatrixView::from_slice_with_strides(&self.charges, rows, count, count, 1);
-        let mut nodes = DMatrix::from_vec(self.columns, rows, self.nodes).transpose();
-        self.sources.scatter(charges, &mut nodes);
-        nodes
+        let rows = self.nodes.len() / self.columns;
+        let mut nodes = DMatrix::from_vec(self.columns, rows, self.nodes);
+        self.sources.scatter(&self.charges, &mut nodes);
+        nodes.transpose()
     }
 }

@@ -3,7 +3,7 @@
 use crate::base::{Panels, gauss_legendre};
 use crate::kernels::wave::WAVES;
 use multiversion::multiversion;
-use nalgebra::{DMatrix, DMatrixView, Dyn};
+use nalgebra::{DMatrix, DMatrixView};
 
 /// A copy of the axis: the point s of the axis acts at `sign` s + `shift` with the factor `weight`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +28,7 @@ pub struct Sources {
     clusters: Vec<Cluster>,
     /// Positions of the charges, `order` per cluster.
     places: Vec<f64>,
-    /// Charges per value at the axis's nodes: quadrature weights times the clusters' polynomials.
+    /// Charges (columns) per value at the axis's nodes (rows): quadrature weights times the clusters' polynomials.
     charges: DMatrix<f64>,
     /// Gauss's rules for a piece of a panel, and for one with a logarithm at its end.
     piece_rule: (Vec<f64>, Vec<f64>),
@@ -90,13 +90,13 @@ impl Sources {
             next += 1;
         }
         let mut places = Vec::with_capacity(order * clusters.len());
-        let mut charges = DMatrix::zeros(order * clusters.len(), axis.len());
+        let mut charges = DMatrix::zeros(axis.len(), order * clusters.len());
         for (i, cluster) in clusters.iter().enumerate() {
             let own = Panels::new(cluster.ends.to_vec(), order);
             places.extend_from_slice(own.nodes());
             for node in cluster.panels.start * order..cluster.panels.end * order {
                 for (m, b) in own.polynomials(0, axis.nodes()[node]).enumerate() {
-                    charges[(i * order + m, node)] = axis.weights()[node] * b;
+                    charges[(node, i * order + m)] = axis.weights()[node] * b;
                 }
             }
         }
@@ -107,12 +107,15 @@ impl Sources {
 
     /// Charges of functions from their `values` at the axis's nodes, one function per row in both.
     pub fn charges(&self, values: &DMatrix<f64>) -> DMatrix<f64> {
-        values * self.charges.transpose()
+        values * &self.charges
     }
 
-    /// Adds rows over the charges to rows over the axis's first nodes.
-    pub fn scatter(&self, charges: DMatrixView<f64, Dyn, Dyn>, nodes: &mut DMatrix<f64>) {
-        nodes.gemm(1.0, &charges, &self.charges.columns(0, nodes.ncols()), 1.0);
+    /// Adds columns over the charges, one after the other, to columns over the axis's first nodes.
+    ///
+    /// Columns and no rows: nalgebra's product of a few strided rows writes beyond its matrices.
+    pub fn scatter(&self, charges: &[f64], nodes: &mut DMatrix<f64>) {
+        let charges = DMatrixView::from_slice(charges, self.charge_count(), nodes.ncols());
+        nodes.gemm(1.0, &self.charges.rows(0, nodes.nrows()), &charges, 1.0);
     }
 
     /// Number of charges.
@@ -376,11 +379,11 @@ mod tests {
         for y in [0.0, 0.01, 0.5, 1.0, 2.9, 3.0, 3.1, 7.0] {
             for (images, a, b) in [(&direct, 0.0, 3.0), (&mirrored, 3.0, 6.0)] {
                 let stencil = Stencil::new(&sources, images, y, 0.0, 0.01, Peak::Logarithm);
-                let mut row = DMatrix::zeros(1, axis.len());
-                let mut charge_row = DMatrix::zeros(1, sources.charge_count());
+                let mut row = DMatrix::zeros(axis.len(), 1);
+                let mut charge_row = vec![0.0; sources.charge_count()];
                 let kernel: Vec<f64> = stencil.offsets().iter().map(|u| -u.abs().ln()).collect();
-                stencil.add_row(&kernel, charge_row.as_mut_slice(), row.as_mut_slice());
-                sources.scatter(charge_row.as_view(), &mut row);
+                stencil.add_row(&kernel, &mut charge_row, row.as_mut_slice());
+                sources.scatter(&charge_row, &mut row);
                 let got = row.sum();
                 assert!((got - exact(y, a, b)).abs() < 1e-3, "{y}: {got} {}", exact(y, a, b));
                 // Loads beyond the limit keep their previous values.
@@ -393,6 +396,26 @@ mod tests {
                 let again: f64 = kernel.iter().zip(loads).map(|(k, l)| k * f64::from(l[0])).sum();
                 assert!((again - got).abs() < 1e-5);
             }
+        }
+    }
+    #[test]
+    fn a_few_columns_of_charges_are_added_as_many_are() {
+        let sources = Sources::new(Panels::new(vec![0.0, 1.0, 1.5, 1.8], 3));
+        let (count, kept) = (sources.charge_count(), 7);
+        let charge = |i: usize| ((7 * i + 3) % 11) as f64;
+        let scattered = |columns: usize| {
+            let charges: Vec<f64> = (0..columns * count).map(charge).collect();
+            let mut nodes = DMatrix::from_element(kept, columns, 0.5);
+            sources.scatter(&charges, &mut nodes);
+            nodes
+        };
+        let many = scattered(9);
+        for node in 0..kept {
+            let sum: f64 = (0..count).map(|i| sources.charges[(node, i)] * charge(i)).sum();
+            assert!((many[(node, 0)] - 0.5 - sum).abs() < 1e-12);
+        }
+        for columns in 1..9 {
+            assert!((scattered(columns) - many.columns(0, columns)).amax() < 1e-12, "{columns}");
         }
     }
 }
