@@ -560,10 +560,12 @@ impl Resolution {
     /// Under odd loads the answer grows as 1 / k, and below k `half` = 0.01 the equations are close to singular:
     /// the panel is wide enough for its nodes to stay above, and gives the tilt of narrower ones within 0.3 %.
     fn smallest_wavenumber(&self, half: f64, parity: Parity) -> f64 {
-        match parity {
+        let of_body = match parity {
             Parity::Even => self.k_min.min(1.0 / half),
             Parity::Odd => BENDS / half,
-        }
+        };
+        // Bodies may be much shorter than the contact is wide.
+        of_body.min(0.5 * SLOW)
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder

@@ -100,7 +100,7 @@ fn gaps_of(
 mod tests {
     use super::*;
     use crate::base::{Panels, Wavenumbers};
-    use crate::contact::{Compliance, ContactSettings, Straight, solve};
+    use crate::contact::{Compliance, ContactSettings, Rotation, Straight, solve};
     use nalgebra::DMatrix;
     use std::f64::consts::PI;
 
@@ -130,8 +130,7 @@ mod tests {
             both_ends: false,
             gap: &Straight,
             load: 2.0 * PI,
-            moment: None,
-            tilt: 0.0,
+            rotation: Rotation::Held(0.0),
             open: [false; 2],
             recedes: [false; 2],
             guess: None,

@@ -111,10 +111,10 @@ impl LinearProblem<'_> {
         tiles
     }
 
-    /// Adds an unknown rigid motion in column `at`. Row `at` gets the integral of the pressure times its
-    /// displacement.
+    /// Adds an unknown rigid motion in column `at`, and its equation in row `at`.
     fn add_motion(&self, at: usize, motion: &Motion, matrix: &mut DMatrix<f64>) {
         let (layout, axis) = (self.layout, self.operator.axis);
+        matrix[(at, at)] = motion.own;
         for (i, ((&y, w), a)) in
             axis.nodes().iter().zip(axis.weights()).zip(self.half_widths).enumerate()
         {
@@ -122,7 +122,7 @@ impl LinearProblem<'_> {
             for row in layout.unknowns(i) {
                 matrix[(row, at)] = -displaced;
             }
-            let carried = w * displaced * a * PI;
+            let carried = motion.share * w * displaced * a * PI;
             if let Some(first) = layout.modes(i).next() {
                 matrix[(at, first)] = 0.5 * carried;
             }

@@ -29,7 +29,7 @@ pub use approach::Reference;
 pub use check::gaps;
 pub use gap::{Gap, Shaped, Straight};
 pub use operator::{Compliance, LineOperator, Operator};
-pub use problem::Problem;
+pub use problem::{Problem, Rotation};
 pub use settings::ContactSettings;
 pub use slices::Slices;
 pub use solution::ContactSolution;

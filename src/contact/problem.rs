@@ -5,6 +5,23 @@ use super::operator::Compliance;
 use super::slices::Slices;
 use crate::base::Panels;
 
+/// What is known of the bodies' tilt, in units of C / (2 R), and of the load's moment, the integral of y p in units
+/// of C^3 p0.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Rotation {
+    /// The bodies are held at this tilt.
+    Held(f64),
+    /// They are free to tilt under a load of this moment.
+    Free(f64),
+    /// They are held at a distance: the tilt and `compliance` times the moment sum to `tilt`.
+    Sprung {
+        /// The tilt without a moment.
+        tilt: f64,
+        /// The tilt that a moment takes.
+        compliance: f64,
+    },
+}
+
 /// Two bodies that are pressed together along a line. Lengths are in units of C, pressures of p0.
 #[derive(Clone, Copy)]
 pub struct Problem<'a> {
@@ -19,11 +36,8 @@ pub struct Problem<'a> {
     pub gap: &'a dyn Gap,
     /// The load on the axis, the integral of p (C^2 p0).
     pub load: f64,
-    /// The load's moment, the integral of y p (C^3 p0), of bodies that are free to tilt; none where they are
-    /// held.
-    pub moment: Option<f64>,
-    /// The tilt that is held (C / (2 R)); of no effect with a moment.
-    pub tilt: f64,
+    /// What is known of the tilt.
+    pub rotation: Rotation,
     /// Whether the axis ends before the bodies do, where the pressure goes to zero.
     pub open: [bool; 2],
     /// Whether the contact may end before the axis does.
@@ -36,15 +50,20 @@ pub struct Problem<'a> {
 pub(super) struct Motion {
     /// Displacement of a node at y.
     pub displacement: fn(f64) -> f64,
-    /// The integral of the pressure times this displacement.
+    /// Its equation: `share` times the integral of the pressure times this displacement, and `own` times the motion
+    /// itself, sum to `resultant`.
+    pub share: f64,
+    pub own: f64,
     pub resultant: f64,
 }
 
 impl Problem<'_> {
     /// The gap before the load, with a tilt that is held.
     pub(super) fn gap(&self, x: f64, y: f64) -> f64 {
-        let tilt = if self.moment.is_some() { 0.0 } else { self.tilt };
-        self.gap.at(x, y) - tilt * y
+        match self.rotation {
+            Rotation::Held(tilt) => self.gap.at(x, y) - tilt * y,
+            Rotation::Free(_) | Rotation::Sprung { .. } => self.gap.at(x, y),
+        }
     }
 
     /// Whether the contact may end before the bodies do.
@@ -52,11 +71,17 @@ impl Problem<'_> {
         self.recedes.contains(&true)
     }
 
-    /// The unknown rigid motions: the approach, and the tilt if it is free.
+    /// The unknown rigid motions: the approach, and the tilt if it is not held.
     pub(super) fn motions(&self) -> Vec<Motion> {
-        let approach = Motion { displacement: |_| 1.0, resultant: self.load };
-        let tilt = self.moment.map(|moment| Motion { displacement: |y| y, resultant: moment });
-        std::iter::once(approach).chain(tilt).collect()
+        let approach = Motion { displacement: |_| 1.0, share: 1.0, own: 0.0, resultant: self.load };
+        let tilt = |share, own, resultant| Motion { displacement: |y| y, share, own, resultant };
+        match self.rotation {
+            Rotation::Held(_) => vec![approach],
+            Rotation::Free(moment) => vec![approach, tilt(1.0, 0.0, moment)],
+            Rotation::Sprung { tilt: sum, compliance } => {
+                vec![approach, tilt(compliance, 1.0, sum)]
+            }
+        }
     }
 
     /// Distance of `y` from the nearer end of the axis that is an end of the contact.

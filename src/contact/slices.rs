@@ -1,6 +1,9 @@
-//! A first guess of the contact: every slice across the line is in contact by itself.
+//! A first guess of the contact: every slice across the line is in contact by itself, or what is known of a contact
+//! that is solved.
 
 use super::gap::Gap;
+use super::solution::ContactSolution;
+use crate::base::Panels;
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::FRAC_PI_2;
 
@@ -100,6 +103,17 @@ impl Slices {
         Self { y, squares, ends }
     }
 
+    /// Those of a contact that is solved, on its `axis`; none where it has fewer than two nodes.
+    pub fn of_solution(axis: &Panels, contact: &ContactSolution) -> Option<Self> {
+        let ends = contact.ends;
+        let nodes = axis.nodes().iter().zip(&contact.half_widths).zip(&contact.coefficients);
+        // Nodes without a pressure have a half-width of those beside them.
+        let inside =
+            nodes.filter(|((y, _), modes)| !modes.is_empty() && (ends[0]..=ends[1]).contains(*y));
+        let (y, squares): (Vec<f64>, _) = inside.map(|((y, a), _)| (*y, a * a)).unzip();
+        (y.len() >= 2).then_some(Self { y, squares, ends })
+    }
+
     /// The largest half-width.
     pub fn widest(&self) -> f64 {
         self.squares.iter().copied().fold(0.0, f64::max).sqrt()
@@ -107,7 +121,7 @@ impl Slices {
 
     /// The half-width at `y`.
     pub fn half_width(&self, y: f64) -> f64 {
-        let after = self.y.partition_point(|place| *place < y).clamp(1, SLICES - 1);
+        let after = self.y.partition_point(|place| *place < y).clamp(1, self.y.len() - 1);
         let [a, b] = [after - 1, after].map(|i| self.squares[i].max(0.0));
         let share = ((y - self.y[after - 1]) / (self.y[after] - self.y[after - 1])).clamp(0.0, 1.0);
         (a + share * (b - a)).sqrt()

@@ -4,7 +4,7 @@ use super::check::check;
 use super::collocation::LinearProblem;
 use super::layout::Layout;
 use super::operator::LineOperator;
-use super::problem::Problem;
+use super::problem::{Problem, Rotation};
 use super::settings::ContactSettings;
 use super::solution::ContactSolution;
 use crate::base::stop::go_on;
@@ -179,9 +179,9 @@ fn carrying(
     };
     let [load, first, second] = carried(&coefficients);
     // Factors c + d y that give back both resultants.
-    let (constant, slope) = match problem.moment {
-        None => (problem.load / load, 0.0),
-        Some(moment) => {
+    let (constant, slope) = match problem.rotation {
+        Rotation::Held(_) | Rotation::Sprung { .. } => (problem.load / load, 0.0),
+        Rotation::Free(moment) => {
             let determinant = load * second - first * first;
             (
                 (problem.load * second - moment * first) / determinant,
@@ -194,11 +194,15 @@ fn carrying(
     }
     let load_error = (carried(&coefficients)[0] / problem.load - 1.0).abs();
     let motions = &unknowns.as_slice()[layout.len()..];
+    let tilt = match problem.rotation {
+        Rotation::Held(tilt) => tilt,
+        Rotation::Free(_) | Rotation::Sprung { .. } => motions[1],
+    };
     ContactSolution {
         half_widths,
         coefficients,
         approach: motions[0],
-        tilt: motions.get(1).copied().unwrap_or(problem.tilt),
+        tilt,
         ends: [0.0; 2],
         load_error,
         iterations: 0,

@@ -7,7 +7,8 @@ use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{
-    self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Shaped, Slices,
+    self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Rotation, Shaped,
+    Slices,
 };
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
@@ -40,8 +41,11 @@ const MARGIN: f64 = 0.15;
 /// A half-width (C) from which a contact has a unit of its own.
 const WIDER: f64 = 1.4;
 
-/// Error of a tilt that is held, as the displacement of the line's end (C^2 / (2 R)).
-const TILT_ERROR: f64 = 1e-6;
+/// Tolerance of a contact whose tilt is sought, in those of others.
+const FOLLOWS: f64 = 0.1;
+
+/// Most tilts between the surfaces that are tried for one that is held at a depth.
+const MOST_TILTS: usize = 20;
 
 /// Run time of each stage (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -131,18 +135,18 @@ impl SolvedScene {
         let gap = scene.gap();
         // A contact that cannot end before its bodies do needs no guess.
         let slices = scene.may_end().then(|| scene.slices(&gap));
-        let slices = slices.as_ref();
-        let mut line = Line::first(scene, slices);
+        let mut line = Line::first(scene, slices.as_ref());
+        let mut known = Known { slices, spring: None };
         if scene.may_end() {
             // The ends are found at low cost; on the way there no solution has to be sound.
-            let coarse = scene.resolution(SEARCH, slices);
+            let coarse = scene.resolution(SEARCH, known.slices.as_ref());
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
-            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap, slices };
-            line = search.settled(line)?.line;
+            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap };
+            Settled { line, known, .. } = search.settled(line, known)?;
         }
         let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
-        let trial = Trial { scene, resolution, accuracy, gap: &gap, slices };
-        let Settled { line, parts, contact, setup } = trial.settled(line)?;
+        let trial = Trial { scene, resolution, accuracy, gap: &gap };
+        let Settled { line, parts, contact, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let open = left_open(scene, &line, &contact);
         let pressure = Pressure::new(
@@ -257,7 +261,7 @@ impl SolvedScene {
         let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
         let [block, roller] = &fields;
         let own = &self.own;
-        let ends = own.pressure.ends();
+        let ends = closed(&own.pressure, &own.contact);
         tilt::of_fields(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
     }
 }
@@ -377,6 +381,60 @@ impl Line {
     }
 }
 
+/// The search for the zero of a function that rises: by secants, within the bracket of what is known.
+#[derive(Debug, Default)]
+struct Bracket {
+    /// The argument and the value before.
+    last: Option<[f64; 2]>,
+    /// The largest argument with a value below zero, and the smallest one with a value above.
+    below: Option<f64>,
+    above: Option<f64>,
+}
+
+impl Bracket {
+    /// Distance of the bracket's ends; infinite as long as one is unknown.
+    fn width(&self) -> f64 {
+        match (self.below, self.above) {
+            (Some(low), Some(high)) => (high - low).abs(),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The next argument to try, after the value at one.
+    fn next(&mut self, at: f64, value: f64) -> f64 {
+        let end = if value < 0.0 { &mut self.below } else { &mut self.above };
+        *end = Some(at);
+        let slope = self.last.map_or(1.0, |[before, was]| (value - was) / (at - before));
+        self.last = Some([at, value]);
+        // A flat or falling secant is no guide.
+        let step = if slope > FLATTEST { -value / slope } else { -value / FLATTEST };
+        let wanted = at + step;
+        match (self.below, self.above) {
+            (Some(low), Some(high)) if !(low.min(high)..low.max(high)).contains(&wanted) => {
+                0.5 * (low + high)
+            }
+            _ => wanted,
+        }
+    }
+}
+
+/// The least slope of the function whose zero a [`Bracket`] seeks.
+const FLATTEST: f64 = 0.03;
+
+/// Where the bodies touch on the axis of a pressure: the gap is closed there.
+fn closed(pressure: &Pressure, contact: &ContactSolution) -> [f64; 2] {
+    let [from, to] = pressure.ends();
+    let [first, last] = contact.ends.map(|end| end.clamp(from, to));
+    if first < last { [first, last] } else { [from, to] }
+}
+
+/// The moment about y = 0 of a contact's pressure.
+fn moment(axis: &Panels, contact: &ContactSolution) -> f64 {
+    let lines = contact.transform(0.0);
+    let nodes = axis.nodes().iter().zip(axis.weights());
+    nodes.zip(lines.iter()).map(|((y, weight), line)| weight * y * line).sum()
+}
+
 /// Bodies on an axis.
 struct Parts {
     axis: Panels,
@@ -391,8 +449,24 @@ struct Settled {
     line: Line,
     parts: Parts,
     contact: ContactSolution,
+    known: Known,
     /// Time spent on the bodies (s).
     setup: f64,
+}
+
+/// What is known of a contact from another solution of it.
+struct Known {
+    /// The half-widths; none where the contact cannot end before the bodies do.
+    slices: Option<Slices>,
+    /// The condition between the surfaces for a tilt that is held at a depth.
+    spring: Option<Spring>,
+}
+
+/// See [`Rotation::Sprung`].
+#[derive(Clone, Copy)]
+struct Spring {
+    tilt: f64,
+    compliance: f64,
 }
 
 /// How accurate a contact is to be (p0), and how far it may violate the laws of contact.
@@ -407,25 +481,23 @@ struct Trial<'a> {
     resolution: &'a Resolution,
     accuracy: Accuracy,
     gap: &'a Shaped,
-    /// A first guess; none where the contact cannot end before the bodies do.
-    slices: Option<&'a Slices>,
 }
 
 impl Trial<'_> {
-    /// The contact from a first guess of its `line`.
-    fn settled(&self, mut line: Line) -> Result<Settled> {
+    /// The contact from a first guess of its `line`, and from what else is known of it.
+    fn settled(&self, mut line: Line, mut known: Known) -> Result<Settled> {
         let mut setup = 0.0;
         for trial in 1.. {
             go_on()?;
             let start = Instant::now();
             let parts = self.parts(&line)?;
             setup += start.elapsed().as_secs_f64();
-            let contact = self.contact(&parts, &line)?;
+            let contact = self.contact(&parts, &line, &mut known)?;
             let found = self.found(&line, &contact);
             let close = |(a, b): (&f64, &f64)| (a - b).abs() <= END_ERROR * line.half();
             let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
             if same || trial == MOST_TRIALS {
-                return Ok(Settled { line, parts, contact, setup });
+                return Ok(Settled { line, parts, contact, known, setup });
             }
             line = found;
         }
@@ -477,8 +549,8 @@ impl Trial<'_> {
         Ok(Parts { axis, wavenumbers, bodies, compliances, condition })
     }
 
-    /// The contact on a line.
-    fn contact(&self, parts: &Parts, line: &Line) -> Result<ContactSolution> {
+    /// The contact on a line, from what is `known` of it, to which it adds.
+    fn contact(&self, parts: &Parts, line: &Line, known: &mut Known) -> Result<ContactSolution> {
         let settings = ContactSettings {
             modes: self.resolution.modes,
             spacing: self.resolution.spacing,
@@ -490,30 +562,54 @@ impl Trial<'_> {
         let matrices = &parts.compliances;
         let compliance = Compliance { wavenumbers: &parts.wavenumbers, matrices };
         let problem = problem(scene, &compliance, &parts.axis, self.gap, line.open);
-        let problem = Problem { guess: self.slices, ..problem };
-        let Tilt::Held(wanted) = scene.tilt else { return contact::solve(&problem, &settings) };
-        let mut tilt = wanted;
-        let mut last: Option<[f64; 2]> = None;
-        for _ in 0..MOST_TRIALS {
-            let solution = contact::solve(&Problem { tilt, ..problem }, &settings)?;
-            if scene.depth == 0.0 {
-                return Ok(solution);
+        let solved = |rotation, known: &mut Known, settings: &ContactSettings| {
+            let problem = Problem { rotation, guess: known.slices.as_ref(), ..problem };
+            let solution = contact::solve(&problem, settings)?;
+            if scene.may_end() {
+                known.slices = Slices::of_solution(&parts.axis, &solution).or(known.slices.take());
             }
-            // Between the surfaces the tilt is another one than at the depth where it is held.
-            let off = self.tilt(parts, &solution) - wanted;
-            if off.abs() * scene.half_length <= TILT_ERROR {
-                return Ok(solution);
+            Ok(solution)
+        };
+        let wanted = match scene.tilt {
+            Tilt::Held(wanted) if scene.depth != 0.0 => wanted,
+            Tilt::Held(_) | Tilt::Free(_) => return solved(problem.rotation, known, &settings),
+        };
+        // Between the surfaces the tilt is another one than at the depth where it is held, by what the load
+        // tilts the bodies up to there: nearly a multiple of its moment.
+        let mut bracket = Bracket::default();
+        let mut off = f64::INFINITY;
+        // A pressure within the tolerance does not follow a change of the tilt below it.
+        let settings = ContactSettings { tolerance: FOLLOWS * settings.tolerance, ..settings };
+        let rough = ContactSettings { soundness: f64::INFINITY, ..settings };
+        for _ in 0..MOST_TILTS {
+            let Spring { tilt, compliance } =
+                known.spring.unwrap_or(Spring { tilt: wanted, compliance: 0.0 });
+            let rotation = Rotation::Sprung { tilt, compliance };
+            let solution = solved(rotation, known, &rough)?;
+            let deep = self.tilt(parts, &solution);
+            off = (deep - wanted) * scene.half_length;
+            // Solutions from different guesses differ by less than their error, and so do their tilts.
+            let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
+            let narrow = bracket.width() * scene.half_length <= error;
+            if off.abs() <= error || narrow && off.abs() <= self.accuracy.tolerance {
+                known.spring = Some(Spring { tilt, compliance });
+                return solved(rotation, known, &settings);
             }
-            let next = match last {
-                Some([before, was]) if was != off => tilt - off * (tilt - before) / (off - was),
-                _ => tilt - off,
-            };
-            last = Some([tilt, off]);
-            tilt = next;
+            known.spring = Some(match known.spring {
+                Some(_) => Spring { tilt: bracket.next(tilt, deep - wanted), compliance },
+                None => {
+                    let moment = moment(&parts.axis, &solution);
+                    let about_middle = moment - scene.middle * scene.load;
+                    let compliance = (deep - solution.tilt) / about_middle;
+                    // Below zero there may be two solutions.
+                    let compliance = if compliance > 0.0 { compliance } else { 0.0 };
+                    Spring { tilt: tilt + compliance * moment - (deep - wanted), compliance }
+                }
+            });
         }
         Err(Error::NotConverged {
-            iterations: MOST_TRIALS,
-            residual: last.map_or(f64::INFINITY, |[_, off]| off.abs()),
+            iterations: MOST_TILTS,
+            residual: off.abs(),
             remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
         })
     }
@@ -528,7 +624,7 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        tilt::of_fields(scene, [&block, &roller], pressure.ends(), scene.depth)
+        tilt::of_fields(scene, [&block, &roller], closed(&pressure, contact), scene.depth)
     }
 }
 
@@ -556,15 +652,17 @@ fn problem<'a>(
     open: [bool; 2],
 ) -> Problem<'a> {
     let symmetric = scene.is_symmetric();
-    let (moment, tilt) = scene.moment_and_tilt();
+    let rotation = match scene.tilt {
+        Tilt::Held(tilt) => Rotation::Held(tilt),
+        Tilt::Free(arm) => Rotation::Free(scene.load * arm),
+    };
     Problem {
         compliance,
         axis,
         both_ends: !symmetric,
         gap,
         load: if symmetric { 0.5 * scene.load } else { scene.load },
-        moment,
-        tilt,
+        rotation,
         open: [open[0] && !symmetric, open[1]],
         recedes: [scene.may_end() && !symmetric, scene.may_end()],
         guess: None,

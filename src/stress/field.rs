@@ -701,11 +701,15 @@ impl<'a> PartTarget<'a> {
     fn new(field: &'a Field, waves: &'a Waves, part: usize, y: f64, z: f64) -> Self {
         let (body, loads) = (&field.stack.parts()[part].0, &waves.parts[part]);
         let y = y - field.stack.middle;
-        let eta = y.abs();
-        let faces = body.end.freed.then(|| {
-            let near = if body.half - eta < ON_SURFACE * body.half { 0.0 } else { body.half - eta };
-            Influence::of_faces(body, waves, eta, z, [near, body.half + eta])
-        });
+        // A distance from the face of the size of rounding has no quadrature.
+        let eta = match y.abs() {
+            eta if body.half - eta < ON_SURFACE * body.half => body.half,
+            eta => eta,
+        };
+        let faces = body
+            .end
+            .freed
+            .then(|| Influence::of_faces(body, waves, eta, z, [body.half - eta, body.half + eta]));
         let correction = field.gamma.map(|gamma| {
             let [near, far] = [body.half - eta, body.half + eta].map(|s| transition(s, z, gamma));
             let share = near + body.parity.sign() * far;
