@@ -29,6 +29,7 @@ mutants=(
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
     "src/kernels/strip.rs @@ [f + g, f - g, -h] @@ [f + g, f + g, -h] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
+    "src/stress/round.rs @@ along * (1.0 - 2.0 * along) @@ along * (1.0 + 2.0 * along) @@ --lib stress::round"
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )
 

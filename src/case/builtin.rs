@@ -26,9 +26,10 @@ pub const BUILTIN_CASES: [(&str, &str); 17] = [
 ];
 
 /// Name and text of every study file in `cases/`, the default one first.
-pub const BUILTIN_STUDIES: [(&str, &str); 2] = [
+pub const BUILTIN_STUDIES: [(&str, &str); 3] = [
     ("factorial", include_str!("../../cases/factorial.toml")),
     ("profiled", include_str!("../../cases/profiled.toml")),
+    ("scenes", include_str!("../../cases/scenes.toml")),
 ];
 
 /// The built-in case called `name`, if there is one.

@@ -36,7 +36,7 @@ impl Case {
     pub fn parse(text: &str, path: &Path) -> Result<Case> {
         let document = Document::parse(path, text)?;
         let root = document.root();
-        if root.get("factors").is_some() {
+        if root.get("factors").is_some() || root.get("cases").is_some() {
             return Err(
                 root.error("is a study file, not a case file", "run `edgeline study` on it")
             );

@@ -1,4 +1,4 @@
-//! The study file: a factorial design around one pair of bodies, and further cases.
+//! The study file: a factorial design around one pair of bodies, and further cases, or these alone.
 
 use super::builtin::{BUILTIN_STUDIES, builtin_case};
 use super::case_file::{entries, keys_of, name, only_tables, read_profiles};
@@ -44,10 +44,10 @@ impl Varied {
 pub struct Study {
     /// The study's name.
     pub name: String,
-    /// The factors, in the order of the file.
+    /// The factors, in the order of the file; none where the file only lists cases.
     pub factors: Vec<Varied>,
     /// The cases of the design: all combinations of the levels, or of those of the basic factors. The
-    /// first factor varies slowest.
+    /// first factor varies slowest. Empty without factors.
     pub corners: Vec<Case>,
     /// The two-level design of the factors that have two levels; `None` if there is none of them or a
     /// factor has more.
@@ -119,17 +119,38 @@ impl Study {
                 root.error("is a case file, not a study file", "run `edgeline solve` on it")
             );
         }
-        only_tables(&root, &["name", "centre", "cases", "factors", "generators"])?;
         let study_name = name(&root)?;
         check_name(study_name).map_err(|e| root.place(e))?;
+        let mut study = match (root.get("factors"), root.get("cases")) {
+            (None, Some(_)) => {
+                root.only(&["cases", "name"])?;
+                Study::without_design(study_name)
+            }
+            _ => Study::designed(study_name, &root, path)?,
+        };
+        if let Some(files) = root.get("cases") {
+            study.list(&files.list()?, path.parent().unwrap_or(Path::new("")))?;
+        }
+        Ok(study)
+    }
+
+    /// A study without cases yet.
+    fn without_design(name: &str) -> Study {
+        let (factors, corners, extra) = Default::default();
+        Study { name: name.to_string(), factors, corners, design: None, centre: None, extra }
+    }
+
+    /// The study with the design that the factors of the file at `path` make, without further cases.
+    fn designed(name: &str, root: &Table, path: &Path) -> Result<Study> {
+        only_tables(root, &["name", "centre", "cases", "factors", "generators"])?;
         let table = root.table("factors")?;
         let factors = read_factors(&table)?;
-        let base = read_base(&root, path, &table, &factors)?;
+        let base = read_base(root, path, &table, &factors)?;
         let factors: Vec<Varied> = factors
             .into_iter()
             .map(|(key, entry)| Ok(Varied { key, levels: read_levels(key, &entry)? }))
             .collect::<Result<_>>()?;
-        let design = read_design(&root, &factors)?;
+        let design = read_design(root, &factors)?;
         let case =
             |name: String, levels: &[f64]| design_case(&base, name, &factors, levels, &table);
         let settings = settings(&factors, design.as_ref(), &table)?;
@@ -142,12 +163,7 @@ impl Study {
             }
             false => None,
         };
-        let name = study_name.to_string();
-        let mut study = Study { name, factors, corners, design, centre, extra: Vec::new() };
-        if let Some(files) = root.get("cases") {
-            study.list(&files.list()?, path.parent().unwrap_or(Path::new("")))?;
-        }
-        Ok(study)
+        Ok(Study { factors, corners, design, centre, ..Study::without_design(name) })
     }
 
     /// The factors of the design, those with two levels, with the low and the high one.

@@ -32,7 +32,7 @@ use std::path::{Path, PathBuf};
 /// default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Case or study files, built-in cases, cases of the built-in studies, or `factorial` or `profiled`
+    /// Case or study files, built-in cases, cases of the built-in studies, or the studies by their names
     /// for all of one; the four corners of `factorial` of the lower load by default
     #[arg(value_hint = ValueHint::FilePath, value_name = "CASE")]
     cases: Vec<PathBuf>,
@@ -89,6 +89,11 @@ fn level(text: &str) -> std::result::Result<f64, String> {
     }
 }
 
+/// Whether a file with this text is meant as a study.
+fn is_study(text: &str) -> bool {
+    text.lines().any(|line| line.starts_with("[factors") || line.starts_with("cases"))
+}
+
 /// The cases of the arguments, each once.
 fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
     let built_in: Vec<Study> = Study::all_built_in().collect();
@@ -100,7 +105,7 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
             study.cases().cloned().collect()
         } else if let Some(case) = of_studies().find(|c| is(&c.name)) {
             vec![case.clone()]
-        } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| text.contains("[factors")) {
+        } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| is_study(&text)) {
             Study::read(path)?.cases().cloned().collect()
         } else {
             let case = Case::find(path)?;

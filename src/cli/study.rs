@@ -23,7 +23,7 @@ use clap::Args;
 use std::path::Path;
 use std::time::Instant;
 
-/// Runs a study: every case by every model, compared with finite elements.
+/// Runs a study, `factorial` by default: every case by every model, compared with finite elements.
 ///
 /// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
 /// errors.csv (one row per case, model, curve and quantity), effects.csv, verification.csv,
@@ -31,7 +31,8 @@ use std::time::Instant;
 /// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
 /// curves it takes about a minute, nearly all of it for timing and for the published method on cells
 /// (half as long with --repeats 0); with --fem live it takes minutes per case. `edgeline study profiled` runs
-/// the other built-in study, five factors in 16 runs and a centre point; it takes several times as long.
+/// five factors in 16 runs and a centre point, `edgeline study scenes` fourteen cases that slide, that have
+/// profiles, eccentric loads and offsets, or other materials; they take several times as long.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
@@ -50,7 +51,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let study = arguments.study.find_study()?;
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
-    let run = arguments.study.run(&study, arguments.repeats, true)?;
+    let run = arguments.study.run(&study, &EdgeModel::ALL, arguments.repeats, true)?;
     if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.result.is_err()) {
         return Err(first_failure(&run));
     }
@@ -83,8 +84,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The built-in gates. Their thresholds apply to the built-in study; `edgeline gate` takes those of
-/// another study.
+/// The built-in gates of the default study; `edgeline gate` has those of the others.
 fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome>> {
     if !options.is_default() {
         return Ok(Vec::new());

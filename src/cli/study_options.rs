@@ -8,6 +8,7 @@ use super::published;
 use super::records::Records;
 use super::values::{chosen_models, source};
 use crate::base::Result;
+use crate::body::EdgeModel;
 use crate::case::{BUILTIN_STUDIES, Case, Study};
 use crate::fem::{Code, FemResults};
 use crate::host::{self, check_memory};
@@ -24,13 +25,13 @@ use std::path::PathBuf;
 /// The study, and how it is run.
 #[derive(Args)]
 pub(super) struct StudyOptions {
-    /// A study file, or a built-in study: `factorial`, the default, or `profiled`
+    /// A study file, or a built-in study: `factorial`, `profiled` or `scenes`
     #[arg(value_hint = ValueHint::FilePath)]
     pub(super) study: Option<PathBuf>,
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     pub(super) out: PathBuf,
-    /// Models to run, separated by commas; all by default
+    /// Models to run, separated by commas; all by default, or those that a gate is about
     #[arg(long, value_delimiter = ',', value_parser = source())]
     methods: Vec<Source>,
     /// Source of the finite-element curves
@@ -91,11 +92,21 @@ impl StudyOptions {
         self.range.range()
     }
 
-    /// Runs `study` with live FEM in folders below the one for the results.
+    /// Runs `study` by the chosen models, by the `usual` ones if none was chosen, with live FEM in folders
+    /// below the one for the results.
     ///
     /// `with_cells` tells whether the published method on cells may take part.
-    pub(super) fn run(&self, study: &Study, repeats: usize, with_cells: bool) -> Result<StudyRun> {
-        let methods = chosen_models(&self.methods);
+    pub(super) fn run(
+        &self,
+        study: &Study,
+        usual: &[EdgeModel],
+        repeats: usize,
+        with_cells: bool,
+    ) -> Result<StudyRun> {
+        let methods = match self.methods.is_empty() {
+            true => usual.to_vec(),
+            false => chosen_models(&self.methods),
+        };
         let (cases, models) = (study.cases().count(), methods.len());
         check_memory(
             &format!("a study of {cases} cases by {models} models"),

@@ -28,7 +28,7 @@ pub fn table(outcomes: &[GateOutcome]) -> String {
     ];
     rows.extend(outcomes.iter().map(|o| {
         [
-            o.name.clone(),
+            o.title(),
             o.method.clone(),
             number(o.value),
             significant(o.limit, 5),
@@ -73,7 +73,9 @@ pub fn markdown(outcomes: &[GateOutcome]) -> String {
         writeln!(
             text,
             "| {} | {} | {value} | {limit} | {margin} | {} | {holds} | {note} |",
-            o.name, o.method, o.compared
+            o.title(),
+            o.method,
+            o.compared
         )
         .expect("a string grows");
     }
@@ -90,7 +92,8 @@ pub fn junit(outcomes: &[GateOutcome]) -> String {
          failures=\"{failed}\" errors=\"0\">\n"
     );
     for o in outcomes {
-        let (name, class) = (escape(&format!("{}: {}", o.kind.name(), o.name)), escape(&o.method));
+        let (name, class) =
+            (escape(&format!("{}: {}", o.kind.name(), o.title())), escape(&o.method));
         let state = format!(
             "value {}, limit {}, {} compared; {}",
             number(o.value),
@@ -144,6 +147,7 @@ mod tests {
 
     fn outcomes() -> Vec<GateOutcome> {
         let good = GateOutcome {
+            study: "scenes".to_string(),
             name: "pressure, RMS".to_string(),
             method: "quarter-space".to_string(),
             kind: Kind::Limit,
@@ -173,6 +177,7 @@ mod tests {
         let text = table(&all);
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!(lines.len(), 3);
+        assert!(lines[1].starts_with("scenes: pressure, RMS "), "{text}");
         assert!(lines[1].contains("0.00123  0.005"), "{text}");
         assert!(lines[2].ends_with("NO     nothing was compared"), "{text}");
         let markdown = markdown(&all);
@@ -186,7 +191,7 @@ mod tests {
     fn junit_is_escaped_and_counts() {
         let xml = junit(&outcomes());
         assert!(xml.contains("tests=\"2\" failures=\"1\""));
-        assert!(xml.contains("limit: a &lt; b &amp; &quot;c&quot;"));
+        assert!(xml.contains("limit: scenes: a &lt; b &amp; &quot;c&quot;"));
         assert_eq!(xml.matches("<testcase").count(), 2);
         assert_eq!(xml.matches("<failure").count(), 1);
     }

@@ -158,6 +158,7 @@ mod tests {
     #[test]
     fn failed_gates_are_named() {
         let good = GateOutcome {
+            study: "factorial".to_string(),
             name: "stress".to_string(),
             method: "mirror".to_string(),
             kind: Kind::Limit,

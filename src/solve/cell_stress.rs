@@ -173,7 +173,7 @@ impl Summed<'_> {
                 0.0 => StressTensor::default(),
                 step => (at[1] - at[2]) * (0.5 / step),
             };
-            RoundStress::new(*x, z, at[0], &slope, contact)
+            RoundStress::new(*x, z, at[0], slope, contact)
         };
         points.iter().zip(stresses.chunks_exact(3)).map(round).collect()
     }

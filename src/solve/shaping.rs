@@ -35,17 +35,16 @@ impl Shaping {
         self.curvatures[body] != 0.0 || self.friction != 0.0
     }
 
-    /// The stress of a body (p0). What the round shape makes of the friction's part is of second order
-    /// and left out.
+    /// The stress of a body (p0).
     pub fn stress(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
-        match body {
-            BodyKind::Block => {
-                let pressed = stress.on_one_side(self.curvatures.block);
-                pressed + stress.flat.traction * self.friction
-            }
-            BodyKind::Roller => {
-                stress.at(self.curvatures.roller) + stress.flat.traction * -self.friction
-            }
+        let curvature = self.curvatures[body];
+        let (pressed, friction) = match body {
+            BodyKind::Block => (stress.on_one_side(curvature), self.friction),
+            BodyKind::Roller => (stress.at(curvature), -self.friction),
+        };
+        match friction == 0.0 {
+            true => pressed,
+            false => pressed + stress.under_traction(curvature) * friction,
         }
     }
 }

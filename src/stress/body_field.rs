@@ -78,9 +78,13 @@ impl<'a> BodyField<'a> {
         // What the round shape adds is stated per C / R. The tension of the squeezed roller is that of the
         // mean load, whatever the unit.
         let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
+        let square = self.unit * self.unit;
         let of = |RoundStress { flat, round }| RoundStress {
             flat: flat * self.unit,
-            round: (round - tension) * (self.unit * self.unit) + tension,
+            round: FlatStress {
+                pressure: (round.pressure - tension) * square + tension,
+                traction: round.traction * square,
+            },
         };
         stresses.into_iter().map(of).collect()
     }

@@ -304,9 +304,8 @@ impl<'a> Field<'a> {
     /// [`Field::along`] in the plane x = 0, with the contribution of a round surface per C / R.
     pub fn round_along(&self, z: f64, ys: &[f64]) -> Vec<RoundStress> {
         let flat = self.along(0.0, z, ys);
-        let slope = StressTensor::default();
         let round = |(s, y): (FlatStress, &f64)| {
-            RoundStress::new(0.0, z, s, &slope, &self.local_contact(*y))
+            RoundStress::new(0.0, z, s, FlatStress::default(), &self.local_contact(*y))
         };
         flat.into_iter().zip(ys).map(round).collect()
     }
@@ -902,11 +901,11 @@ fn rounded(
             let own = next();
             let slope = if sloped(x) {
                 let (before, after) = (next(), next());
-                (after.pressure - before.pressure) * (0.5 / STEP)
+                (after - before) * (0.5 / STEP)
             } else {
-                StressTensor::default()
+                FlatStress::default()
             };
-            RoundStress::new(x, z, own, &slope, contact)
+            RoundStress::new(x, z, own, slope, contact)
         };
         xs.iter().map(at).collect()
     })

@@ -1,7 +1,7 @@
 //! The stress of a body with a flat surface under all that may act on the contact.
 
 use crate::base::StressTensor;
-use std::ops::Mul;
+use std::ops::{Mul, Sub};
 
 /// A stress under the contact's pressure, and under the same as a traction along +x.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
@@ -27,6 +27,13 @@ impl From<StressTensor> for FlatStress {
     /// Without a traction.
     fn from(pressure: StressTensor) -> Self {
         Self { pressure, ..Self::default() }
+    }
+}
+
+impl Sub for FlatStress {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        Self { pressure: self.pressure - other.pressure, traction: self.traction - other.traction }
     }
 }
 

@@ -2,7 +2,7 @@
 //! accepted last.
 //!
 //! A gate takes the worst of all numbers that it selects. A gate that selects nothing fails: a
-//! wrong filter must not look like a pass.
+//! wrong filter must not look like a pass. Each built-in study has thresholds of its own.
 
 use super::errors::ErrorRow;
 use super::response::Response;
@@ -14,8 +14,12 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The thresholds that are built into the program.
-const DEFAULT_GATES: &str = include_str!("gates.toml");
+/// The thresholds that are built into the program, by the name of their study; the default one's first.
+const BUILTIN_GATES: [(&str, &str); 3] = [
+    ("factorial", include_str!("gates/factorial.toml")),
+    ("profiled", include_str!("gates/profiled.toml")),
+    ("scenes", include_str!("gates/scenes.toml")),
+];
 
 /// The accepted numbers that are built into the program.
 const DEFAULT_BASELINE: &str = include_str!("../../results/baseline.json");
@@ -32,12 +36,30 @@ pub struct Gates {
 }
 
 impl Gates {
-    /// The thresholds that are built into the program.
+    /// The thresholds of the default study that are built into the program.
     ///
     /// # Errors
     /// As [`parse`].
     pub fn built_in() -> Result<Self> {
-        parse(DEFAULT_GATES, Path::new("gates.toml"))
+        Self::built_in_for(BUILTIN_GATES[0].0)
+    }
+
+    /// The thresholds that are built into the program for the built-in `study`, and the default study's for any
+    /// other.
+    ///
+    /// # Errors
+    /// As [`parse`].
+    pub fn built_in_for(study: &str) -> Result<Self> {
+        let own = BUILTIN_GATES.iter().find(|(name, _)| *name == study);
+        let (name, text) = own.unwrap_or(&BUILTIN_GATES[0]);
+        parse(text, &Path::new("gates").join(name).with_extension("toml"))
+    }
+
+    /// The models whose numbers the gates take: [`Drift::methods`], or all.
+    pub fn methods(&self) -> Vec<EdgeModel> {
+        let stated = self.drift.iter().flat_map(|drift| drift.methods.clone());
+        let stated: Vec<EdgeModel> = stated.collect();
+        if stated.is_empty() { EdgeModel::ALL.to_vec() } else { stated }
     }
 }
 
@@ -72,13 +94,16 @@ pub struct Gate {
 }
 
 /// Limit of the drift.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Drift {
     /// Largest change of a maximum or RMS error with recorded FEM curves (p0).
     pub recorded: f64,
     /// The same with FEM computed in the run, whose mesh follows the installed gmsh (p0).
     pub live: f64,
+    /// The models whose numbers are accepted; empty for all.
+    #[serde(default)]
+    pub methods: Vec<EdgeModel>,
 }
 
 /// A number that gates can select.
@@ -115,12 +140,12 @@ impl Number {
         text
     }
 
-    /// Its key among the accepted numbers.
-    fn key(&self) -> String {
+    /// Its key among the accepted numbers, in a run of `study`.
+    fn key(&self, study: &str) -> String {
         let excluded = self.excluded_c.map(|c| format!(" {c}")).unwrap_or_default();
         let (case, method) = (&self.case, self.method);
         let (body, curve) = (&self.body, &self.curve);
-        format!("{case} {method} {body} {curve}{excluded}")
+        format!("{study} {case} {method} {body} {curve}{excluded}")
             .split_whitespace()
             .collect::<Vec<_>>()
             .join(" ")
@@ -153,6 +178,9 @@ impl Kind {
 /// The outcome of one gate.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GateOutcome {
+    /// The study that was run; empty for curves that were brought in.
+    #[serde(default)]
+    pub study: String,
     /// Its name.
     pub name: String,
     /// The method, or `all`.
@@ -173,7 +201,17 @@ pub struct GateOutcome {
     pub note: String,
 }
 
-/// Accepted numbers: for each place (case, method, body, curve, range) the value of each
+impl GateOutcome {
+    /// Its name after that of its study, if it is one of a study.
+    pub fn title(&self) -> String {
+        match self.study.as_str() {
+            "" => self.name.clone(),
+            study => format!("{study}: {}", self.name),
+        }
+    }
+}
+
+/// Accepted numbers: for each place (study, case, method, body, curve, range) the value of each
 /// `quantity_measure`.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Baseline {
@@ -332,6 +370,7 @@ impl Gate {
             Some(w) => format!("worst at {}", w.place()),
         };
         GateOutcome {
+            study: String::new(),
             name: self.name.clone(),
             method: self.method.name().to_string(),
             kind: Kind::Limit,
@@ -362,9 +401,29 @@ impl Baseline {
             // Five digits after the point of an error in p0 are far below any drift limit.
             let value = (n.value * 1e6).round() / 1e6;
             let name = format!("{}_{}", n.quantity, n.measure);
-            baseline.numbers.entry(n.key()).or_default().insert(name, value);
+            baseline.numbers.entry(n.key(&run.study)).or_default().insert(name, value);
         }
         baseline
+    }
+
+    /// These numbers and those of `other`.
+    #[must_use]
+    pub fn with(mut self, other: Baseline) -> Self {
+        self.numbers.extend(other.numbers);
+        Self { version: other.version, ..self }
+    }
+
+    /// The numbers of one model in one study.
+    fn of_model(&self, study: &str, method: EdgeModel) -> Self {
+        let own = |place: &str| {
+            let mut words = place.split(' ');
+            words.next() == Some(study) && words.nth(1) == Some(method.name())
+        };
+        let numbers = self.numbers.iter().filter(|(place, _)| own(place));
+        Self {
+            version: self.version.clone(),
+            numbers: numbers.map(|(place, values)| (place.clone(), values.clone())).collect(),
+        }
     }
 
     /// Parses the text of the file of accepted numbers `path`.
@@ -472,14 +531,20 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
             outcome.note = "not counted: an accuracy gate of this method failed".to_string();
         }
     }
-    if let Some(drift) = gates.drift {
+    if let Some(drift) = &gates.drift {
         let live = run.cases.iter().any(|c| c.reference().is_some_and(|r| r.provenance.live));
         let limit = if live { drift.live } else { drift.recorded };
         let now = Baseline::of(run);
-        outcomes.extend(run.methods.iter().map(|&m| drift_gate(m, limit, &now, baseline)));
+        let accepted = gates.methods();
+        let methods = run.methods.iter().filter(|&method| accepted.contains(method));
+        outcomes.extend(methods.map(|&method| {
+            let of_model = |all: &Baseline| all.of_model(&run.study, method);
+            drift_gate(method, limit, &of_model(&now), baseline.map(of_model))
+        }));
     }
     if outcomes.len() == 1 {
         outcomes.push(GateOutcome {
+            study: String::new(),
             name: "any gate".to_string(),
             method: "all".to_string(),
             kind: Kind::Coverage,
@@ -491,16 +556,22 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
             note: "no gate of the thresholds file applies to this run".to_string(),
         });
     }
+    for outcome in &mut outcomes {
+        outcome.study.clone_from(&run.study);
+    }
     outcomes
 }
 
-/// Every corner and the centre of the study must have a reference to be compared with.
+/// Every corner and the centre of the study must have a reference to be compared with; in a study without
+/// a design every case.
 fn coverage(run: &StudyRun) -> GateOutcome {
-    let design: Vec<_> = run.cases.iter().filter(|c| c.role != Role::Extra).collect();
+    let designed = run.cases.iter().any(|c| c.role != Role::Extra);
+    let design: Vec<_> = run.cases.iter().filter(|c| !designed || c.role != Role::Extra).collect();
     let missing: Vec<&str> =
         design.iter().filter(|c| c.reference().is_none()).map(|c| c.case.name.as_str()).collect();
     let compared = run.cases.iter().filter(|c| c.reference().is_some()).count();
     GateOutcome {
+        study: String::new(),
         name: "every case of the design has a FEM answer".to_string(),
         method: "all".to_string(),
         kind: Kind::Coverage,
@@ -517,28 +588,20 @@ fn coverage(run: &StudyRun) -> GateOutcome {
     }
 }
 
+/// The drift of one model's numbers in one study, `now` against those of the `baseline`.
 fn drift_gate(
     method: EdgeModel,
     limit: f64,
     now: &Baseline,
-    baseline: Option<&Baseline>,
+    baseline: Option<Baseline>,
 ) -> GateOutcome {
-    let of_method = |b: &Baseline| Baseline {
-        version: b.version.clone(),
-        numbers: b
-            .numbers
-            .iter()
-            .filter(|(place, _)| place.split(' ').nth(1) == Some(method.name()))
-            .map(|(p, v)| (p.clone(), v.clone()))
-            .collect(),
-    };
-    let now = of_method(now);
-    let accepted = baseline.map(of_method).unwrap_or_default();
+    let has_baseline = baseline.is_some();
+    let accepted = baseline.unwrap_or_default();
     let compared: usize = now.numbers.values().map(BTreeMap::len).sum();
     // Changes beyond the limit, and the largest change.
-    let beyond = accepted.changes(&now, limit);
-    let largest = accepted.changes(&now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
-    let note = if baseline.is_none() {
+    let beyond = accepted.changes(now, limit);
+    let largest = accepted.changes(now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
+    let note = if !has_baseline {
         "there are no accepted numbers: accept them with `edgeline gate --accept`".to_string()
     } else if compared == 0 {
         "nothing was compared".to_string()
@@ -553,6 +616,7 @@ fn drift_gate(
         }
     };
     GateOutcome {
+        study: String::new(),
         name: "drift from the accepted numbers".to_string(),
         method: method.name().to_string(),
         kind: Kind::Drift,

@@ -222,9 +222,10 @@ fn frictions_mirror_and_superpose() {
             let own = at(&some, kind, x) - at(&none, kind, x);
             small("mirror image", apart(&turned, &own), 1e-12);
         }
-        // Flush bodies of one material differ by their round shape alone.
+        // Flush bodies of one material differ by their round shape alone, by friction times C / R.
+        let round = 0.2 * some.hertz().c_m / case(1e-5, 5.0, 1.0).roller.radius_m;
         let [block, roller] = BodyKind::ALL.map(|kind| at(&some, kind, x) - at(&none, kind, x));
-        small("opposite tractions", apart(&block, &(roller * -1.0)), 1e-12);
+        small("opposite tractions", apart(&block, &(roller * -1.0)), 2.0 * round);
     }
 }
 

@@ -212,7 +212,7 @@ fn stresses_of_cells() {
                 if body == BodyKind::Roller {
                     let slope = (flat([x + 1e-3, y, z]) - flat([x - 1e-3, y, z])) * 500.0;
                     let curvature = hertz.c_m / case.roller.radius_m;
-                    want = RoundStress::new(x, z, want, &slope, &LocalContact::HERTZ).at(curvature);
+                    want = RoundStress::new(x, z, want, slope, &LocalContact::HERTZ).at(curvature);
                 }
                 small(&format!("{model} {} {x} {y} {z}", body.name()), apart(got, &want), 3e-3);
             }

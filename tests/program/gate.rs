@@ -3,7 +3,7 @@
 use crate::support::{edgeline, said};
 use edgeline::base::Result;
 use edgeline::body::EdgeModel;
-use edgeline::case::{Case, Study};
+use edgeline::case::{Case, Sliding, Study};
 use edgeline::fem;
 use edgeline::solve::{Options, Solution, solve_group};
 use edgeline::study::gate::{self, Baseline, GateOutcome};
@@ -18,8 +18,14 @@ const STUDY: &str = "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 21
 
 const METHODS: [EdgeModel; 2] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 
+/// [`STUDY`] by the models, solved by `solver`.
 fn run_with(solver: &Solver) -> StudyRun {
-    let study = Study::parse(STUDY, Path::new("small.toml")).unwrap();
+    run_of(STUDY, solver)
+}
+
+/// The study of this text by the models, solved by `solver`.
+fn run_of(text: &str, solver: &Solver) -> StudyRun {
+    let study = Study::parse(text, Path::new("small.toml")).unwrap();
     let recorded = |case: &Case| {
         let found = fem::FemResults::embedded_of(case).map_err(|e| e.to_string())?;
         found.map(|r| reference::from_fem(&r)).ok_or_else(|| "no record".to_string())
@@ -78,6 +84,28 @@ fn flipped_shears_are_named() {
     }
     // The limits alone detect it too, without accepted numbers.
     assert!(outcomes.iter().any(|o| o.kind == gate::Kind::Limit && o.method == "quarter-space"));
+}
+
+#[test]
+fn friction_of_the_other_sign_is_named() {
+    let sliding = |solver: &Solver| {
+        let run = run_of("name = \"scenes\"\ncases = [\"sliding-flush\"]\n", solver);
+        let mut outcomes =
+            gate::evaluate(&run, &gate::Gates::built_in_for("scenes").unwrap(), None);
+        outcomes.retain(|o| !o.passed && o.name.starts_with("sliding"));
+        outcomes
+    };
+    assert_eq!(sliding(&usual), Vec::new());
+    let backwards = |cases: &[Case], method: EdgeModel| {
+        let turned = |case: &Case| Case {
+            sliding: Sliding { friction: -case.sliding.friction },
+            ..case.clone()
+        };
+        usual(&cases.iter().map(turned).collect::<Vec<_>>(), method)
+    };
+    let failed = sliding(&backwards);
+    let notes: Vec<&str> = failed.iter().map(|o| o.note.as_str()).collect();
+    assert!(failed.len() == 3 && notes.iter().all(|n| n.contains("sigma_")), "{failed:?}");
 }
 
 /// Runs `edgeline gate` with the table of the job's summary in the same folder.

@@ -355,3 +355,19 @@ fn errors_of_generators_name_the_line_and_the_remedy() {
         assert!(message.starts_with("f.toml:1: "), "{message}");
     }
 }
+
+#[test]
+fn a_study_may_list_cases_alone() {
+    let listed = study(&["name = \"s\"\ncases = [\"sliding-half\", \"flush-short\"]\n"]);
+    let names: Vec<&str> = listed.cases().map(|case| case.name.as_str()).collect();
+    assert_eq!(names, ["sliding-half", "flush-short"]);
+    assert!(listed.factors.is_empty() && listed.design.is_none() && listed.pairs().is_empty());
+    // What a design alone has is refused.
+    for more in ["centre = true\n", "[roller]\nradius_m = 1.0\n"] {
+        let text = format!("name = \"s\"\ncases = [\"flush-short\"]\n{more}");
+        let error = parse_study(&text).unwrap_err().to_string();
+        assert!(error.contains("unknown key"), "{more}: {error}");
+    }
+    let error = parse("name = \"s\"\ncases = [\"flush-short\"]\n").unwrap_err().to_string();
+    assert!(error.contains("is a study file, not a case file"), "{error}");
+}

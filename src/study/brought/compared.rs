@@ -254,6 +254,7 @@ const ELSEWHERE: [&str; 3] = ["critical_value", "critical_depth", "speedup"];
 
 fn nothing_compared(name: &str) -> GateOutcome {
     GateOutcome {
+        study: String::new(),
         name: name.to_string(),
         method: GATED.name().to_string(),
         kind: crate::study::gate::Kind::Coverage,

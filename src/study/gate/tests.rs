@@ -1,5 +1,7 @@
 use super::*;
+use crate::case::{Case, Study};
 use crate::study::synthetic::{self, Twist};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 const GATES: &str = r#"
@@ -140,8 +142,40 @@ fn bad_thresholds_are_refused_with_their_line() {
 }
 
 #[test]
-fn the_built_in_thresholds_parse() {
-    let gates = Gates::built_in().unwrap();
-    assert!(gates.drift.is_some());
-    assert!(gates.gate.iter().any(|g| g.method == EdgeModel::QuarterSpace));
+fn every_built_in_study_has_thresholds_and_accepted_numbers_of_its_own() {
+    let accepted = Baseline::built_in().unwrap();
+    let mut places: BTreeSet<[String; 3]> = BTreeSet::new();
+    let own = |study: &Study| BUILTIN_GATES.iter().any(|(name, _)| *name == study.name);
+    for study in Study::all_built_in() {
+        assert!(own(&study), "{}", study.name);
+        let gates = Gates::built_in_for(&study.name).unwrap();
+        assert!(gates.gate.iter().any(|g| g.method == EdgeModel::QuarterSpace));
+        assert!(gates.drift.is_some());
+        let of_case = |case: &Case| {
+            let place =
+                |method: EdgeModel| [&study.name, &case.name, method.name()].map(String::from);
+            gates.methods().into_iter().map(place).collect::<Vec<_>>()
+        };
+        places.extend(study.cases().flat_map(of_case));
+    }
+    let of_numbers = |place: &String| {
+        let words: Vec<&str> = place.split(' ').collect();
+        [words[0], words[1], words[2]].map(String::from)
+    };
+    assert_eq!(accepted.numbers.keys().map(of_numbers).collect::<BTreeSet<_>>(), places);
+    assert_eq!(Gates::built_in_for("any other").unwrap(), Gates::built_in().unwrap());
+}
+
+#[test]
+fn numbers_of_another_study_and_of_other_models_do_not_count() {
+    let run = synthetic::run(Twist::None);
+    let mut elsewhere = synthetic::run(Twist::EndShare(EdgeModel::Guilbault, 1.1));
+    elsewhere.study = "elsewhere".to_string();
+    let both = Baseline::of(&elsewhere).with(Baseline::of(&run));
+    assert_eq!(failed(&evaluate(&run, &gates(), Some(&both))), Vec::<String>::new());
+    let only = parse(&format!("{GATES}methods = [\"quarter-space\"]\n"), Path::new("g")).unwrap();
+    let outcomes = evaluate(&run, &only, Some(&both));
+    let drifts = outcomes.iter().filter(|o| o.kind == Kind::Drift);
+    let titles: Vec<String> = drifts.map(|o| format!("{}, {}", o.title(), o.method)).collect();
+    assert_eq!(titles, ["factorial: drift from the accepted numbers, quarter-space"]);
 }
