@@ -1,7 +1,12 @@
 //! The verdict of a study in words, from its summary.
 
-use super::study_summary::{FemError, FemOrigin, PublishedSummary, Span, StudySummary};
+use super::brought::FileSummary;
+use super::study_summary::{
+    CaseSummary, FemError, FemOrigin, PublishedSummary, Span, StudySummary,
+};
 use crate::base::number::{duration, fixed, rounded, significant};
+use crate::body::EdgeModel;
+use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
 use crate::study::gate::GateOutcome;
 use crate::study::timing::Ratio;
@@ -15,7 +20,23 @@ pub fn sentences(summary: &StudySummary) -> Vec<String> {
     all.extend(equal_error(&summary.speedups));
     all.extend(summary.published.as_ref().map(published));
     all.extend(published_time(&summary.published_speedups));
+    all.extend(summary.cases.iter().flat_map(brought));
     all
+}
+
+/// How far quarter-space and the codes are off the curves from files.
+fn brought(case: &CaseSummary) -> Vec<String> {
+    let shown = |source: &Source| source.is_engine() || *source == EdgeModel::QuarterSpace.into();
+    let of_file = |file: &FileSummary| {
+        let sources = file.errors.iter().map(|e| &e.source).filter(|source| shown(source));
+        let parts =
+            sources.filter_map(|s| Some(format!("{} in {}", s.title(), file.differences(s)?)));
+        let parts: Vec<String> = parts.collect();
+        let said =
+            if parts.is_empty() { "nothing was compared".to_string() } else { parts.join("; ") };
+        format!("Largest differences from {} in {}: {said}.", file.name, case.name)
+    };
+    case.brought.iter().map(of_file).collect()
 }
 
 /// The deviations of the models from FEM.

@@ -61,6 +61,13 @@ impl Engine {
 }
 
 impl Source {
+    /// All that the program has itself: the models, the codes, and the published method.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let codes = Code::ALL.into_iter().map(Engine::of);
+        let engines = codes.chain([Engine::published()]).map(Self::from);
+        EdgeModel::ALL.into_iter().map(Self::from).chain(engines)
+    }
+
     /// The name in files.
     pub fn name(&self) -> &str {
         match self {
