@@ -9,7 +9,6 @@ use crate::body::EdgeModel;
 use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
 use crate::study::gate::GateOutcome;
-use crate::study::timing::Ratio;
 
 /// Sentences for the head of a report, the most important first.
 pub fn sentences(summary: &StudySummary) -> Vec<String> {
@@ -124,12 +123,15 @@ fn time(summary: &StudySummary) -> Option<String> {
 fn equal_error(speedups: &[Speedup]) -> Option<String> {
     let own = || speedups.iter().filter(|s| s.against == Against::Limit);
     let level = own().map(|s| s.level).reduce(f64::min)?;
-    let here: Vec<Ratio> = own().filter(|s| s.level == level).map(|s| s.ratio).collect();
-    let low = here.iter().min_by(|a, b| a.value.total_cmp(&b.value))?;
-    let high = here.iter().max_by(|a, b| a.value.total_cmp(&b.value))?;
+    let here: Vec<&Speedup> = own().filter(|s| s.level == level).collect();
+    let ratios = || here.iter().map(|s| s.ratio);
+    let low = ratios().min_by(|a, b| a.value.total_cmp(&b.value))?;
+    let high = ratios().max_by(|a, b| a.value.total_cmp(&b.value))?;
     let cases = if here.len() == 1 { "case" } else { "cases" };
+    let codes =
+        if here.iter().all(|s| s.engine.is_fenicsx()) { "FEM" } else { "the faster FEM code" };
     Some(format!(
-        "Timed in one run on one machine and each right to {level} p0 of its own limit, FEM took {} ± \
+        "Timed in one run on one machine and each right to {level} p0 of its own limit, {codes} took {} ± \
          {} to {} ± {} times as long as quarter-space ({} {cases}).",
         rounded(low.value),
         rounded(low.plus_minus),
@@ -174,7 +176,9 @@ fn published_time(speedups: &[Speedup]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Engine;
     use crate::study::gate::Kind;
+    use crate::study::timing::Ratio;
 
     #[test]
     fn failed_gates_are_named() {
@@ -199,6 +203,7 @@ mod tests {
             case: "a".to_string(),
             level,
             against,
+            engine: Engine::fenicsx(),
             size: 1.0,
             unknowns: None,
             fem_error: level,

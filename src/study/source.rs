@@ -31,6 +31,11 @@ impl Engine {
         Self::of(Code::Fenicsx)
     }
 
+    /// Whether it is FEniCSx.
+    pub fn is_fenicsx(&self) -> bool {
+        *self == Self::fenicsx()
+    }
+
     /// The name in files of the published method on uniform cells.
     pub const PUBLISHED: &'static str = "guilbault-cells";
 
