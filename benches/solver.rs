@@ -8,7 +8,7 @@ use criterion::{BenchmarkId, Criterion, Throughput};
 use edgeline::base::{Material, Parity};
 use edgeline::body::{Body, EdgeModel, Layer, Resolution, Shape};
 use edgeline::case::{Case, Factors};
-use edgeline::contact::{self, Compliance, ContactSettings, Problem, Straight};
+use edgeline::contact::{self, Compliance, ContactSettings, Problem, Rotation, Straight};
 use edgeline::kernels::wave::{Direction, Places, WAVES, Wanted, WaveTable};
 use edgeline::kernels::{deflection, line_load, love};
 use edgeline::solve::{Options, Scene, SolvedScene, solve};
@@ -112,8 +112,7 @@ fn compliance_and_contact(c: &mut Criterion) {
             both_ends: false,
             gap: &Straight,
             load: 0.5 * PI * axis.end(),
-            moment: None,
-            tilt: 0.0,
+            rotation: Rotation::Held(0.0),
             open: [false; 2],
             recedes: [false; 2],
             guess: None,

@@ -77,7 +77,7 @@ impl PartialEq for Load {
 pub struct Pose {
     /// The tilt that is held (rad); positive where the side of larger y is pressed deeper. It is that of
     /// the lines x = 0 at the depth of one roller radius in both bodies, by least squares over the
-    /// overlap.
+    /// contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_rad: Option<f64>,
     /// y of the block's middle from the roller's (m).

@@ -8,15 +8,16 @@ use super::provenance::{command_line, now, processor};
 use super::published;
 use super::records::Records;
 use super::values::{checked_tolerance, chosen_models, source};
-use crate::base::number::{duration, rounded};
+use crate::base::number::{duration, duration_with_spread, rounded};
 use crate::base::{Error, Result};
 use crate::case::{Case, Study};
-use crate::fem::Driver;
+use crate::fem::{Code, Driver};
 use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
 use crate::solve::{Options, solve_group};
 use crate::study::bench::{
-    self, Against, BEST, Bench, BenchSetup, CaseBench, FemMeshes, Machine, Origin, Speedup,
+    self, Against, BEST, Bench, BenchSetup, CaseBench, CodeTime, CodeTimes, FemMeshes, Machine,
+    MeshOf, Origin, Speedup,
 };
 use crate::study::{Models, Source};
 use clap::{Args, ValueHint};
@@ -28,7 +29,8 @@ use std::path::{Path, PathBuf};
 /// both sides) and bench.json into the output folder. Errors are taken against FEM's finest mesh
 /// and against quarter-space at the tightest tolerance. Only with --fem live are times of FEM and
 /// the models divided; recorded ones are shown apart. A mesh that is done in the folder already is
-/// not run again: give a new folder to time both sides anew. Takes a few minutes for the four
+/// not run again: give a new folder to time both sides anew. With meshes by several codes the fastest within
+/// an error, of whichever code, is what quarter-space is compared with. Takes a few minutes for the four
 /// default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {
@@ -62,15 +64,17 @@ pub(super) struct Arguments {
     /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
-    /// Relative element sizes of the meshes with --fem live
+    /// Relative element sizes of the meshes with --fem live; ENGINE=S for one by another code than --engine,
+    /// as in 2,1.4,calculix=2
     #[arg(
         long,
         value_delimiter = ',',
         value_name = "S,S",
         default_value = "2,1.4",
+        value_parser = mesh_of,
         allow_negative_numbers = true
     )]
-    sizes: Vec<f64>,
+    sizes: Vec<(Option<Code>, f64)>,
     /// Runs of each mesh with --fem live
     #[arg(long, value_name = "N", default_value_t = 2)]
     fem_repeats: usize,
@@ -79,6 +83,21 @@ pub(super) struct Arguments {
     /// Print bench.json and nothing else
     #[arg(long)]
     json: bool,
+}
+
+/// Parses the size of a mesh, with its code in front or not.
+fn mesh_of(text: &str) -> std::result::Result<(Option<Code>, f64), String> {
+    let (code, size) = match text.split_once('=') {
+        None => (None, text),
+        Some((name, size)) => match Code::ALL.into_iter().find(|code| code.name() == name) {
+            Some(code) => (Some(code), size),
+            None => {
+                let names = Code::ALL.map(Code::name).join(", ");
+                return Err(format!("there is no code {name}; there are {names}"));
+            }
+        },
+    };
+    size.parse().map(|size| (code, size)).map_err(|_| "give sizes, as in 2,1.4,calculix=2".into())
 }
 
 /// Parses an error level.
@@ -173,15 +192,20 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// Live FEM on each mesh, by its relative element size.
-fn drivers(arguments: &Arguments) -> Result<Vec<(f64, Driver)>> {
-    match arguments.fem {
-        FemSource::Recorded => Ok(Vec::new()),
-        FemSource::Live => descending(&arguments.sizes)
-            .into_iter()
-            .map(|size| Ok((size, Driver::new(arguments.options.settings(size))?)))
-            .collect(),
+/// Live FEM on each mesh, the coarsest of each code first.
+fn drivers(arguments: &Arguments) -> Result<Vec<(MeshOf, Driver)>> {
+    if arguments.fem == FemSource::Recorded {
+        return Ok(Vec::new());
     }
+    let options = &arguments.options;
+    let sizes = |code: Code| {
+        let own = arguments.sizes.iter().filter(|(of, _)| of.unwrap_or(options.engine()) == code);
+        descending(&own.map(|(_, size)| *size).collect::<Vec<_>>())
+    };
+    let meshes = Code::ALL
+        .into_iter()
+        .flat_map(|code| sizes(code).into_iter().map(move |size| MeshOf { code, size }));
+    meshes.map(|of| Ok((of, Driver::new(options.settings_of(of.code, of.size))?))).collect()
 }
 
 /// Runs the cases by models and FEM.
@@ -190,7 +214,7 @@ fn measure(
     cases: &[Case],
     tolerances: &[f64],
     records: &Records,
-    drivers: &[(f64, Driver)],
+    drivers: &[(MeshOf, Driver)],
 ) -> Vec<CaseBench> {
     let bar = progress_bar();
     let cold = ColdRuns::new(&arguments.out);
@@ -271,6 +295,7 @@ fn text(bench: &Bench, out: &Path) -> String {
             bench.cases.len()
         )
     }));
+    lines.extend(bench.codes.iter().map(codes));
     if lines.is_empty() {
         lines.push(
             "no ratio: FEM did not run here, or no answer of it is good enough (--fem live, --sizes, \
@@ -282,16 +307,38 @@ fn text(bench: &Bench, out: &Path) -> String {
     lines.join("\n") + "\n"
 }
 
+/// Codes at equal error in one line: the fastest is what the models are compared with.
+fn codes(of: &CodeTimes) -> String {
+    let one = |c: &CodeTime| {
+        format!(
+            "{} {} (size {})",
+            c.engine.title(),
+            duration_with_spread(c.seconds.0, c.seconds.1),
+            c.size
+        )
+    };
+    let all: Vec<String> = of.codes.iter().map(one).collect();
+    format!(
+        "{} to {} p0: {}; the slowest takes {} +- {} times as long as the fastest",
+        of.case,
+        of.level,
+        all.join(", "),
+        rounded(of.ratio.value),
+        rounded(of.ratio.plus_minus)
+    )
+}
+
 /// One level in one line: the range over the cases.
 fn at_level(here: &[&Speedup], level: f64, whose: &str, cases: usize) -> Option<String> {
     let slowest = here.iter().min_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
     let fastest = here.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
     let one = |s: &Speedup| {
         format!(
-            "{} +- {} ({}: FEM {}, {BEST} {})",
+            "{} +- {} ({}: {} {}, {BEST} {})",
             rounded(s.ratio.value),
             rounded(s.ratio.plus_minus),
             s.case,
+            s.engine.title(),
             duration(s.fem_seconds.0),
             duration(s.model_seconds.0)
         )

@@ -12,7 +12,7 @@ use crate::report::gates;
 use crate::report::table::read;
 use crate::study::brought::{BroughtFile, Comparison, Limits, Statements};
 use crate::study::gate::{self, Gates};
-use crate::study::reference;
+use crate::study::{Engine, Reference, reference};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
 
@@ -115,13 +115,16 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let mut brought: Vec<BroughtFile> = Vec::new();
     for path in &arguments.curves {
         let file = BroughtFile::read(path, &case, &stated)?;
-        different_name(&brought, &file)?;
+        file.check_name(&brought)?;
         brought.push(file);
     }
-    let record = Records::read(arguments.reference.as_deref())?.find(&case)?;
-    let fem = record.as_ref().map(reference::from_fem);
-    let compared =
-        Comparison::new(&case, brought, fem.as_ref(), &limits, &arguments.range.range())?;
+    let records = Records::read(arguments.reference.as_deref())?;
+    let first = records.find(&case)?.map(|record| (Engine::fenicsx(), Ok(record)));
+    let found = first.into_iter().chain(records.further(&case));
+    let fem = found.map(|(engine, record)| Ok((engine, reference::from_fem(&record?))));
+    let fem: Vec<(Engine, Reference)> = fem.collect::<Result<_>>()?;
+    let fem: Vec<_> = fem.iter().map(|(engine, reference)| (engine.clone(), reference)).collect();
+    let compared = Comparison::new(&case, brought, &fem, &limits, &arguments.range.range())?;
     let (date, command) = (now(), command_line());
     let own_limits = arguments.gates.is_some();
     let summary = Summary::of(&compared, &Context { date: &date, command: &command, own_limits });
@@ -142,19 +145,6 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         print(&text(&summary, &arguments))?;
     }
     Ok(if summary.gates_hold { Exit::Done } else { Exit::GateFailed })
-}
-
-/// Refuses two files whose curves have one name.
-fn different_name(others: &[BroughtFile], file: &BroughtFile) -> Result<()> {
-    match others.iter().find(|other| other.name == file.name) {
-        None => Ok(()),
-        Some(other) => Err(Error::Value {
-            key: "name".to_string(),
-            value: file.name.clone(),
-            reason: format!("{} and {} are called so", other.path.display(), file.path.display()),
-            remedy: "write a line `# name: ...` above one of the tables".to_string(),
-        }),
-    }
 }
 
 /// The short summary for a reader.

@@ -66,8 +66,13 @@ impl FemOptions {
 
     /// The settings for a mesh of relative element size `size`.
     pub fn settings(&self, size: f64) -> FemSettings {
+        self.settings_of(self.engine, size)
+    }
+
+    /// The settings for a mesh of relative element size `size` by `code`.
+    pub fn settings_of(&self, code: Code, size: f64) -> FemSettings {
         FemSettings {
-            code: self.engine,
+            code,
             ccx: self.ccx.clone(),
             size,
             linear: self.linear,

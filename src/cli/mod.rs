@@ -1,6 +1,7 @@
 //! The command line: one file a subcommand, and one for each thing that several of them need.
 
 mod bench;
+mod brought;
 mod cold;
 mod compare;
 mod deck;

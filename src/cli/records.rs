@@ -2,28 +2,36 @@
 
 use crate::base::Result;
 use crate::case::Case;
-use crate::fem;
+use crate::fem::{Code, FemResults};
+use crate::study::Engine;
 use std::path::Path;
 
 /// The recorded FEM curves: those built into the program, or those of a folder.
-pub(super) struct Records(Option<Vec<fem::FemResults>>);
+pub(super) struct Records(Option<Vec<FemResults>>);
 
 impl Records {
     /// Those in `folder`, or the built-in ones if there is none.
     pub(super) fn read(folder: Option<&Path>) -> Result<Self> {
-        folder.map(fem::FemResults::read_all).transpose().map(Self)
-    }
-
-    /// Whether they are those built into the program.
-    pub(super) fn are_built_in(&self) -> bool {
-        self.0.is_none()
+        folder.map(FemResults::read_all).transpose().map(Self)
     }
 
     /// The record of a case, if there is one.
-    pub(super) fn find(&self, case: &Case) -> Result<Option<fem::FemResults>> {
+    pub(super) fn find(&self, case: &Case) -> Result<Option<FemResults>> {
         match &self.0 {
             Some(all) => Ok(all.iter().find(|r| r.is_of(case)).cloned()),
-            None => fem::FemResults::embedded_of(case),
+            None => FemResults::embedded_of(case),
         }
+    }
+
+    /// The records of further codes for a case, or what is wrong with them: beside built-in records alone,
+    /// since a folder of one's own has one code's.
+    pub(super) fn further(&self, case: &Case) -> Vec<(Engine, Result<FemResults>)> {
+        if self.0.is_some() {
+            return Vec::new();
+        }
+        let codes = Code::ALL.into_iter().skip(1);
+        let found =
+            |code| Some((Engine::of(code), FemResults::embedded_by(code, case).transpose()?));
+        codes.filter_map(found).collect()
     }
 }

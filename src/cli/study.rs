@@ -1,5 +1,6 @@
 //! `edgeline study`: every case by every model, compared with FEM.
 
+use super::brought::{Brought, CurvesOf, curves_of};
 use super::fem_options::FemSource;
 use super::output::{Exit, print, print_json};
 use super::provenance::{command_line, now, processor};
@@ -15,11 +16,12 @@ use crate::report::study_summary::FemOrigin;
 use crate::report::summarise::Context;
 use crate::solve::{Options, solve};
 use crate::study::bench::{Bench, Machine, Speedup};
+use crate::study::brought::FileRun;
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::reference::from_fem;
 use crate::study::verification::{self, VerificationRow};
 use crate::study::{Engine, Range, StudyRun};
-use clap::Args;
+use clap::{Args, ValueHint};
 use std::path::Path;
 use std::time::Instant;
 
@@ -27,8 +29,8 @@ use std::time::Instant;
 ///
 /// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
 /// errors.csv (one row per case, model, curve and quantity), effects.csv, verification.csv,
-/// summary.json,
-/// plots/*.svg, report.html and report.md into the output folder. With recorded finite-element
+/// summary.json, plots/*.svg, report.html and report.md into the output folder; with --curves also
+/// brought.csv, brought_curves.csv and brought_pressure.csv (docs/compare.md). With recorded finite-element
 /// curves it takes about a minute, nearly all of it for timing and for the published method on cells
 /// (half as long with --repeats 0); with --fem live it takes minutes per case. `edgeline study profiled` runs
 /// five factors in 16 runs and a centre point, `edgeline study scenes` fourteen cases that slide, that have
@@ -37,6 +39,9 @@ use std::time::Instant;
 pub(super) struct Arguments {
     #[command(flatten)]
     study: StudyOptions,
+    /// Curves of a case from elsewhere (CSV as for `edgeline compare`), beside its references; may be repeated
+    #[arg(long, value_name = "CASE=FILE", value_parser = curves_of, value_hint = ValueHint::FilePath)]
+    curves: Vec<CurvesOf>,
     /// Warm repetitions of each timing of a model; 0 for no timing
     #[arg(long, default_value_t = 7, value_name = "N")]
     repeats: usize,
@@ -49,6 +54,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
     let date = now();
     let study = arguments.study.find_study()?;
+    let brought = Brought::read(&arguments.curves, &study, &arguments.study)?;
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
     let run = arguments.study.run(&study, &EdgeModel::ALL, arguments.repeats, true)?;
@@ -57,7 +63,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let outcomes = gates(&arguments.study, &run)?;
     let [speedups, published] = speedups(&arguments.study, &study)?;
-    let verification = verification(&arguments.study, &run)?;
+    let brought: Vec<Vec<FileRun>> =
+        brought.into_iter().map(|of_case| of_case.compared(&run)).collect::<Result<_>>()?;
+    let brought = brought.concat();
+    let verification = verification(&arguments.study, &run, &brought)?;
     let files = StudyFiles::of(
         &run,
         &Context {
@@ -73,6 +82,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             speedups: &speedups,
             published_speedups: &published,
             verification: &verification,
+            brought: &brought,
         },
     );
     page::write_run(&files, out)?;
@@ -95,18 +105,19 @@ fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome
     Ok(gate::evaluate(run, &Gates { drift, ..gates }, Some(&Baseline::built_in()?)))
 }
 
-/// How much tighter the tolerance is of the solution that says how uncertain a model is.
-const REFINED: f64 = 0.1;
-
 /// Cases on record to which nothing was ever tuned.
 const HELD_BACK: [&str; 3] = ["validation-nu025", "validation-nu040", "validation-steel-aluminium"];
 
 /// The differences of quarter-space beside the numerical uncertainty of both sides: for the cases of the run, and in
 /// the built-in study for those held back.
-fn verification(options: &StudyOptions, run: &StudyRun) -> Result<Vec<VerificationRow>> {
+fn verification(
+    options: &StudyOptions,
+    run: &StudyRun,
+    brought: &[FileRun],
+) -> Result<Vec<VerificationRow>> {
     let model = EdgeModel::QuarterSpace;
     let refined = |case: &Case| {
-        let tighter = case.clone().with_tolerance(REFINED * case.accuracy.tolerance);
+        let tighter = case.clone().with_tolerance(verification::refined_tolerance(case));
         solve(&tighter, &Options::new(model)).map(|solution| solution.curves)
     };
     let mut all = Vec::new();
@@ -115,15 +126,15 @@ fn verification(options: &StudyOptions, run: &StudyRun) -> Result<Vec<Verificati
         let references: Vec<_> =
             found.filter_map(|r| Some((r.engine.clone(), r.result.as_ref().ok()?))).collect();
         let own = case.methods.iter().find(|m| m.source == model.into());
-        let Some(Ok(own)) = own.map(|m| &m.result) else { continue };
-        if references.is_empty() {
-            continue;
+        if let (Some(Ok(own)), false) = (own.map(|m| &m.result), references.is_empty()) {
+            let curves = (model.into(), &own.solution.curves, &refined(&case.case)?);
+            all.extend(verification::rows(&case.case, false, curves, &references));
         }
-        let curves = (model.into(), &own.solution.curves, &refined(&case.case)?);
-        all.extend(verification::rows(&case.case, false, curves, &references));
+        let files = brought.iter().filter(|file| file.case == case.case.name);
+        all.extend(files.flat_map(|file| verification::of_file(file, case.case.overlap())));
     }
     let built_in = options.is_default() && options.fem == FemSource::Recorded;
-    let compared = !all.is_empty();
+    let compared = all.iter().any(|row| row.source == model.into());
     for name in HELD_BACK.into_iter().filter(|_| built_in && compared) {
         let case = Case::find(Path::new(name))?;
         let Some(record) = FemResults::embedded_of(&case)? else { continue };

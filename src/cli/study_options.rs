@@ -10,10 +10,11 @@ use super::values::{chosen_models, source};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{BUILTIN_STUDIES, Case, Study};
-use crate::fem::{Code, FemResults};
+use crate::fem::FemResults;
 use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
 use crate::study::bench::Bench;
+use crate::study::brought::Beside;
 use crate::study::live::Live;
 use crate::study::{
     Engine, FoundReference, Models, Range, Reference, Source, StudyRun, StudySetup, reference,
@@ -90,6 +91,14 @@ impl StudyOptions {
     /// The range of the errors.
     pub(super) fn range(&self) -> Range {
         self.range.range()
+    }
+
+    /// The models of a case, solved to be evaluated at the points of files.
+    ///
+    /// # Errors
+    /// As [`Beside::new`].
+    pub(super) fn beside(&self, case: &Case) -> Result<Beside> {
+        Beside::new(case, &chosen_models(&self.methods), self.psi, &self.range())
     }
 
     /// Runs `study` by the chosen models, by the `usual` ones if none was chosen, with live FEM in folders
@@ -196,23 +205,14 @@ impl FemCurves {
             }
         }
     }
-}
 
-impl FemCurves {
-    /// The recorded curves of further codes, where there are any: beside built-in records alone, since a
-    /// folder of one's own has one code's.
+    /// The recorded curves of further codes, where there are any.
     fn further(&self, case: &Case) -> Vec<FoundReference> {
         let FemCurves::Recorded { records, .. } = self else { return Vec::new() };
-        if !records.are_built_in() {
-            return Vec::new();
-        }
-        let codes = Code::ALL.into_iter().skip(1);
-        let found = codes.filter_map(|code| {
-            let record = FemResults::embedded_by(code, case).transpose()?;
-            let reference = record.map(|r| reference::from_fem(&r)).map_err(|e| e.to_string());
-            Some((Engine::of(code), reference))
-        });
-        found.collect()
+        let of_record = |(engine, record): (Engine, Result<FemResults>)| {
+            (engine, record.map(|r| reference::from_fem(&r)).map_err(|e| e.to_string()))
+        };
+        records.further(case).into_iter().map(of_record).collect()
     }
 }
 

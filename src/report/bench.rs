@@ -215,7 +215,7 @@ fn summed_up(cases: &[CaseBench], against: Against) -> Vec<Entry<'_>> {
 
 fn panel(title: String, entries: &[Entry]) -> Panel {
     let ink = look(&Engine::fenicsx().into());
-    let recorded = Look { marker: Marker::Diamond, dash: Some((2.0, 4.0)), ..ink };
+    let recorded = Look { marker: Marker::Plus, dash: Some((2.0, 4.0)), ..ink };
     let mut sources: Vec<(&Source, Origin)> = Vec::new();
     for e in entries {
         if !sources.contains(&(e.source, e.origin)) {
@@ -232,12 +232,13 @@ fn panel(title: String, entries: &[Entry]) -> Panel {
     let front = Series { markers: false, ..Series::curve("front of the models", line, best) };
     let curves = sources.iter().map(|&(source, origin)| {
         let own = look(source);
+        let title = source.title();
         let (name, look) = match origin {
-            Origin::Model | Origin::Cells => (source.name(), own),
-            Origin::LiveFem => ("FEM, this run", own),
-            Origin::RecordedFem => ("FEM, recorded on its own machine", recorded),
+            Origin::Model | Origin::Cells => (source.name().to_string(), own),
+            Origin::LiveFem => (format!("{title}, this run"), own),
+            Origin::RecordedFem => (format!("{title}, recorded on its own machine"), recorded),
         };
-        Series::curve(name, look, points(&|e| e.source == source && e.origin == origin))
+        Series::curve(&name, look, points(&|e| e.source == source && e.origin == origin))
     });
     Panel {
         title,

@@ -1,6 +1,7 @@
 //! The files that the program writes.
 
 pub mod bench;
+pub mod brought;
 pub mod cells;
 pub mod columns;
 pub mod comparison;

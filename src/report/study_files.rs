@@ -1,6 +1,7 @@
 //! The files of a study's run: tables and `summary.json`. Plots, page and Markdown are made from
 //! these files alone, so that all they show can be looked up there.
 
+use super::brought::{Of, of_curves, of_errors, of_pressure};
 use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
 use super::study_summary::StudySummary;
 use super::summarise::{Context, study_summary};
@@ -32,6 +33,13 @@ pub struct StudyFiles {
     pub effects: Vec<EffectRow>,
     /// `verification.csv`: differences beside the numerical uncertainty of both sides.
     pub verification: Vec<VerificationRow>,
+    /// `brought.csv`: the errors of all sources against curves from files. It and the next two are written
+    /// where there are such curves.
+    pub brought: Vec<Of<ErrorRow>>,
+    /// `brought_curves.csv`: stresses of these curves and of all sources on their points.
+    pub brought_curves: Vec<Of<CurveRow>>,
+    /// `brought_pressure.csv`: the same of the contact pressure.
+    pub brought_pressure: Vec<Of<PressureRow>>,
 }
 
 impl StudyFiles {
@@ -48,6 +56,9 @@ impl StudyFiles {
             errors: as_written(&tables::errors(run), layout),
             effects: as_written(&tables::effects(run, &effects), layout),
             verification: as_written(context.verification, layout),
+            brought: as_written(&of_errors(context.brought), layout),
+            brought_curves: as_written(&of_curves(context.brought), layout),
+            brought_pressure: as_written(&of_pressure(context.brought), layout),
             summary,
         }
     }
@@ -55,7 +66,13 @@ impl StudyFiles {
     /// The run's own files by name: the tables, and `summary.json` last.
     pub fn contents(&self) -> Vec<(String, Vec<u8>)> {
         let layout = self.summary.layout();
-        [
+        let brought = [
+            ("brought.csv", to_csv(&self.brought, layout)),
+            ("brought_curves.csv", to_csv(&self.brought_curves, layout)),
+            ("brought_pressure.csv", to_csv(&self.brought_pressure, layout)),
+        ];
+        let brought = brought.into_iter().filter(|_| self.summary.has_brought());
+        let tables = [
             ("study.csv", to_csv(&self.study, layout)),
             ("curves.csv", to_csv(&self.curves, layout)),
             ("pressure.csv", to_csv(&self.pressure, layout)),
@@ -63,10 +80,10 @@ impl StudyFiles {
             ("errors.csv", to_csv(&self.errors, layout)),
             ("effects.csv", to_csv(&self.effects, layout)),
             ("verification.csv", to_csv(&self.verification, layout)),
-            ("summary.json", pretty(&self.summary)),
-        ]
-        .map(|(name, text)| (name.to_string(), text.into_bytes()))
-        .into()
+        ];
+        let all =
+            tables.into_iter().chain(brought).chain([("summary.json", pretty(&self.summary))]);
+        all.map(|(name, text)| (name.to_string(), text.into_bytes())).collect()
     }
 
     /// Reads a finished run.
@@ -92,6 +109,9 @@ impl StudyFiles {
             errors: read(folder, "errors.csv", layout)?,
             effects: read(folder, "effects.csv", layout)?,
             verification: read(folder, "verification.csv", layout)?,
+            brought: read_brought(folder, "brought.csv", &summary)?,
+            brought_curves: read_brought(folder, "brought_curves.csv", &summary)?,
+            brought_pressure: read_brought(folder, "brought_pressure.csv", &summary)?,
             summary,
         })
     }
@@ -130,6 +150,11 @@ impl StudyFiles {
 fn read<R: Row>(folder: &Path, name: &str, layout: Layout) -> Result<Vec<R>> {
     let path = folder.join(name);
     from_csv(&table::read(&path)?, &path, layout)
+}
+
+/// Reads a table of curves from files; none where no such curves take part.
+fn read_brought<R: Row>(folder: &Path, name: &str, summary: &StudySummary) -> Result<Vec<R>> {
+    if summary.has_brought() { read(folder, name, summary.layout()) } else { Ok(Vec::new()) }
 }
 
 /// The rows with the digits that a file holds.

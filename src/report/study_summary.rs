@@ -1,5 +1,6 @@
 //! `summary.json` of a study: the facts about a run beside its tables.
 
+use super::brought::FileSummary;
 use super::table::Layout;
 use crate::base::HertzScales;
 use crate::body::EdgeModel;
@@ -224,6 +225,9 @@ pub struct CaseSummary {
     /// The other references by engine.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub references: BTreeMap<Engine, CaseReference>,
+    /// Curves from files, and what they were compared with.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub brought: Vec<FileSummary>,
     /// The models.
     pub methods: BTreeMap<EdgeModel, CaseMethod>,
 }
@@ -272,6 +276,11 @@ pub enum CaseMethod {
 }
 
 impl StudySummary {
+    /// Whether curves from files take part.
+    pub fn has_brought(&self) -> bool {
+        self.cases.iter().any(|case| !case.brought.is_empty())
+    }
+
     /// What the columns of the run's tables depend on.
     pub fn layout(&self) -> Layout<'_> {
         let aliases = self.design.as_ref().is_some_and(|design| design.resolution.is_some());

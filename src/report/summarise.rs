@@ -1,5 +1,6 @@
 //! The summary of a study's run: the content of `summary.json`.
 
+use super::brought::FileSummary;
 use super::effects_text;
 use super::study_summary::{
     CaseMethod, CaseReference, CaseSummary, DesignSummary, FemError, FemOrigin, MethodSummary,
@@ -10,6 +11,7 @@ use crate::body::EdgeModel;
 use crate::case::FactorKey;
 use crate::case::two_level::{TwoLevel, Word, positive, short, sum};
 use crate::study::bench::{Machine, Speedup};
+use crate::study::brought::FileRun;
 use crate::study::effects::{Effects, NotAnalysed};
 use crate::study::gate::GateOutcome;
 use crate::study::response::Response;
@@ -38,6 +40,8 @@ pub struct Context<'a> {
     pub published_speedups: &'a [Speedup],
     /// Differences beside the numerical uncertainty of both sides.
     pub verification: &'a [VerificationRow],
+    /// Curves from files, compared.
+    pub brought: &'a [FileRun],
 }
 
 /// The summary of a run.
@@ -72,8 +76,8 @@ pub fn study_summary(
         gates: context.gates.to_vec(),
         effects_in_words: effects_text::told(run, effects),
         speedups: context.speedups.to_vec(),
-        not_done: not_done(run, not_analysed),
-        cases: run.cases.iter().map(|case| case_summary(case, &run.further)).collect(),
+        not_done: not_done(run, not_analysed, context.brought),
+        cases: run.cases.iter().map(|case| case_summary(run, case, context.brought)).collect(),
         verdict: Vec::new(),
     };
     summary.verdict = verdict::sentences(&summary);
@@ -103,8 +107,9 @@ fn design_summary(run: &StudyRun, design: &TwoLevel) -> DesignSummary {
     }
 }
 
-fn case_summary(run: &CaseRun, further: &[FactorKey]) -> CaseSummary {
+fn case_summary(study: &StudyRun, run: &CaseRun, brought: &[FileRun]) -> CaseSummary {
     let (case, factors) = (&run.case, run.case.factors());
+    let own = brought.iter().filter(|file| file.case == case.name);
     let method = |m: &MethodRun| {
         let Source::Model(method) = m.source else { return None };
         let part = match &m.result {
@@ -124,7 +129,7 @@ fn case_summary(run: &CaseRun, further: &[FactorKey]) -> CaseSummary {
         load: factors.load,
         slenderness: factors.slenderness,
         length_ratio: factors.length_ratio,
-        factors: further.iter().map(|key| key.of(case)).collect(),
+        factors: study.further.iter().map(|key| key.of(case)).collect(),
         hertz: case.hertz(),
         load_n: case.load.force_n,
         tolerance: case.accuracy.tolerance,
@@ -140,6 +145,7 @@ fn case_summary(run: &CaseRun, further: &[FactorKey]) -> CaseSummary {
             .skip(1)
             .map(|r| (r.engine.clone(), case_reference(r)))
             .collect(),
+        brought: own.map(|file| FileSummary::of(file, &study.range)).collect(),
         methods: run.methods.iter().filter_map(method).collect(),
     }
 }
@@ -152,7 +158,7 @@ fn case_reference(run: &ReferenceRun) -> CaseReference {
 }
 
 /// What is missing: analyses, then comparisons and solves, one sentence each.
-fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
+fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed], brought: &[FileRun]) -> Vec<String> {
     let mut all: Vec<String> = not_analysed.iter().map(effects_text::not_analysed).collect();
     for c in &run.cases {
         for r in &c.references {
@@ -166,6 +172,10 @@ fn not_done(run: &StudyRun, not_analysed: &[NotAnalysed]) -> Vec<String> {
                 all.push(format!("{} by {} failed: {message}", c.case.name, m.source));
             }
         }
+    }
+    for FileRun { case, file, left_out, .. } in brought.iter().filter(|f| !f.left_out.is_empty()) {
+        let (name, left_out) = (&file.name, left_out.join(", "));
+        all.push(format!("{name} ({case}): all points are next to an edge: {left_out}"));
     }
     all
 }

@@ -3,8 +3,9 @@
 use super::study_rows::{CurveRow, EffectRow, OwnErrorRow, PressureRow, StudyRow};
 use super::study_summary::RoleName;
 use super::table::Short;
+use crate::base::StressTensor;
 use crate::case::two_level::{TwoLevel, short, sum};
-use crate::stress::{Critical, Curves, Quantity};
+use crate::stress::{Critical, Curves, PressureLine, Quantity, StressCurve};
 use crate::study::effects::{self, Effects};
 use crate::study::factorial::half_normal_quantile;
 use crate::study::response::{self, Response};
@@ -157,42 +158,53 @@ fn sources(run: &StudyRun) -> impl Iterator<Item = (&CaseRun, Source, &Curves)> 
     })
 }
 
+/// The stresses of a source in a case (Pa).
+pub fn curve_rows(case: &str, source: &Source, curves: &Curves) -> Vec<CurveRow> {
+    let hertz = curves.hertz;
+    let of_curve = |curve: &StressCurve| {
+        let row = |(at, stress): (&[f64; 3], &StressTensor)| CurveRow {
+            case: case.to_string(),
+            source: source.clone(),
+            body: curve.body,
+            curve: curve.name.clone(),
+            at_m: at.map(|v| v * hertz.c_m),
+            stress_pa: Quantity::ALL.map(|quantity| quantity.of(stress) * hertz.p0_pa),
+        };
+        curve.at.iter().zip(&curve.stress).map(row).collect::<Vec<_>>()
+    };
+    curves.stress.iter().flat_map(of_curve).collect()
+}
+
+/// The contact pressure of a source in a case (Pa).
+pub fn pressure_rows(case: &str, source: &Source, curves: &Curves) -> Vec<PressureRow> {
+    let hertz = curves.hertz;
+    let of_line = |line: &PressureLine| {
+        let row = |(at, p): (&[f64; 2], &f64)| PressureRow {
+            case: case.to_string(),
+            source: source.clone(),
+            line: line.name.clone(),
+            at_m: at.map(|v| v * hertz.c_m),
+            p_pa: p * hertz.p0_pa,
+        };
+        line.at.iter().zip(&line.p).map(row).collect::<Vec<_>>()
+    };
+    curves.pressure.iter().flat_map(of_line).collect()
+}
+
 /// The stresses of every source on the standard curves (Pa).
 pub fn curves(run: &StudyRun) -> Vec<CurveRow> {
-    let mut rows = Vec::new();
-    for (case, source, curves) in sources(run) {
-        let hertz = curves.hertz;
-        for curve in &curves.stress {
-            let points = curve.at.iter().zip(&curve.stress);
-            rows.extend(points.map(|(at, stress)| CurveRow {
-                case: case.case.name.clone(),
-                source: source.clone(),
-                body: curve.body,
-                curve: curve.name.clone(),
-                at_m: at.map(|v| v * hertz.c_m),
-                stress_pa: Quantity::ALL.map(|quantity| quantity.of(stress) * hertz.p0_pa),
-            }));
-        }
-    }
-    rows
+    let rows = |(case, source, curves): (&CaseRun, Source, &Curves)| {
+        curve_rows(&case.case.name, &source, curves)
+    };
+    sources(run).flat_map(rows).collect()
 }
 
 /// The contact pressure of every source on the pressure lines (Pa).
 pub fn pressure(run: &StudyRun) -> Vec<PressureRow> {
-    let mut rows = Vec::new();
-    for (case, source, curves) in sources(run) {
-        let hertz = curves.hertz;
-        for line in &curves.pressure {
-            rows.extend(line.at.iter().zip(&line.p).map(|(at, p)| PressureRow {
-                case: case.case.name.clone(),
-                source: source.clone(),
-                line: line.name.clone(),
-                at_m: at.map(|v| v * hertz.c_m),
-                p_pa: p * hertz.p0_pa,
-            }));
-        }
-    }
-    rows
+    let rows = |(case, source, curves): (&CaseRun, Source, &Curves)| {
+        pressure_rows(&case.case.name, &source, curves)
+    };
+    sources(run).flat_map(rows).collect()
 }
 
 /// The own errors of the references (Pa), one row for each point that has one.

@@ -53,6 +53,7 @@ fn files_of(run: &StudyRun) -> StudyFiles {
         speedups: &[],
         published_speedups: &[],
         verification: &verification(run),
+        brought: &[],
     };
     StudyFiles::of(run, &context)
 }

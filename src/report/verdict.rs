@@ -1,10 +1,14 @@
 //! The verdict of a study in words, from its summary.
 
-use super::study_summary::{FemError, FemOrigin, PublishedSummary, Span, StudySummary};
+use super::brought::FileSummary;
+use super::study_summary::{
+    CaseSummary, FemError, FemOrigin, PublishedSummary, Span, StudySummary,
+};
 use crate::base::number::{duration, fixed, rounded, significant};
+use crate::body::EdgeModel;
+use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
 use crate::study::gate::GateOutcome;
-use crate::study::timing::Ratio;
 
 /// Sentences for the head of a report, the most important first.
 pub fn sentences(summary: &StudySummary) -> Vec<String> {
@@ -15,7 +19,23 @@ pub fn sentences(summary: &StudySummary) -> Vec<String> {
     all.extend(equal_error(&summary.speedups));
     all.extend(summary.published.as_ref().map(published));
     all.extend(published_time(&summary.published_speedups));
+    all.extend(summary.cases.iter().flat_map(brought));
     all
+}
+
+/// How far quarter-space and the codes are off the curves from files.
+fn brought(case: &CaseSummary) -> Vec<String> {
+    let shown = |source: &Source| source.is_engine() || *source == EdgeModel::QuarterSpace.into();
+    let of_file = |file: &FileSummary| {
+        let sources = file.errors.iter().map(|e| &e.source).filter(|source| shown(source));
+        let parts =
+            sources.filter_map(|s| Some(format!("{} in {}", s.title(), file.differences(s)?)));
+        let parts: Vec<String> = parts.collect();
+        let said =
+            if parts.is_empty() { "nothing was compared".to_string() } else { parts.join("; ") };
+        format!("Largest differences from {} in {}: {said}.", file.name, case.name)
+    };
+    case.brought.iter().map(of_file).collect()
 }
 
 /// The deviations of the models from FEM.
@@ -103,12 +123,15 @@ fn time(summary: &StudySummary) -> Option<String> {
 fn equal_error(speedups: &[Speedup]) -> Option<String> {
     let own = || speedups.iter().filter(|s| s.against == Against::Limit);
     let level = own().map(|s| s.level).reduce(f64::min)?;
-    let here: Vec<Ratio> = own().filter(|s| s.level == level).map(|s| s.ratio).collect();
-    let low = here.iter().min_by(|a, b| a.value.total_cmp(&b.value))?;
-    let high = here.iter().max_by(|a, b| a.value.total_cmp(&b.value))?;
+    let here: Vec<&Speedup> = own().filter(|s| s.level == level).collect();
+    let ratios = || here.iter().map(|s| s.ratio);
+    let low = ratios().min_by(|a, b| a.value.total_cmp(&b.value))?;
+    let high = ratios().max_by(|a, b| a.value.total_cmp(&b.value))?;
     let cases = if here.len() == 1 { "case" } else { "cases" };
+    let codes =
+        if here.iter().all(|s| s.engine.is_fenicsx()) { "FEM" } else { "the faster FEM code" };
     Some(format!(
-        "Timed in one run on one machine and each right to {level} p0 of its own limit, FEM took {} ± \
+        "Timed in one run on one machine and each right to {level} p0 of its own limit, {codes} took {} ± \
          {} to {} ± {} times as long as quarter-space ({} {cases}).",
         rounded(low.value),
         rounded(low.plus_minus),
@@ -153,7 +176,9 @@ fn published_time(speedups: &[Speedup]) -> Option<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::study::Engine;
     use crate::study::gate::Kind;
+    use crate::study::timing::Ratio;
 
     #[test]
     fn failed_gates_are_named() {
@@ -179,6 +204,7 @@ mod tests {
             case: "a".to_string(),
             level,
             against,
+            engine: Engine::fenicsx(),
             size: 1.0,
             unknowns: None,
             fem_error: level,

@@ -54,6 +54,16 @@ impl Curves {
         self.stress.iter().find(|c| c.body == body && c.name == name)
     }
 
+    /// States one error (p0) of all values at all points.
+    pub fn state_error(&mut self, error: f64) {
+        for line in &mut self.pressure {
+            line.own_error = Some(vec![error; line.at.len()]);
+        }
+        for curve in &mut self.stress {
+            curve.own_error = Some(vec![[error; 8]; curve.at.len()]);
+        }
+    }
+
     /// The same curves, with the differences from `other` at every point as their own error; none
     /// for curves that `other` lacks.
     pub fn with_error_from(mut self, other: &Curves) -> Self {

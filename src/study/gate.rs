@@ -281,7 +281,11 @@ pub fn parse(text: &str, path: &Path) -> Result<Gates> {
 }
 
 /// The numbers of the errors of a model in a case.
-pub(super) fn of_errors(case: &str, method: EdgeModel, rows: &[ErrorRow]) -> Vec<Number> {
+pub(super) fn of_errors<'a>(
+    case: &str,
+    method: EdgeModel,
+    rows: impl IntoIterator<Item = &'a ErrorRow>,
+) -> Vec<Number> {
     let of_row = |row: &ErrorRow| {
         [("max", row.max), ("rms", row.rms), ("l1", row.l1)].map(|(measure, value)| Number {
             case: case.to_string(),
@@ -294,7 +298,7 @@ pub(super) fn of_errors(case: &str, method: EdgeModel, rows: &[ErrorRow]) -> Vec
             value,
         })
     };
-    rows.iter().flat_map(of_row).collect()
+    rows.into_iter().flat_map(of_row).collect()
 }
 
 /// All numbers of a run that a gate can look at.

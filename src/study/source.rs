@@ -31,6 +31,11 @@ impl Engine {
         Self::of(Code::Fenicsx)
     }
 
+    /// Whether it is FEniCSx.
+    pub fn is_fenicsx(&self) -> bool {
+        *self == Self::fenicsx()
+    }
+
     /// The name in files of the published method on uniform cells.
     pub const PUBLISHED: &'static str = "guilbault-cells";
 
@@ -61,6 +66,13 @@ impl Engine {
 }
 
 impl Source {
+    /// All that the program has itself: the models, the codes, and the published method.
+    pub fn all() -> impl Iterator<Item = Self> {
+        let codes = Code::ALL.into_iter().map(Engine::of);
+        let engines = codes.chain([Engine::published()]).map(Self::from);
+        EdgeModel::ALL.into_iter().map(Self::from).chain(engines)
+    }
+
     /// The name in files.
     pub fn name(&self) -> &str {
         match self {

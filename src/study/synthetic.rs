@@ -3,10 +3,10 @@
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Study};
-use crate::fem::{self, MeshResult};
+use crate::fem::{self, Code, MeshResult};
 use crate::solve::{CellDetails, Details, PressureCell, Seconds, Solution, Summary};
 use crate::stress::{BodyKind, Curves, PressureLine, StressCurve, curves};
-use crate::study::bench::{FemMeshes, Mesh};
+use crate::study::bench::{FemMeshes, Mesh, MeshOf};
 use crate::study::run::{Provenance, Reference, StudyRun, StudySetup, Timed, run as run_study};
 use crate::study::timing::Timing;
 use crate::study::{Engine, Models, Range};
@@ -194,7 +194,10 @@ pub fn fem_meshes(case: &Case, recorded: &[f64], live: &[f64]) -> FemMeshes {
             meshes: recorded.iter().rev().map(|&size| mesh(size)).collect(),
             errors: Vec::new(),
         }),
-        live: live.iter().map(|&size| (size, Ok(timed(size)))).collect(),
+        live: live
+            .iter()
+            .map(|&size| (MeshOf { code: Code::Fenicsx, size }, Ok(timed(size))))
+            .collect(),
     }
 }
 

@@ -10,11 +10,17 @@
 //! to 1 C from one, where gradients are steep and the pressure of a longer body grows without bound. Nearer,
 //! a singular value belongs to its mesh, and nothing is compared.
 
+use super::brought::{BroughtFile, FileRun, OnPoints};
 use super::run::Reference;
 use super::source::{Engine, Source};
 use crate::case::Case;
-use crate::stress::{Curves, Quantity, away_from_edges};
+use crate::stress::{Curves, PressureLine, Quantity, StressCurve, away_from_edges};
 use serde::{Deserialize, Serialize};
+
+/// The tolerance of the solution that says how uncertain a model's solution of `case` is.
+pub fn refined_tolerance(case: &Case) -> f64 {
+    0.1 * case.accuracy.tolerance
+}
 
 /// A place on the curves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -53,6 +59,8 @@ pub enum Convergence {
     Assumed,
     /// There is one mesh.
     OneMesh,
+    /// The curves come from a file, which states their error or none.
+    Stated,
 }
 
 /// What the uncertainties say of a difference.
@@ -155,59 +163,74 @@ fn order([coarse, middle, fine]: [f64; 3], [first, last]: [f64; 2]) -> Option<f6
     Some(0.5 * (low + high))
 }
 
-/// Root mean square of the difference of two sources in a zone; `None` where they have no common curve there.
-fn difference(a: &Curves, b: &Curves, group: Group, zone: Zone, ends: [f64; 2]) -> Option<f64> {
-    let kept = |at: [f64; 3]| {
-        let far = |distance| away_from_edges(at, ends, distance);
-        match zone {
+/// What is compared, and where.
+#[derive(Clone, Copy)]
+struct Part<'a> {
+    group: Group,
+    zone: Zone,
+    /// The ends of the case's overlap (C).
+    ends: [f64; 2],
+    /// The reference. Its curves are compared, and of a file's curves the components that it states.
+    reference: &'a Curves,
+}
+
+/// Mean of some numbers, if there are any.
+fn mean(values: impl Iterator<Item = f64>) -> Option<f64> {
+    let (sum, count) = values.fold((0.0, 0), |(sum, count), v| (sum + v, count + 1));
+    (count > 0).then(|| sum / f64::from(count))
+}
+
+impl Part<'_> {
+    fn keeps(&self, at: [f64; 3]) -> bool {
+        let far = |distance| away_from_edges(at, self.ends, distance);
+        match self.zone {
             Zone::Regular => far(NEAR_END[1]),
             Zone::NearEnd => far(NEAR_END[0]) && !far(NEAR_END[1]),
         }
-    };
-    let mean = |squares: Vec<f64>| {
-        let count = squares.len() as f64;
-        (count > 0.0).then(|| squares.iter().sum::<f64>() / count)
-    };
-    let per_curve: Vec<f64> = match group {
-        Group::Pressure => a
-            .pressure
-            .iter()
-            .filter_map(|line| {
-                let other = b.line(&line.name)?;
-                let points = line.at.iter().zip(line.p.iter().zip(&other.p));
-                mean(
-                    points
-                        .filter(|(at, _)| kept([at[0], at[1], 0.0]))
-                        .map(|(_, (p, q))| (p - q).powi(2))
-                        .collect(),
-                )
-            })
-            .collect(),
-        Group::Stress => a
-            .stress
-            .iter()
-            .filter_map(|curve| {
-                let other = b.curve(curve.body, &curve.name)?;
-                let points = curve.at.iter().zip(curve.stress.iter().zip(&other.stress));
-                let squares = points.filter(|(at, _)| kept(**at)).flat_map(|(_, (s, t))| {
-                    let components = &Quantity::ALL[..6];
-                    components.iter().map(move |q| (q.of(s) - q.of(t)).powi(2))
-                });
-                mean(squares.collect())
-            })
-            .collect(),
-    };
-    mean(per_curve).map(f64::sqrt)
+    }
+
+    /// Root mean square of the difference of two sources; `None` where they have no common curve.
+    fn difference(&self, a: &Curves, b: &Curves) -> Option<f64> {
+        let on_line = |line: &PressureLine| {
+            let (a, b) = (a.line(&line.name)?, b.line(&line.name)?);
+            let points = a.at.iter().zip(a.p.iter().zip(&b.p));
+            let kept = points.filter(|(at, _)| self.keeps([at[0], at[1], 0.0]));
+            mean(kept.map(|(_, (p, q))| (p - q).powi(2)))
+        };
+        let on_curve = |curve: &StressCurve| {
+            let [a, b] = [a, b].map(|side| side.curve(curve.body, &curve.name));
+            let (a, b) = (a?, b?);
+            let stated = |q: &&Quantity| curve.stress.iter().any(|s| !q.of(s).is_nan());
+            let components: Vec<&Quantity> = Quantity::ALL[..6].iter().filter(stated).collect();
+            let points = a.at.iter().zip(a.stress.iter().zip(&b.stress));
+            let kept = points.filter(|(at, _)| self.keeps(**at));
+            mean(kept.flat_map(|(_, (s, t))| {
+                components.iter().map(move |q| (q.of(s) - q.of(t)).powi(2))
+            }))
+        };
+        let per_curve: Vec<f64> = match self.group {
+            Group::Pressure => self.reference.pressure.iter().filter_map(on_line).collect(),
+            Group::Stress => self.reference.stress.iter().filter_map(on_curve).collect(),
+        };
+        mean(per_curve.into_iter()).map(f64::sqrt)
+    }
 }
 
-/// One side of a comparison: its curves, and others of its own that say how uncertain it is.
+/// What says how uncertain one side is.
+enum Own<'a> {
+    /// The refined solution of a model.
+    Refined(&'a Curves),
+    /// Relative sizes of the meshes and the coarser of them, finest first.
+    Meshes(Vec<f64>, Vec<&'a Curves>),
+    /// The error that a file states, if any.
+    Stated(Option<f64>),
+}
+
+/// One side of a comparison.
 struct Side<'a> {
     source: Source,
     curves: &'a Curves,
-    /// Relative sizes of the meshes, finest first; empty for a model.
-    sizes: Vec<f64>,
-    /// The coarser meshes, finest first; for a model its refined solution.
-    others: Vec<&'a Curves>,
+    own: Own<'a>,
 }
 
 /// The places and groups that are compared.
@@ -223,26 +246,45 @@ impl<'a> Side<'a> {
         let coarser = || reference.coarser.iter();
         let sizes = reference.size.into_iter().chain(coarser().map(|(size, _)| *size)).collect();
         let others = coarser().map(|(_, curves)| curves).collect();
-        Self { source: engine.clone().into(), curves: &reference.curves, sizes, others }
+        let own = Own::Meshes(sizes, others);
+        Self { source: engine.clone().into(), curves: &reference.curves, own }
     }
 
-    /// Changes from mesh to mesh, the finest first.
-    fn changes(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Vec<f64> {
+    /// A source at the points of a file; `None` for a model of unknown uncertainty.
+    fn of_points(on: &'a OnPoints) -> Option<Self> {
+        let own = match on.source {
+            Source::Model(_) => Own::Refined(on.others.first()?),
+            Source::Engine(_) => Own::Meshes(on.sizes.clone(), on.others.iter().collect()),
+        };
+        Some(Self { source: on.source.clone(), curves: &on.curves, own })
+    }
+
+    fn of_file(file: &'a BroughtFile) -> Self {
+        let own = Own::Stated(file.statements.error_p0);
+        Self { source: Engine::brought(&file.name).into(), curves: &file.curves, own }
+    }
+
+    fn grid_index(&self, part: Part) -> Option<GridIndex> {
+        let Own::Meshes(sizes, others) = &self.own else { return None };
         let all: Vec<&Curves> =
-            std::iter::once(self.curves).chain(self.others.iter().copied()).collect();
-        all.windows(2).map_while(|pair| difference(pair[0], pair[1], group, zone, ends)).collect()
-    }
-
-    fn grid_index(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Option<GridIndex> {
-        grid_index(&self.sizes, &self.changes(group, zone, ends))
+            std::iter::once(self.curves).chain(others.iter().copied()).collect();
+        let changes = all.windows(2).map_while(|pair| part.difference(pair[0], pair[1]));
+        grid_index(sizes, &changes.collect::<Vec<f64>>())
     }
 
     /// What it does not know of itself.
-    fn uncertainty(&self, group: Group, zone: Zone, ends: [f64; 2]) -> Option<f64> {
-        match self.source {
-            Source::Model(_) => self.changes(group, zone, ends).first().copied(),
-            Source::Engine(_) => Some(self.grid_index(group, zone, ends)?.index),
+    fn uncertainty(&self, part: Part) -> Option<f64> {
+        match &self.own {
+            Own::Refined(refined) => part.difference(self.curves, refined),
+            Own::Meshes(..) => Some(self.grid_index(part)?.index),
+            Own::Stated(error) => *error,
         }
+    }
+
+    /// Relative sizes of its meshes in words, coarse to fine.
+    fn sizes(&self) -> String {
+        let Own::Meshes(sizes, _) = &self.own else { return String::new() };
+        sizes.iter().rev().map(f64::to_string).collect::<Vec<_>>().join(" ")
     }
 }
 
@@ -256,46 +298,61 @@ pub fn rows(
 ) -> Vec<VerificationRow> {
     let ends = case.overlap();
     let codes: Vec<Side> = references.iter().map(|(engine, r)| Side::of_code(engine, r)).collect();
-    let model = Side { source: model, curves, sizes: Vec::new(), others: vec![refined] };
+    let model = Side { source: model, curves, own: Own::Refined(refined) };
     let of_model = codes.iter().map(|code| (&model, code));
     let of_codes = codes.iter().skip(1).map(|code| (code, &codes[0]));
-    let pairs: Vec<(&Side, &Side)> = of_model.chain(of_codes).collect();
-    let mut all = Vec::new();
-    for (source, reference) in pairs {
-        for (group, zone) in PARTS {
-            let Some(found) = difference(source.curves, reference.curves, group, zone, ends) else {
-                continue;
-            };
-            let grid = reference.grid_index(group, zone, ends);
-            let (u_reference, u_source) =
-                (grid.map(|g| g.index), source.uncertainty(group, zone, ends));
-            let u_num = u_reference.zip(u_source).map(|(a, b)| a.hypot(b));
-            let mut sizes = reference.sizes.clone();
-            sizes.reverse();
-            all.push(VerificationRow {
-                case: case.name.clone(),
-                held_back,
-                source: source.source.clone(),
-                reference: reference.source.clone(),
-                group,
-                zone,
-                difference: found,
-                sizes: sizes.iter().map(f64::to_string).collect::<Vec<_>>().join(" "),
-                order: grid.and_then(|g| g.order),
-                convergence: grid.map_or(Convergence::OneMesh, |g| g.convergence),
-                safety: grid.map(|g| g.safety),
-                u_reference,
-                u_source,
-                u_num,
-                finding: match u_num {
-                    None => Finding::Unknown,
-                    Some(u) if found <= u => Finding::Within,
-                    Some(_) => Finding::Resolved,
-                },
-            });
-        }
-    }
-    all
+    let pairs = of_model.chain(of_codes);
+    let row = |pair| compared((&case.name, ends), held_back, pair);
+    pairs.flat_map(row).collect()
+}
+
+/// The differences of quarter-space and of codes from the curves of a file, at its points; `ends` are those of the
+/// case's overlap (C).
+pub fn of_file(run: &FileRun, ends: [f64; 2]) -> Vec<VerificationRow> {
+    let brought = Side::of_file(&run.file);
+    let sides = run.sources.iter().filter_map(Side::of_points);
+    sides.flat_map(|side| compared((&run.case, ends), false, (&side, &brought))).collect()
+}
+
+/// The differences of a source from a reference in a case whose overlap has these ends (C).
+fn compared(
+    (case, ends): (&str, [f64; 2]),
+    held_back: bool,
+    (source, reference): (&Side, &Side),
+) -> Vec<VerificationRow> {
+    let row = |(group, zone)| {
+        let part = Part { group, zone, ends, reference: reference.curves };
+        let found = part.difference(source.curves, reference.curves)?;
+        let grid = reference.grid_index(part);
+        let (u_reference, u_source) = (reference.uncertainty(part), source.uncertainty(part));
+        let u_num = u_reference.zip(u_source).map(|(a, b)| a.hypot(b));
+        let without = match reference.own {
+            Own::Stated(_) => Convergence::Stated,
+            Own::Meshes(..) | Own::Refined(_) => Convergence::OneMesh,
+        };
+        Some(VerificationRow {
+            case: case.to_string(),
+            held_back,
+            source: source.source.clone(),
+            reference: reference.source.clone(),
+            group,
+            zone,
+            difference: found,
+            sizes: reference.sizes(),
+            order: grid.and_then(|g| g.order),
+            convergence: grid.map_or(without, |g| g.convergence),
+            safety: grid.map(|g| g.safety),
+            u_reference,
+            u_source,
+            u_num,
+            finding: match u_num {
+                None => Finding::Unknown,
+                Some(u) if found <= u => Finding::Within,
+                Some(_) => Finding::Resolved,
+            },
+        })
+    };
+    PARTS.into_iter().filter_map(row).collect()
 }
 
 #[cfg(test)]

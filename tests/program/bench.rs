@@ -1,6 +1,7 @@
 //! `edgeline bench` with stand-ins for the finite elements. No test depends on a time.
 
 use crate::support::{Row, edgeline, fake, number, said};
+use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::Output;
 
@@ -111,6 +112,33 @@ fn live_meshes_are_divided_with_their_uncertainty() {
     }
     let text = said(&done);
     assert!(text.contains("to 0.005 p0, each against its own limit, in 1 of 1 cases"), "{text}");
+    assert!(json.get("codes").is_none(), "one code ran");
+}
+
+#[test]
+fn two_codes_run_in_one_bench_and_are_compared_at_equal_error() {
+    let folder = tempfile::tempdir().unwrap();
+    let ccx = folder.path().join("ccx");
+    std::fs::write(&ccx, "#!/bin/sh\necho This is Version 2.20\n").unwrap();
+    std::fs::set_permissions(&ccx, std::fs::Permissions::from_mode(0o755)).unwrap();
+    let [python, gmsh] = ["python3", "gmsh"].map(|name| fake(name).to_str().unwrap().to_string());
+    let live = ["--fem", "live", "--sizes", "1,2,calculix=2,calculix=2.8", "--python", &python];
+    let programs = ["--gmsh", &gmsh, "--ccx", ccx.to_str().unwrap()];
+    let done = bench(folder.path(), &[&["flush-short"][..], &live, &programs, &SHORT].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let out = folder.path().join("out");
+    let live: Vec<Row> = rows(&out).into_iter().filter(|r| r["origin"] == "live-fem").collect();
+    let named: Vec<_> = live.iter().map(|r| (&*r["source"], number(r, "setting"))).collect();
+    assert_eq!(named, [("fem", 2.0), ("fem", 1.0), ("calculix", 2.8), ("calculix", 2.0)]);
+    let json = std::fs::read_to_string(out.join("bench.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["cases"][0]["fem_reference"], "live, size 1", "that of the first code");
+    let codes = json["codes"].as_array().unwrap();
+    assert!(codes.len() == 3 && codes.iter().all(|c| c["codes"].as_array().unwrap().len() == 2));
+    assert!(said(&done).contains("CalculiX"), "{}", said(&done));
+    for part in ["size-1", "calculix-size-2", "calculix-size-2.8"] {
+        assert!(out.join("fem/flush-short").join(part).join("run-1/fem.json").is_file(), "{part}");
+    }
 }
 
 #[test]
@@ -130,6 +158,11 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         (&["flush-short", "--out", "file"], "cannot create the folder"),
         (&["flush-short", "--reference", "nowhere"], "nowhere"),
         (&["flush-short", "--fem", "live", "--sizes", "-1"], "size"),
+        (
+            &["flush-short", "--sizes", "2,abaqus=2"],
+            "there is no code abaqus; there are fenicsx, calculix",
+        ),
+        (&["flush-short", "--sizes", "calculix="], "give sizes, as in 2,1.4,calculix=2"),
     ] {
         let done = bench(at, arguments);
         assert_eq!(done.status.code(), Some(2), "{arguments:?}: {}", said(&done));

@@ -22,13 +22,13 @@ L_r = 0.5
 ";
 const RADIUS_MM: f64 = 10.0;
 
-fn record() -> PathBuf {
+pub(crate) fn record() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference/w1e-3_sl5_lr0.5")
 }
 
 /// A folder with the case, the record's curves in SI units, the same in mm and MPa in other axes at y < 0,
 /// and the same with one curve 2 % too large.
-fn bench() -> tempfile::TempDir {
+pub(crate) fn bench() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("case.toml"), CASE).unwrap();
     let stresses = ["xx", "yy", "zz", "xy", "xz", "yz"].map(|c| format!("sigma_{c}_pa"));

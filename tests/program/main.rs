@@ -1,6 +1,7 @@
 //! Tests that run the program.
 
 mod bench;
+mod brought;
 mod cli;
 mod compare;
 mod corpora;

@@ -8,7 +8,7 @@ fn text(path: &Path) -> String {
 }
 
 /// A study of the given slendernesses, both length ratios and W = 1e-3.
-fn study_file(folder: &Path, slenderness: &str) -> PathBuf {
+pub(crate) fn study_file(folder: &Path, slenderness: &str) -> PathBuf {
     let path = folder.join("small.toml");
     let content = format!(
         "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n[block]\n\

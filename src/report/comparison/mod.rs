@@ -17,18 +17,15 @@ pub use summary::{Context, Summary};
 /// # Errors
 /// [`crate::base::Error::File`] if the page cannot be made.
 pub fn files(comparison: &Comparison, summary: &Summary) -> Result<Vec<(String, Vec<u8>)>> {
-    let outcomes = comparison.outcomes();
+    let outcomes = &comparison.outcomes;
     let figures = plots::figures(comparison);
     let page = page::html(comparison, summary, &figures)?;
     let plots = figures.iter().map(|(name, figure)| (name.clone(), figure.draw().to_svg()));
     let texts = [
-        ("errors.csv".to_string(), tables::errors(comparison)),
-        ("curves.csv".to_string(), tables::curves(comparison)),
-        ("pressure.csv".to_string(), tables::pressure(comparison)),
-        ("gates.md".to_string(), gates::markdown(&outcomes)),
-        ("gates.json".to_string(), pretty(&gates::json(&outcomes))),
+        ("gates.md".to_string(), gates::markdown(outcomes)),
+        ("gates.json".to_string(), pretty(&gates::json(outcomes))),
     ];
     let rest = [("compare.html".to_string(), page), ("summary.json".to_string(), pretty(summary))];
-    let all = plots.chain(texts).chain(rest);
+    let all = plots.chain(tables::tables(comparison)).chain(texts).chain(rest);
     Ok(all.map(|(name, text)| (name, text.into_bytes())).collect())
 }

@@ -61,7 +61,7 @@ fn curves(comparison: &Comparison) -> Vec<Value> {
             let errors: Vec<Value> = run
                 .sources
                 .iter()
-                .map(|(source, _)| json!({ "source": source.title(), "max": of(source.name()) }))
+                .map(|on| json!({ "source": on.source.title(), "max": of(on.source.name()) }))
                 .collect();
             let worst = own
                 .clone()

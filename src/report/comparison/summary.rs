@@ -1,11 +1,12 @@
 //! `summary.json` of a comparison, and its verdict in words.
 
 use crate::base::HertzScales;
-use crate::base::number::{fixed, significant};
+use crate::base::number::significant;
 use crate::body::EdgeModel;
-use crate::study::brought::{Comparison, FileRun, UNSTATED_ERROR};
+use crate::report::brought::FileSummary;
+use crate::study::Range;
+use crate::study::brought::{Comparison, UNSTATED_ERROR};
 use crate::study::gate::GateOutcome;
-use crate::study::{ErrorRow, Range};
 use serde::Serialize;
 
 /// What a comparison does not know of itself.
@@ -16,51 +17,6 @@ pub struct Context<'a> {
     pub command: &'a str,
     /// Whether the limits are those of a file.
     pub own_limits: bool,
-}
-
-/// The largest and the root-mean-square error, each the worst of all curves (p0).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-pub struct Worst {
-    /// The largest error.
-    pub max: f64,
-    /// The largest RMS of a curve.
-    pub rms: f64,
-}
-
-/// The errors of a source against a file's curves.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SourceErrors {
-    /// The model, or `fem`.
-    pub source: String,
-    /// Of the pressure, outside the first range.
-    pub pressure: Option<Worst>,
-    /// Of the stress components.
-    pub stress: Option<Worst>,
-    /// Of the von Mises stress.
-    pub von_mises: Option<Worst>,
-}
-
-/// A file.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FileSummary {
-    /// What its curves are called.
-    pub name: String,
-    /// Where it was.
-    pub path: String,
-    /// Units and axes in words.
-    pub units: String,
-    /// Number of curves and lines.
-    pub curves: usize,
-    /// Number of points.
-    pub points: usize,
-    /// The error that it states (p0).
-    pub error_p0: Option<f64>,
-    /// Columns that mean nothing here.
-    pub ignored_columns: Vec<String>,
-    /// Curves all of whose points are next to an edge.
-    pub left_out: Vec<String>,
-    /// The errors of each source.
-    pub errors: Vec<SourceErrors>,
 }
 
 /// `summary.json`.
@@ -90,76 +46,23 @@ pub struct Summary {
     pub version: &'static str,
 }
 
-fn worst(rows: &[&ErrorRow], select: impl Fn(&ErrorRow) -> bool) -> Option<Worst> {
-    let chosen: Vec<&&ErrorRow> = rows.iter().filter(|r| select(r)).collect();
-    // total_cmp puts a NaN above everything.
-    let top = |of: fn(&ErrorRow) -> f64| chosen.iter().map(|r| of(r)).max_by(f64::total_cmp);
-    Some(Worst { max: top(|r| r.max)?, rms: top(|r| r.rms)? })
-}
-
-impl FileSummary {
-    fn of(run: &FileRun, range: &Range) -> Self {
-        let file = &run.file;
-        let errors = run.sources.iter().map(|(source, _)| {
-            let own: Vec<&ErrorRow> =
-                run.errors.iter().filter(|r| r.method == source.name()).collect();
-            let first = range.pressure_c.first().copied();
-            SourceErrors {
-                source: source.name().to_string(),
-                pressure: worst(&own, |r| r.quantity == "pressure" && Some(r.excluded_c) == first),
-                stress: worst(&own, |r| r.quantity.starts_with("sigma_")),
-                von_mises: worst(&own, |r| r.quantity == "von_mises"),
-            }
-        });
-        Self {
-            name: file.name.clone(),
-            path: file.path.display().to_string(),
-            units: file.statements.describe(),
-            curves: file.curves.pressure.len() + file.curves.stress.len(),
-            points: file.points,
-            error_p0: file.statements.error_p0,
-            ignored_columns: file.ignored.clone(),
-            left_out: run.left_out.clone(),
-            errors: errors.collect(),
-        }
-    }
-
-    /// The errors of the gated model in words.
-    fn words(&self) -> String {
-        let gated = EdgeModel::QuarterSpace.name();
-        let own = self.errors.iter().find(|e| e.source == gated);
-        let part = |what: &str, worst: Option<Worst>| {
-            worst.map(|w| {
-                format!(
-                    "{what} {} p0 (RMS of the worst curve {})",
-                    fixed(w.max, 4),
-                    fixed(w.rms, 4)
-                )
-            })
-        };
-        let parts: Vec<String> = own
-            .map(|e| [part("pressure", e.pressure), part("a stress", e.stress)])
-            .into_iter()
-            .flatten()
-            .flatten()
-            .collect();
-        let error = match self.error_p0 {
-            Some(error) => format!("states an error of {} p0", significant(error, 3)),
-            None => format!("states no error, {UNSTATED_ERROR} p0 is assumed"),
-        };
-        let largest = if parts.is_empty() {
-            "nothing was compared".to_string()
-        } else {
-            format!("largest difference in {}", parts.join(", in "))
-        };
-        format!("{} against quarter-space: {largest}. The file {error}.", self.name)
-    }
+/// The errors of the gated model in words.
+fn words(file: &FileSummary) -> String {
+    let error = match file.error_p0 {
+        Some(error) => format!("states an error of {} p0", significant(error, 3)),
+        None => format!("states no error, {UNSTATED_ERROR} p0 is assumed"),
+    };
+    let largest = match file.differences(&EdgeModel::QuarterSpace.into()) {
+        None => "nothing was compared".to_string(),
+        Some(differences) => format!("largest difference in {differences}"),
+    };
+    format!("{} against quarter-space: {largest}. The file {error}.", file.name)
 }
 
 impl Summary {
     /// The summary of a comparison.
     pub fn of(comparison: &Comparison, context: &Context) -> Self {
-        let gates = comparison.outcomes();
+        let gates = comparison.outcomes.clone();
         let gates_hold = !gates.is_empty() && gates.iter().all(|o| o.passed);
         let files: Vec<FileSummary> =
             comparison.files.iter().map(|f| FileSummary::of(f, &comparison.range)).collect();
@@ -194,7 +97,7 @@ fn verdict(files: &[FileSummary], gates: &[GateOutcome]) -> Vec<String> {
         });
         format!("{}{value}; {}.", o.name, o.note)
     }));
-    lines.extend(files.iter().map(FileSummary::words));
+    lines.extend(files.iter().map(words));
     lines.push(
         "This is code-to-code verification: calculations are compared with each other. Whether they describe \
          real bodies is another question (validation), which takes measurements."

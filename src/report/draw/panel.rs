@@ -7,6 +7,7 @@ use super::axis::{extent, limits};
 use super::contour::Map;
 use super::picture::{Colour, INK, Style};
 use crate::body::EdgeModel;
+use crate::fem::Code;
 use crate::study::{Engine, Source};
 
 /// Shape of a marker.
@@ -22,6 +23,8 @@ pub enum Marker {
     Triangle,
     /// A diagonal cross.
     Cross,
+    /// An upright cross.
+    Plus,
     /// A hollow diamond.
     Diamond,
 }
@@ -65,8 +68,12 @@ pub fn look(source: &Source) -> Look {
             look("c-guilbault-cells", [0x7a, 0x5c, 0x00], dash(1.0, 2.0), Marker::Diamond)
         }
         Source::Engine(engine) => {
-            let is_first = *engine == Engine::fenicsx();
-            let marker = if is_first { Marker::Disc } else { Marker::Diamond };
+            let marker = match Code::ALL.map(Engine::of).iter().position(|code| code == engine) {
+                Some(0) => Marker::Disc,
+                Some(_) => Marker::Diamond,
+                // Curves from a file.
+                None => Marker::Plus,
+            };
             Look { colour: INK, dash: None, marker }
         }
     }

@@ -320,6 +320,10 @@ pub fn draw_marker(picture: &mut Picture, (x, y): Point, look: Look) {
             picture.line(place(&[(-4.0, -4.0), (4.0, 4.0)]), line);
             picture.line(place(&[(-4.0, 4.0), (4.0, -4.0)]), line);
         }
+        Marker::Plus => {
+            picture.line(place(&[(-5.0, 0.0), (5.0, 0.0)]), line);
+            picture.line(place(&[(0.0, -5.0), (0.0, 5.0)]), line);
+        }
     }
 }
 

@@ -3,12 +3,14 @@
 
 use crate::base::HertzScales;
 use crate::base::number::significant;
+use crate::report::brought::{FileCurves, Of, of_case};
 use crate::report::plots::Shown;
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::{CurveRow, OwnErrorRow, PressureRow};
 use crate::report::study_summary::CaseSummary;
 use crate::stress::Quantity;
-use crate::study::CONTACT;
+use crate::study::errors::POINTS;
+use crate::study::{CONTACT, Engine, Source};
 use serde::Serialize;
 use serde_json::{Map, Value, json};
 
@@ -17,12 +19,18 @@ pub(super) fn data(files: &StudyFiles) -> Value {
     let symbols: Map<String, Value> =
         Shown::all().map(|shown| (shown.name().to_string(), json!(shown.symbol()))).collect();
     let sources = files.sources();
+    let brought = files.summary.cases.iter().flat_map(|case| &case.brought);
+    let mut brought: Vec<Source> = brought.map(|file| Engine::brought(&file.name).into()).collect();
+    brought.sort();
+    brought.dedup();
+    let sources: Vec<&Source> = sources.into_iter().chain(&brought).collect();
     let engines = sources.iter().filter_map(|source| source.engine());
     let references = engines.map(|e| json!({ "name": e, "title": e.title() }));
     let cases: Vec<Value> = files.summary.cases.iter().map(|case| case_data(files, case)).collect();
     json!({
         "cases": cases,
         "references": references.collect::<Vec<_>>(),
+        "brought": brought,
         "sources": sources,
         "quantities": Shown::all().map(Shown::name).collect::<Vec<_>>(),
         "symbols": symbols,
@@ -66,8 +74,13 @@ struct CurveData {
     points: Vec<[f64; 3]>,
     /// The values (p0) of each source and quantity.
     values: Map<String, Value>,
-    /// The own errors (p0) of the first reference, for each quantity.
+    /// The own errors (p0) of the reference, for each quantity.
     fem_error: Map<String, Value>,
+    /// What differences are taken from, where it is not the first reference.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    reference: Option<String>,
+    /// Whether the points follow each other along a line.
+    joined: bool,
 }
 
 impl CurveData {
@@ -82,7 +95,8 @@ impl CurveData {
         let axis = (0..3).max_by(|&a, &b| spread(a).total_cmp(&spread(b))).unwrap_or(0);
         let at = points.iter().map(|p| p[axis]).collect();
         let (values, fem_error) = (Map::new(), Map::new());
-        Self { axis: ["x", "y", "z"][axis], at, points, values, fem_error }
+        let axis = ["x", "y", "z"][axis];
+        Self { axis, at, points, values, fem_error, reference: None, joined: true }
     }
 }
 
@@ -123,7 +137,60 @@ fn curves(files: &StudyFiles, case: &CaseSummary) -> Map<String, Value> {
             list.extend(error_pa.map(|error_pa| json!(in_p0(error_pa))));
         }
     }
+    all.extend(of_case(files, case).iter().flat_map(brought));
     all.into_iter().map(|(key, curve)| (key, json!(curve))).collect()
+}
+
+/// What stands before the name of a curve from a file.
+fn brought_name(file: &str, curve: &str) -> String {
+    format!("{file}: {curve}")
+}
+
+/// The curves of a file with the values of all sources on their points.
+fn brought(file: &FileCurves) -> Vec<(String, CurveData)> {
+    let Some((_, own)) = file.all.first() else { return Vec::new() };
+    let new = |name: &str, points: Vec<[f64; 3]>| CurveData {
+        reference: Some(file.summary.name.clone()),
+        joined: name != POINTS,
+        ..CurveData::new(points.into_iter(), 1.0)
+    };
+    let rounded = |values: Vec<f64>| json!(values.into_iter().map(five_digits).collect::<Vec<_>>());
+    let mut all = Vec::new();
+    for line in &own.pressure {
+        let mut data = new(&line.name, line.at.iter().map(|[x, y]| [*x, *y, 0.0]).collect());
+        let quantity = Shown::Pressure.name();
+        for (source, curves) in &file.all {
+            let Some(line) = curves.line(&line.name) else { continue };
+            data.values.insert(source.to_string(), json!({ quantity: rounded(line.p.clone()) }));
+        }
+        if let Some(error) = &line.own_error {
+            data.fem_error.insert(quantity.to_string(), rounded(error.clone()));
+        }
+        all.push((format!("{CONTACT}/{}", brought_name(&file.summary.name, &line.name)), data));
+    }
+    for curve in &own.stress {
+        let mut data = new(&curve.name, curve.at.clone());
+        let stated = |q: &Quantity| curve.stress.iter().any(|s| q.of(s).is_finite());
+        let quantities: Vec<Quantity> = Quantity::ALL.into_iter().filter(stated).collect();
+        for (source, curves) in &file.all {
+            let Some(curve) = curves.curve(curve.body, &curve.name) else { continue };
+            let values = |q: &Quantity| {
+                let values = curve.stress.iter().map(|s| q.of(s)).collect();
+                (q.name().to_string(), rounded(values))
+            };
+            let values: Map<String, Value> = quantities.iter().map(values).collect();
+            data.values.insert(source.to_string(), Value::Object(values));
+        }
+        for (q, error) in
+            curve.own_error.iter().flat_map(|e| quantities.iter().map(move |q| (q, e)))
+        {
+            let values = error.iter().map(|of_point| of_point[q.index()]).collect();
+            data.fem_error.insert(q.name().to_string(), rounded(values));
+        }
+        let name = brought_name(&file.summary.name, &curve.name);
+        all.push((format!("{}/{name}", curve.body.name()), data));
+    }
+    all
 }
 
 /// The curve of this key, made where there is none.
@@ -142,8 +209,13 @@ fn entry(
 /// The errors of every model in the case called `name`, by `body/curve` and quantity.
 fn errors(files: &StudyFiles, name: &str) -> Map<String, Value> {
     let mut errors: Map<String, Value> = Map::new();
-    for row in files.errors.iter().filter(|row| row.case == name) {
-        let key = format!("{}/{}", row.body, row.curve);
+    let standard = files.errors.iter().map(|row| (row, row.curve.clone()));
+    let brought = files
+        .brought
+        .iter()
+        .map(|Of { reference, row }| (row, brought_name(reference, &row.curve)));
+    for (row, curve) in standard.chain(brought).filter(|(row, _)| row.case == name) {
+        let key = format!("{}/{curve}", row.body);
         let slot = &mut errors.entry(key).or_insert_with(|| json!({}))[&row.quantity];
         // Pressure has a row for each range; the first is the one of the summaries.
         if slot.get(&row.method).is_none() {

@@ -20,10 +20,12 @@
     if (text !== undefined) e.textContent = text;
     return e;
   };
-  const colour = (source) => `var(--c-${source})`;
-  // The first reference is the one that errors and differences are taken against.
-  const reference = data.references.length ? data.references[0].name : null;
   const engine = (source) => data.references.find((r) => r.name === source);
+  const colour = (source) => `var(--c-${engine(source) ? "fem" : source})`;
+  // The first reference is the one that errors and differences are taken against; on the points of a
+  // file it is the file's curve.
+  const first = data.references.length ? data.references[0].name : "FEM";
+  const referenceOf = (curve) => curve.reference || first;
   const title = (source) => (engine(source) ? engine(source).title : source);
 
   function mark(source, x, y) {
@@ -34,7 +36,10 @@
       case "guilbault": return element("rect", { ...at, x: x - 3.5, y: y - 3.5, width: 7, height: 7 });
       case "quarter-space": return element("circle", { ...at, cx: x, cy: y, r: 4.5 });
       case "guilbault-cells": return element("path", { ...at, d: `M${x} ${y - 5}l5 5l-5 5l-5 -5z` });
-      default: return element("circle", { class: "mark", fill: colour("fem"), cx: x, cy: y, r: 2.8 });
+      case first: return element("circle", { ...at, fill: colour(source), cx: x, cy: y, r: 2.8 });
+      default: return data.brought.includes(source)
+        ? element("path", { ...at, d: `M${x - 5} ${y}h10m-5 -5v10` })
+        : element("path", { ...at, d: `M${x} ${y - 5}l5 5l-5 5l-5 -5z` });
     }
   }
 
@@ -67,27 +72,29 @@
     fill(controls.quantity, quantities.map((q) => [q, data.symbols[q].replace(" / p0", "")]));
   }
 
-  // Curves of the visible sources as numbers in the chosen units; as differences to FEM on demand.
+  // Curves of the visible sources as numbers in the chosen units; as differences to the reference on demand.
   function prepare() {
     const { caseData, curve, quantity } = chosen();
     const si = controls.units.value === "si";
     const lengthUnit = si ? caseData.c_m * 1e3 : 1;
     const stressUnit = si ? caseData.p0_pa * 1e-6 : 1;
     const difference = controls.show.value === "difference";
+    const reference = referenceOf(curve);
     const fem = curve.values[reference] && curve.values[reference][quantity];
     const series = [];
     for (const source of data.sources) {
       const raw = curve.values[source] && curve.values[source][quantity];
       if (!raw || hiddenSources.has(source)) continue;
-      const values = raw.map((v, i) => (difference ? (fem ? v - fem[i] : null) : v)).map((v) => v === null ? null : v * stressUnit);
+      const less = (v, i) => (v === null || !fem || fem[i] === null ? null : v - fem[i]);
+      const values = raw.map((v, i) => (difference ? less(v, i) : v)).map((v) => v === null ? null : v * stressUnit);
       series.push({ source, values });
     }
     const band = curve.fem_error && curve.fem_error[quantity];
     return {
-      x: curve.at.map((v) => v * lengthUnit), series, difference, stressUnit, lengthUnit,
+      x: curve.at.map((v) => v * lengthUnit), series, difference, stressUnit, lengthUnit, reference,
       band: band ? band.map((v) => v * stressUnit) : null,
       xTitle: si ? `${curve.axis} (mm)` : `${curve.axis} / C`,
-      yTitle: (difference ? "difference to FEM: " : "") + (si ? `${data.symbols[quantity].replace(" / p0", "")} (MPa)` : data.symbols[quantity]),
+      yTitle: (difference ? `difference to ${title(reference)}: ` : "") + (si ? `${data.symbols[quantity].replace(" / p0", "")} (MPa)` : data.symbols[quantity]),
       digitsX: si ? 5 : 3, digitsY: si ? 1 : 4,
     };
   }
@@ -125,12 +132,12 @@
     // unless nothing else is in view.
     const { caseData, curve, key } = chosen();
     const excluded = key.startsWith("contact") ? data.range.pressure_c[0] : data.range.stress_c;
-    const near = curve.points.map((p) => Math.hypot(p[1] - caseData.S_l, p[2]) < excluded * (1 - 1e-6));
+    const near = curve.points.map((p) => Math.hypot(Math.abs(p[1]) - caseData.S_l, p[2]) < excluded * (1 - 1e-6));
     const counted = visible.filter((i) => !near[i]);
     for (const s of d.series) {
       for (const i of counted.length > 1 ? counted : visible) {
         take(s.values[i]);
-        if (s.source === reference && d.band && s.values[i] !== null) { take(s.values[i] - d.band[i]); take(s.values[i] + d.band[i]); }
+        if (s.source === d.reference && d.band && s.values[i] !== null) { take(s.values[i] - d.band[i]); take(s.values[i] + d.band[i]); }
       }
     }
     if (y0 > y1) [y0, y1] = [0, 1];
@@ -147,9 +154,11 @@
     const clip = element("clipPath", { id: "inside" });
     clip.append(element("rect", { x: box.left, y: box.top, width: box.right - box.left, height: box.bottom - box.top }));
     parts.push(clip);
-    const from = near.indexOf(true);
-    if (from >= 0) {
-      const to = near.lastIndexOf(true);
+    // A curve over the whole length has two such strips; points in no order have none.
+    for (let from = 0, to; curve.joined && from < near.length; from = to + 1) {
+      to = from;
+      if (!near[from]) continue;
+      while (near[to + 1]) to += 1;
       const a = px(from > 0 ? (d.x[from] + d.x[from - 1]) / 2 : d.x[from] - pad);
       const b = px(to + 1 < d.x.length ? (d.x[to] + d.x[to + 1]) / 2 : d.x[to] + pad);
       parts.push(element("rect", { class: "excluded", "clip-path": "url(#inside)", x: Math.min(a, b), y: box.top, width: Math.abs(b - a), height: box.bottom - box.top }));
@@ -169,12 +178,12 @@
     // FEM first: the methods' marks are hollow and leave its points to be seen.
     for (const s of [...d.series].sort((a, b) => Boolean(engine(b.source)) - Boolean(engine(a.source)))) {
       const points = s.values.map((v, i) => (v === null ? null : [px(d.x[i]), py(v), i])).filter(Boolean);
-      if (s.source === reference && d.band) {
+      if (s.source === d.reference && d.band) {
         const up = points.map(([x, , i]) => `${x.toFixed(1)} ${py(s.values[i] + d.band[i]).toFixed(1)}`);
         const down = points.map(([x, , i]) => `${x.toFixed(1)} ${py(s.values[i] - d.band[i]).toFixed(1)}`).reverse();
         layer.append(element("path", { d: `M${[...up, ...down].join("L")}Z`, fill: colour("fem"), opacity: 0.16 }));
       }
-      if (!engine(s.source) && points.length > 1) {
+      if (!engine(s.source) && points.length > 1 && curve.joined) {
         layer.append(element("path", { class: "curve", "data-source": s.source, stroke: colour(s.source), "stroke-dasharray": DASH[s.source] || "none", d: `M${points.map(([x, y]) => `${x.toFixed(1)} ${y.toFixed(1)}`).join("L")}` }));
       }
       let last = null;
@@ -207,6 +216,7 @@
   function readOut(d) {
     const { caseData, key, curve, quantity } = chosen();
     const body = byId("readout-rows");
+    const reference = d.reference;
     const fem = curve.values[reference] && curve.values[reference][quantity];
     const at = cursor !== null && cursor < d.x.length ? cursor : null;
     const p = at === null ? null : curve.points[at];
@@ -224,7 +234,7 @@
       box.type = "checkbox";
       box.checked = !hiddenSources.has(source);
       box.setAttribute("aria-label", `show ${title(source)}`);
-      box.addEventListener("change", () => { if (box.checked) hiddenSources.delete(source); else hiddenSources.add(source); draw(); const again = body.querySelector(`tr[data-source="${source}"] input`); if (again) again.focus(); });
+      box.addEventListener("change", () => { if (box.checked) hiddenSources.delete(source); else hiddenSources.add(source); draw(); const again = body.querySelector(`tr[data-source="${CSS.escape(source)}"] input`); if (again) again.focus(); });
       label.append(box, sample(source), title(source));
       name.append(label);
       const cell = (text) => { const c = document.createElement("td"); c.textContent = text; row.append(c); };
@@ -241,6 +251,7 @@
       return row;
     });
     body.replaceChildren(...rows);
+    byId("readout-less").textContent = `less ${title(reference)}`;
     byId("readout-unit").textContent = controls.units.value === "si" ? "MPa" : "fractions of p0";
     fillValues(d);
   }

@@ -68,6 +68,7 @@ fn render(
         equal_error => fem::equal_error(files),
         fem_versions => fem::versions(files),
         verification => verification::data(files),
+        any_brought => files.summary.has_brought(),
     };
     fill(name, template, context! { ..more, ..base })
 }
@@ -106,6 +107,10 @@ fn add_filters(environment: &mut Environment) {
     });
     environment
         .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));
+    environment.add_filter("source", |name: String| {
+        let known = Source::all().find(|source| source.name() == name);
+        known.map_or(name, |source| source.title().to_string())
+    });
     environment.add_filter("typeset", |text: String| typeset(&text));
     environment.add_filter("seconds", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, duration)

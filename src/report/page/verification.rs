@@ -2,7 +2,7 @@
 
 use crate::report::study_files::StudyFiles;
 use crate::report::table::name;
-use crate::study::verification::{Finding, Group, VerificationRow, Zone};
+use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
 use serde_json::{Value, json};
 
 /// What the page and its Markdown show; nothing where nothing was compared.
@@ -11,7 +11,10 @@ pub(super) fn data(files: &StudyFiles) -> Option<Value> {
     if rows.is_empty() {
         return None;
     }
-    let of_model: Vec<&VerificationRow> = rows.iter().filter(|r| !r.source.is_engine()).collect();
+    // Curves from files need not be of the quality of a record.
+    let on_record = |r: &&VerificationRow| r.convergence != Convergence::Stated;
+    let of_model = rows.iter().filter(|r| !r.source.is_engine());
+    let of_model: Vec<&VerificationRow> = of_model.filter(on_record).collect();
     let count = |wanted: Finding| of_model.iter().filter(|r| r.finding == wanted).count();
     let largest = |zone: Zone, group: Group, held_back: bool| {
         let own =

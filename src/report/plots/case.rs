@@ -2,6 +2,7 @@
 
 use super::symbol::Shown;
 use crate::base::{BodyKind, StressTensor};
+use crate::report::brought::{FileCurves, Plots, of_case, plain};
 use crate::report::draw::{Figure, Panel, Series, Shade, look};
 use crate::report::study_files::StudyFiles;
 use crate::report::study_summary::CaseSummary;
@@ -161,6 +162,23 @@ impl<'a> CasePlots<'a> {
         }
     }
 
+    /// The curves from files, each on its own points.
+    fn brought(&self) -> Vec<(String, Figure)> {
+        let (half, excluded) = (self.case.slenderness, self.excluded());
+        let of_file = |file: FileCurves| {
+            let name = &file.summary.name;
+            let all = file.all.iter().map(|(source, curves)| (source.clone(), curves)).collect();
+            let plots = Plots { name, all, ends: [-half, half], excluded };
+            let named = |(curve, figure)| (format!("{name}-{curve}"), figure);
+            plots.figures().into_iter().map(named).collect::<Vec<_>>()
+        };
+        let all = of_case(self.files, self.case).into_iter().flat_map(of_file).enumerate();
+        let named = |(i, (name, figure)): (usize, (String, Figure))| {
+            (plain(&format!("{}-brought-{:02}-{name}", self.case.name, i + 1)), figure)
+        };
+        all.map(named).collect()
+    }
+
     /// A panel of one quantity on one curve of a body.
     fn stress(&self, title: &str, curve: (BodyKind, &str), axis: Axis, of: Quantity) -> Panel {
         let (body, name) = curve;
@@ -236,6 +254,7 @@ pub(super) fn figures(files: &StudyFiles) -> Vec<(String, Figure)> {
             let equivalent = case.depth(body, &invariants, "equivalent stresses");
             plots.push((format!("{name}-invariants-{of}"), equivalent));
         }
+        plots.extend(case.brought());
     }
     plots
 }

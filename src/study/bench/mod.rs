@@ -6,6 +6,9 @@
 //! parabola). The quarter-space solution at the tightest tolerance is the limit of the models'
 //! discretisation. Equal error is therefore stated twice: each side against its own limit, and both
 //! against FEM.
+//!
+//! Several FEM codes may run. Errors are taken against the finest mesh of the first one, and at each error the
+//! fastest mesh of any code is what the models are compared with.
 
 mod point;
 mod record;
@@ -16,5 +19,5 @@ mod tests;
 
 pub use point::{Against, BEST, BenchPoint, CURVES, CaseBench, Deviation, Origin, front};
 pub use record::{Bench, Machine};
-pub use run::{BenchSetup, FemMeshes, Mesh, run};
-pub use speedup::{Speedup, published_speedups, speedups};
+pub use run::{BenchSetup, FemMeshes, Mesh, MeshOf, run};
+pub use speedup::{CodeTime, CodeTimes, Speedup, code_times, published_speedups, speedups};

@@ -1,11 +1,12 @@
 //! The content of `bench.json`, and the record that is built into the program.
 
 use super::point::{Against, BenchPoint, CaseBench, Origin};
-use super::speedup::{Speedup, published_speedups, speedups};
+use super::speedup::{CodeTimes, Speedup, code_times, published_speedups, speedups};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::study::errors::Range;
 use crate::study::run::Timed;
+use crate::study::source::Engine;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -50,6 +51,9 @@ pub struct Bench {
     /// Those of the published method on cells, at the error that it reaches in each case.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub published: Vec<Speedup>,
+    /// The times of the codes at equal error, where several ran.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub codes: Vec<CodeTimes>,
 }
 
 impl Bench {
@@ -71,6 +75,7 @@ impl Bench {
             range: Range::default(),
             speedups: speedups(&cases, &levels),
             published: published_speedups(&cases),
+            codes: code_times(&cases, &levels),
             levels,
             limit,
             cases,
@@ -116,7 +121,8 @@ impl Bench {
     /// Times of the finest live mesh of `case` and of the models at its tolerance.
     pub fn timed(&self, case: &Case) -> Option<Timed> {
         let found = self.cases.iter().find(|c| c.case.is_same_problem(case))?;
-        let live = found.points.iter().filter(|p| p.origin == Origin::LiveFem);
+        let first = Engine::fenicsx().into();
+        let live = found.points.iter().filter(|p| p.origin == Origin::LiveFem && p.source == first);
         let fem =
             live.filter(|p| p.timing.is_some()).min_by(|a, b| a.setting.total_cmp(&b.setting))?;
         let same = |p: &&BenchPoint| (p.setting / case.accuracy.tolerance - 1.0).abs() < 1e-9;

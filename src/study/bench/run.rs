@@ -3,16 +3,25 @@
 
 use super::point::{BEST, BenchPoint, CaseBench, Deviation, Origin};
 use crate::case::Case;
-use crate::fem::{self, Driver, MeshResult};
+use crate::fem::{self, Code, Driver, MeshResult};
 use crate::stress::Curves;
 use crate::study::errors::Range;
 use crate::study::live::repeated;
 use crate::study::models::{Attempt, Jobs, Models};
 use crate::study::published::{GRIDS, PublishedAttempt};
-use crate::study::source::Engine;
+use crate::study::source::{Engine, Source};
 use crate::study::timing::Timing;
 use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// A code and the relative element size of its mesh.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MeshOf {
+    /// The code.
+    pub code: Code,
+    /// The size; 1 is the production mesh.
+    pub size: f64,
+}
 
 /// A mesh and its times.
 pub struct Mesh {
@@ -24,10 +33,10 @@ pub struct Mesh {
 
 /// The FEM meshes of a case.
 pub struct FemMeshes {
-    /// The record of the case, if there is one.
+    /// The record of the case by the first code, if there is one.
     pub recorded: Option<fem::FemResults>,
-    /// Meshes of this run, by relative element size, or why one failed.
-    pub live: Vec<(f64, std::result::Result<Mesh, String>)>,
+    /// Meshes of this run, or why one failed.
+    pub live: Vec<(MeshOf, std::result::Result<Mesh, String>)>,
 }
 
 impl FemMeshes {
@@ -35,7 +44,7 @@ impl FemMeshes {
     /// kept with its error.
     pub fn run(
         recorded: Option<fem::FemResults>,
-        drivers: &[(f64, Driver)],
+        drivers: &[(MeshOf, Driver)],
         repeats: usize,
         case: &Case,
         folder: &Path,
@@ -43,25 +52,37 @@ impl FemMeshes {
     ) -> Self {
         let live = drivers
             .iter()
-            .map(|(size, driver)| {
-                let folder = folder.join(format!("size-{size}"));
+            .map(|(of, driver)| {
+                let MeshOf { code, size } = of;
+                let folder = match code {
+                    Code::Fenicsx => folder.join(format!("size-{size}")),
+                    _ => folder.join(format!("{}-size-{size}", code.name())),
+                };
                 let run = repeated(driver, repeats, case, &folder, progress);
                 let mesh = run.map(|(result, timing)| Mesh { result, timing });
-                (*size, mesh.map_err(|e| e.to_string()))
+                (*of, mesh.map_err(|e| e.to_string()))
             })
             .collect();
         Self { recorded, live }
     }
 
-    /// The finest mesh as the reference; of two equally fine meshes the recorded one.
+    /// The finest mesh of the first code that has one; of two equally fine meshes the recorded one.
     fn reference(&self) -> Option<FemReference> {
-        let recorded = self.recorded.iter().flat_map(|r| &r.meshes).map(|m| ("recorded", m));
-        let live = self.live.iter().filter_map(|(_, m)| Some(("live", &m.as_ref().ok()?.result)));
+        Code::ALL.into_iter().find_map(|code| self.reference_of(code))
+    }
+
+    /// The finest mesh of a code as the reference.
+    fn reference_of(&self, code: Code) -> Option<FemReference> {
+        let recorded = self.recorded.iter().filter(|_| code == Code::ALL[0]);
+        let recorded = recorded.flat_map(|r| &r.meshes).map(|m| ("recorded", m));
+        let live = self.live.iter().filter(|(of, _)| of.code == code);
+        let live = live.filter_map(|(_, m)| Some(("live", &m.as_ref().ok()?.result)));
         let mut all: Vec<(&'static str, &MeshResult)> = recorded.chain(live).collect();
         all.sort_by(|a, b| a.1.size.total_cmp(&b.1.size));
         all.dedup_by(|a, b| a.1.size == b.1.size);
         let (source, finest) = *all.first()?;
         Some(FemReference {
+            source: Engine::of(code).into(),
             finest: finest.curves.clone(),
             next: all.get(1).map(|(_, mesh)| mesh.curves.clone()),
             size: finest.size,
@@ -72,6 +93,8 @@ impl FemMeshes {
 
 /// FEM's finest mesh as a reference.
 struct FemReference {
+    /// The code.
+    source: Source,
     finest: Curves,
     /// The next mesh; its difference from the finest is the finest mesh's own error.
     next: Option<Curves>,
@@ -185,19 +208,17 @@ fn published_points(case: &Case, models: &Models) -> Vec<WithCurves> {
 
 /// The points of FEM, live meshes first.
 fn fem_points(meshes: &FemMeshes) -> Vec<WithCurves> {
-    let point = |origin, setting| BenchPoint::new(Engine::fenicsx(), origin, setting);
-    let live = meshes.live.iter().map(|(size, mesh)| match mesh {
+    let live_of = |of: &MeshOf| BenchPoint::new(Engine::of(of.code), Origin::LiveFem, of.size);
+    let live = meshes.live.iter().map(|(of, mesh)| match mesh {
         Ok(mesh) => (
             BenchPoint {
                 unknowns: Some(mesh.result.summary.unknowns as u64),
                 timing: Some(mesh.timing),
-                ..point(Origin::LiveFem, *size)
+                ..live_of(of)
             },
             Some(mesh.result.curves.clone()),
         ),
-        Err(message) => {
-            (BenchPoint { err: Some(message.clone()), ..point(Origin::LiveFem, *size) }, None)
-        }
+        Err(message) => (BenchPoint { err: Some(message.clone()), ..live_of(of) }, None),
     });
     let recorded = meshes.recorded.iter().flat_map(|r| &r.meshes).map(|mesh| {
         let seconds = mesh.summary.total_seconds();
@@ -205,7 +226,7 @@ fn fem_points(meshes: &FemMeshes) -> Vec<WithCurves> {
             unknowns: Some(mesh.summary.unknowns as u64),
             timing: Some(Timing::new(mesh.summary.ranks, &[seconds])),
             machine: Some(mesh.summary.processor().to_string()),
-            ..point(Origin::RecordedFem, mesh.size)
+            ..BenchPoint::new(Engine::of(Code::ALL[0]), Origin::RecordedFem, mesh.size)
         };
         (point, Some(mesh.curves.clone()))
     });
@@ -222,18 +243,17 @@ fn assess(
 ) -> CaseBench {
     let is_limit = |p: &BenchPoint| p.source == BEST.into() && p.setting == limit;
     let limit = points.iter().find(|(p, _)| is_limit(p)).and_then(|(_, s)| s.clone());
-    let fem = Engine::fenicsx().into();
     // Against itself the finest mesh would have no error.
     let own = reference
         .as_ref()
-        .and_then(|r| Deviation::between(case, &r.finest, (&fem, r.next.as_ref()?), range));
+        .and_then(|r| Deviation::between(case, &r.finest, (&r.source, r.next.as_ref()?), range));
     let points = points
         .into_iter()
         .map(|(mut point, curves)| {
             let Some(curves) = curves else { return point };
             let source = point.source.clone();
             point.to_fem = reference.as_ref().and_then(|r| {
-                if point.source.is_engine() && point.setting <= r.size {
+                if point.source == r.source && point.setting <= r.size {
                     return own;
                 }
                 Deviation::between(case, &r.finest, (&source, &curves), range)

@@ -1,7 +1,9 @@
 //! FEM's time over a model's, at an error that neither exceeds.
 
 use super::point::{Against, BEST, BenchPoint, CaseBench, Origin};
-use crate::study::timing::Ratio;
+use crate::fem::Code;
+use crate::study::source::{Engine, Source};
+use crate::study::timing::{Ratio, Timing};
 use serde::{Deserialize, Serialize};
 
 /// Grids whose error is within this factor of the least reach it.
@@ -16,6 +18,9 @@ pub struct Speedup {
     pub level: f64,
     /// The reference of the model's error; FEM's error is always against its finest mesh.
     pub against: Against,
+    /// The code of the fastest mesh within the level; files name it where it is not FEniCSx.
+    #[serde(default = "Engine::fenicsx", skip_serializing_if = "Engine::is_fenicsx")]
+    pub engine: Engine,
     /// Relative element size of the fastest mesh within the level.
     pub size: f64,
     /// Its unknowns.
@@ -70,17 +75,14 @@ fn fem_over(
     against: Against,
     chosen: &dyn Fn(&BenchPoint) -> bool,
 ) -> Option<Speedup> {
-    let fastest = |chosen: &dyn Fn(&BenchPoint) -> bool, against: Against| {
-        let within = |p: &&BenchPoint| chosen(p) && p.error(against).is_some_and(|e| e <= level);
-        let timed = case.points.iter().filter(within).filter_map(|p| Some((p, p.timing?)));
-        timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
-    };
-    let (fem, fem_time) = fastest(&|p| p.origin == Origin::LiveFem, Against::Fem)?;
-    let (model, model_time) = fastest(chosen, against)?;
+    let live = |p: &BenchPoint| p.origin == Origin::LiveFem;
+    let (fem, fem_time) = fastest(case, level, Against::Fem, &live)?;
+    let (model, model_time) = fastest(case, level, against, chosen)?;
     Some(Speedup {
         case: case.case.name.clone(),
         level,
         against,
+        engine: fem.source.engine()?.clone(),
         size: fem.setting,
         unknowns: fem.unknowns,
         fem_error: fem.error(Against::Fem)?,
@@ -90,4 +92,66 @@ fn fem_over(
         model_seconds: model_time.with_spread(),
         ratio: Ratio::new(fem_time.with_spread(), model_time.with_spread()),
     })
+}
+
+/// The fastest of the `chosen` points of a case whose error is within the level.
+fn fastest<'a>(
+    case: &'a CaseBench,
+    level: f64,
+    against: Against,
+    chosen: &dyn Fn(&BenchPoint) -> bool,
+) -> Option<(&'a BenchPoint, Timing)> {
+    let within = |p: &&BenchPoint| chosen(p) && p.error(against).is_some_and(|e| e <= level);
+    let timed = case.points.iter().filter(within).filter_map(|p| Some((p, p.timing?)));
+    timed.min_by(|a, b| a.1.median_s.total_cmp(&b.1.median_s))
+}
+
+/// Two codes at an error that neither exceeds, timed in one run.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CodeTimes {
+    /// The case.
+    pub case: String,
+    /// The error that neither exceeds, against the finest mesh of the first code (p0).
+    pub level: f64,
+    /// The fastest mesh of each within the level, the fastest first.
+    pub codes: Vec<CodeTime>,
+    /// The time of the slowest over that of the fastest.
+    pub ratio: Ratio,
+}
+
+/// A code's fastest mesh within a level of error.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct CodeTime {
+    /// The code.
+    pub engine: Engine,
+    /// Relative element size.
+    pub size: f64,
+    /// Its error (p0).
+    pub error: f64,
+    /// Median seconds and spread.
+    pub seconds: (f64, f64),
+}
+
+/// The times of the codes at each level that more than one of them reaches in this run.
+pub fn code_times(cases: &[CaseBench], levels: &[f64]) -> Vec<CodeTimes> {
+    let at = |case: &CaseBench, level: f64| {
+        let of_code = |code: Code| {
+            let own = Source::from(Engine::of(code));
+            let live = |p: &BenchPoint| p.origin == Origin::LiveFem && p.source == own;
+            let (point, timing) = fastest(case, level, Against::Fem, &live)?;
+            Some(CodeTime {
+                engine: Engine::of(code),
+                size: point.setting,
+                error: point.error(Against::Fem)?,
+                seconds: timing.with_spread(),
+            })
+        };
+        let mut codes: Vec<CodeTime> = Code::ALL.into_iter().filter_map(of_code).collect();
+        codes.sort_by(|a, b| a.seconds.0.total_cmp(&b.seconds.0));
+        let [first, .., last] = &codes[..] else { return None };
+        let ratio = Ratio::new(last.seconds, first.seconds);
+        Some(CodeTimes { case: case.case.name.clone(), level, codes, ratio })
+    };
+    let of_case = |case| levels.iter().filter_map(move |&level| at(case, level));
+    cases.iter().flat_map(of_case).collect()
 }

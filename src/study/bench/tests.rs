@@ -1,9 +1,10 @@
 use super::*;
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
-use crate::study::Models;
+use crate::fem::Code;
 use crate::study::synthetic;
 use crate::study::timing::Timing;
+use crate::study::{Engine, Models, Source};
 use std::path::Path;
 
 /// Two cases of the built-in study that differ only in load, with made-up solutions.
@@ -98,6 +99,52 @@ fn only_times_of_this_run_are_divided_and_only_within_the_level() {
     // Without a live mesh there is no ratio, however good the record is.
     cases.iter_mut().for_each(|c| c.points.retain(|p| p.origin != Origin::LiveFem));
     assert!(speedups(&cases, &[1.0]).is_empty());
+}
+
+/// A second code twice as fast and one with a larger error: the faster one within the level is the opponent.
+#[test]
+fn the_faster_code_is_the_opponent() {
+    let mut cases = bench();
+    assert!(code_times(&cases, &[1.0]).is_empty(), "one code ran");
+    let second = Source::from(Engine::of(Code::Calculix));
+    for case in &mut cases {
+        let mut other = find(case, "fem", Origin::LiveFem, 1.4).clone();
+        let seconds = other.seconds().unwrap();
+        let error = other.to_fem.as_mut().unwrap();
+        error.worst_rms *= 3.0;
+        (other.source, other.setting) = (second.clone(), 2.8);
+        other.timing = Some(Timing::new(1, &[0.5 * seconds]));
+        case.points.push(other);
+    }
+    let error = cases[0].points.last().unwrap().error(Against::Fem).unwrap();
+    let levels = [1.01 * error, 0.5 * error];
+    for s in speedups(&cases, &levels) {
+        let is_second = s.level == levels[0];
+        assert_eq!((s.engine.is_fenicsx(), s.size == 2.8), (!is_second, is_second));
+    }
+    // Only where both are within the level is one of them said to be faster.
+    let times = code_times(&cases, &levels);
+    assert_eq!(times.len(), cases.len());
+    for t in times {
+        assert_eq!((t.level, t.codes.len()), (levels[0], 2));
+        assert_eq!(Source::from(t.codes[0].engine.clone()), second);
+        assert!((t.ratio.value - 2.0).abs() < 1e-12 && t.codes[1].size == 1.4);
+    }
+}
+
+/// `results/bench-codes.json`: FEniCSx is the opponent, because at equal error it is the faster of the two.
+#[test]
+fn in_the_record_of_both_codes_the_first_is_faster() {
+    let text = include_str!("../../../results/bench-codes.json");
+    let record = Bench::parse(text, Path::new("bench-codes.json")).unwrap();
+    assert_eq!(record.codes, code_times(&record.cases, &record.levels));
+    let times: Vec<_> = record.codes.iter().filter(|t| t.level <= 0.01).collect();
+    assert!(times.len() >= 2, "{times:?}");
+    for t in times {
+        assert!(t.codes[0].engine.is_fenicsx() && t.codes.iter().all(|c| c.error <= t.level));
+        assert!(t.ratio.value - t.ratio.plus_minus > 1.0, "{t:?}");
+    }
+    assert!(record.speedups.iter().all(|s| s.engine.is_fenicsx()));
 }
 
 #[test]

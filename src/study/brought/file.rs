@@ -8,6 +8,7 @@ use crate::host::{check_memory, read_text};
 use crate::solve::{Extent, Outside};
 use crate::stress::{Curves, PressureLine, StressCurve};
 use crate::study::errors::POINTS;
+use crate::study::source::Source;
 use std::path::{Path, PathBuf};
 use std::result::Result as Checked;
 
@@ -94,6 +95,40 @@ impl BroughtFile {
         let (curves, points) = table.finish()?;
         let name = statements.name.clone().unwrap_or(stem);
         Ok(Self { name, path: path.to_path_buf(), statements, curves, points, ignored })
+    }
+
+    /// Refuses a name that one of `others` has.
+    ///
+    /// # Errors
+    /// [`Error::Value`] with both files.
+    pub fn check_name<'a>(&self, others: impl IntoIterator<Item = &'a Self>) -> Result<()> {
+        match others.into_iter().find(|other| other.name == self.name) {
+            None => Ok(()),
+            Some(other) => Err(self.refused_name(format!(
+                "{} and {} are called so",
+                other.path.display(),
+                self.path.display()
+            ))),
+        }
+    }
+
+    /// Refuses the name of a model or of a finite-element code, whose curves stand beside these.
+    ///
+    /// # Errors
+    /// [`Error::Value`] with the file.
+    pub fn check_foreign(&self) -> Result<()> {
+        let known = Source::all().any(|s| [s.name(), s.title()].contains(&self.name.as_str()));
+        let reason = || format!("{} is called like a model or a code", self.path.display());
+        if known { Err(self.refused_name(reason())) } else { Ok(()) }
+    }
+
+    fn refused_name(&self, reason: String) -> Error {
+        Error::Value {
+            key: "name".to_string(),
+            value: self.name.clone(),
+            reason,
+            remedy: "write a line `# name: ...` above the table".to_string(),
+        }
     }
 }
 
@@ -193,7 +228,7 @@ fn in_si(
         (Some(unit), _) | (None, Some(unit)) => Ok(unit.si),
         (None, None) => Err(format!(
             "the unit of column '{header}' is not stated: write a line `# {key}: ...` above the table, \
-             or give the option --{}",
+             or give `edgeline compare` the option --{}",
             key.replace('_', "-")
         )),
     }
