@@ -20,6 +20,16 @@ pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
+/// The `index`-th point in D dimensions of Kronecker's sequence for the powers of the root of x^(D + 1) = x + 1, which
+/// leaves no large holes in any dimension.
+pub fn sequence<const D: usize>(index: usize) -> [f64; D] {
+    let mut root = 1.5f64;
+    for _ in 0..60 {
+        root = (1.0 + root).powf(1.0 / (D + 1) as f64);
+    }
+    std::array::from_fn(|d| (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract())
+}
+
 /// Largest difference of two stresses' components.
 pub fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
     let pairs = a.components().into_iter().zip(b.components());

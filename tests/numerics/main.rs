@@ -11,6 +11,7 @@ mod fields;
 mod imports;
 mod layering;
 mod profiles;
+mod real_scenes;
 mod refinement;
 mod scenes;
 mod sliding;

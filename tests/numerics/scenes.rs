@@ -4,7 +4,7 @@
 //! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes -- --nocapture` runs 20,000 and
 //! writes `results/scenes/`. Without the variable a few hundred run, and nothing is written.
 
-use crate::common::{apart, worse};
+use crate::common::{apart, sequence, worse};
 use edgeline::base::{Error, Material, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::case::{Case, Factors};
@@ -47,16 +47,9 @@ struct Draw {
 }
 
 impl Draw {
-    /// The `index`-th point of Kronecker's sequence for the powers of the root of
-    /// x^(d + 1) = x + 1, which leaves no large holes in any dimension.
+    /// The `index`-th point of the sequence.
     fn new(index: usize) -> Self {
-        let mut root = 1.5f64;
-        for _ in 0..60 {
-            root = (1.0 + root).powf(1.0 / (DIMENSIONS + 1) as f64);
-        }
-        let u: [f64; DIMENSIONS] = std::array::from_fn(|d| {
-            (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract()
-        });
+        let u: [f64; DIMENSIONS] = sequence(index);
         let log = |u: f64, low: f64, high: f64| low * (high / low).powf(u);
         // A quarter flush, a quarter next to it, and ratios of all sizes.
         let length_ratio = match u[1] {
