@@ -596,3 +596,23 @@ impl Resolution {
         Panels::new(breaks, self.order)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wavenumbers_ascend_for_bodies_of_any_length() {
+        for tolerance in TOLERANCES {
+            let resolution = Resolution::for_tolerance(tolerance);
+            for half in [1e-3, 0.1, 0.5, 1.0, 2.0, 50.0, 1e4] {
+                for parity in [Parity::Even, Parity::Odd] {
+                    let numbers = resolution.wavenumbers(half, parity);
+                    let breaks = numbers.coarse().breaks();
+                    assert!(breaks.windows(2).all(|pair| pair[0] < pair[1]), "{half}: {breaks:?}");
+                    assert!((breaks[breaks.len() - 1] / resolution.k_max - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+}

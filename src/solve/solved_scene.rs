@@ -381,45 +381,47 @@ impl Line {
     }
 }
 
-/// The search for the zero of a function that rises: by secants, within the bracket of what is known.
+/// The search for the zero of a function whose slope is about 1, or at least of one sign: by secants, and within two
+/// arguments whose values are of different signs as soon as both are known.
 #[derive(Debug, Default)]
-struct Bracket {
+struct Secants {
     /// The argument and the value before.
     last: Option<[f64; 2]>,
-    /// The largest argument with a value below zero, and the smallest one with a value above.
+    /// The last arguments with a value below zero, and above.
     below: Option<f64>,
     above: Option<f64>,
 }
 
-impl Bracket {
-    /// Distance of the bracket's ends; infinite as long as one is unknown.
+impl Secants {
+    /// Distance of two arguments with values of different signs; infinite as long as one is unknown.
     fn width(&self) -> f64 {
         match (self.below, self.above) {
-            (Some(low), Some(high)) => (high - low).abs(),
+            (Some(one), Some(other)) => (other - one).abs(),
             _ => f64::INFINITY,
         }
     }
 
     /// The next argument to try, after the value at one.
     fn next(&mut self, at: f64, value: f64) -> f64 {
-        let end = if value < 0.0 { &mut self.below } else { &mut self.above };
-        *end = Some(at);
-        let slope = self.last.map_or(1.0, |[before, was]| (value - was) / (at - before));
-        self.last = Some([at, value]);
-        // A flat or falling secant is no guide.
-        let step = if slope > FLATTEST { -value / slope } else { -value / FLATTEST };
+        let side = if value < 0.0 { &mut self.below } else { &mut self.above };
+        *side = Some(at);
+        let step = match self.last.replace([at, value]) {
+            Some([before, was]) if value != was => {
+                let longest = LONGEST_STEP * (at - before).abs();
+                (-value * (at - before) / (value - was)).clamp(-longest, longest)
+            }
+            _ => -value,
+        };
         let wanted = at + step;
         match (self.below, self.above) {
-            (Some(low), Some(high)) if !(low.min(high)..low.max(high)).contains(&wanted) => {
-                0.5 * (low + high)
-            }
+            (Some(a), Some(b)) if !(a.min(b)..a.max(b)).contains(&wanted) => 0.5 * (a + b),
             _ => wanted,
         }
     }
 }
 
-/// The least slope of the function whose zero a [`Bracket`] seeks.
-const FLATTEST: f64 = 0.03;
+/// Most of a step of [`Secants`] in steps before it.
+const LONGEST_STEP: f64 = 8.0;
 
 /// Where the bodies touch on the axis of a pressure: the gap is closed there.
 fn closed(pressure: &Pressure, contact: &ContactSolution) -> [f64; 2] {
@@ -576,7 +578,7 @@ impl Trial<'_> {
         };
         // Between the surfaces the tilt is another one than at the depth where it is held, by what the load
         // tilts the bodies up to there: nearly a multiple of its moment.
-        let mut bracket = Bracket::default();
+        let mut secants = Secants::default();
         let mut off = f64::INFINITY;
         // A pressure within the tolerance does not follow a change of the tilt below it.
         let settings = ContactSettings { tolerance: FOLLOWS * settings.tolerance, ..settings };
@@ -590,13 +592,13 @@ impl Trial<'_> {
             off = (deep - wanted) * scene.half_length;
             // Solutions from different guesses differ by less than their error, and so do their tilts.
             let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
-            let narrow = bracket.width() * scene.half_length <= error;
+            let narrow = secants.width() * scene.half_length <= error;
             if off.abs() <= error || narrow && off.abs() <= self.accuracy.tolerance {
                 known.spring = Some(Spring { tilt, compliance });
                 return solved(rotation, known, &settings);
             }
             known.spring = Some(match known.spring {
-                Some(_) => Spring { tilt: bracket.next(tilt, deep - wanted), compliance },
+                Some(_) => Spring { tilt: secants.next(tilt, deep - wanted), compliance },
                 None => {
                     let moment = moment(&parts.axis, &solution);
                     let about_middle = moment - scene.middle * scene.load;

@@ -1,7 +1,7 @@
 //! Laws of any stress field: equilibrium, free faces, superposition, symmetry. Lengths are in units
 //! of C, stresses in units of p0.
 
-use crate::common::{apart, at, free_ends, half_of, near, small, solved, table, worse};
+use crate::common::{apart, at, free_ends, half_of, near, scene, small, solved, table, worse};
 use edgeline::base::{Material, Panels, Parity, StressTensor};
 use edgeline::body::{EdgeModel, Resolution, Shape, Stack};
 use edgeline::case::{Case, Factors};
@@ -76,6 +76,25 @@ fn end_faces_are_free() {
         free_ends(&solved, &format!("{slenderness} {length_ratio} {nu}"), |field, y, z, xs| {
             field.at(y, z, xs)
         });
+    }
+}
+
+/// A place computed by a user may be off the face by rounding, on either side.
+#[test]
+fn points_within_rounding_of_an_end_face_lie_on_it() {
+    for scene in
+        [scene(5.0, 1.0, 0.3, EdgeModel::QuarterSpace), scene(5.0, 0.6, 0.3, EdgeModel::Mirror)]
+    {
+        let solved = SolvedScene::new(&Scene { tolerance: 5e-3, ..scene }).unwrap();
+        for kind in BodyKind::ALL {
+            let (field, face) = (solved.field(kind), half_of(&solved.scene, kind));
+            for x_z in [[0.7, 0.4], [0.0, 0.0], [1.4, 8.0]] {
+                let [on, inside, outside] = [0.0, -4.0, 4.0]
+                    .map(|ulps| at(&field, [x_z[0], face * (1.0 + ulps * f64::EPSILON), x_z[1]]));
+                small("inside", apart(&on, &inside), 1e-9);
+                small("outside", apart(&on, &outside), 1e-9);
+            }
+        }
     }
 }
 
