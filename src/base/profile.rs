@@ -88,6 +88,16 @@ impl Profile {
         }
     }
 
+    /// Where the curvature jumps: the ends of a straight part. The many small jumps of a table are none.
+    pub fn kinks(&self) -> Option<[f64; 2]> {
+        let at = match self {
+            Self::Arc { straight, .. } => *straight,
+            Self::Logarithm { start, .. } => *start,
+            Self::Table(_) => 0.0,
+        };
+        (at > 0.0).then_some([-at, at])
+    }
+
     /// Whether both sides of the middle are alike.
     pub fn is_even(&self) -> bool {
         match self {

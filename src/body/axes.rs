@@ -27,6 +27,12 @@ const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 /// Distance (C) from a corner within which panels grow by a ratio of their own.
 const STEEP: f64 = 0.02;
 
+/// The panels beside a kink of the gap in those at a corner: the pressure is smooth there but for s^2 ln s.
+const KINK: f64 = 40.0;
+
+/// The narrowest panel between two features, as a part of those at a corner.
+const SLIVER: f64 = 0.5;
+
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
 
@@ -464,8 +470,7 @@ impl Resolution {
 
     /// Panels on [0, `half_length`] of the contact line, graded towards its end.
     pub fn contact_axis(&self, half_length: f64) -> Panels {
-        let s = self.graded(self.corner, half_length);
-        Panels::new(s.iter().rev().map(|s| half_length - s).collect(), self.order)
+        self.between_features(&[0.0, half_length], Parity::Even)
     }
 
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
@@ -475,25 +480,44 @@ impl Resolution {
         if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
     }
 
-    /// Panels from one end of the contact line to the other, at `from` and `to`, graded towards both.
-    pub fn line_axis(&self, [from, to]: [f64; 2]) -> Panels {
-        let middle = 0.5 * (from + to);
-        let half = self.contact_axis(0.5 * (to - from));
-        let inner = &half.breaks()[1..half.breaks().len() - 1];
-        let before = inner.iter().rev().map(|y| middle - y);
-        let after = inner.iter().map(|y| middle + y);
-        // The ends themselves are exact.
-        let breaks = [from].into_iter().chain(before).chain([middle]).chain(after).chain([to]);
-        Panels::new(breaks.collect(), self.order)
+    /// The contact line between its `ends`, or one half of it if all is `symmetric`, with panels graded towards the
+    /// ends and the `kinks` of the gap; and the parity that its wavenumbers have to serve.
+    pub fn contact_line(&self, ends: [f64; 2], kinks: &[f64], symmetric: bool) -> (Panels, Parity) {
+        let parity = if symmetric { Parity::Even } else { Parity::Odd };
+        let from = if symmetric { 0.0 } else { ends[0] };
+        let mut features = vec![from];
+        let mut inner = kinks.to_vec();
+        inner.sort_by(f64::total_cmp);
+        // What lies closer together than the panels are wide is one feature.
+        let apart = SLIVER * self.corner;
+        for kink in inner {
+            if kink - features[features.len() - 1] > apart && ends[1] - kink > apart {
+                features.push(kink);
+            }
+        }
+        features.push(ends[1]);
+        (self.between_features(&features, parity), parity)
     }
 
-    /// The contact line between its `ends`, or one half of it if all is `symmetric`; and the parity that its
-    /// wavenumbers have to serve.
-    pub fn contact_line(&self, ends: [f64; 2], symmetric: bool) -> (Panels, Parity) {
-        match symmetric {
-            true => (self.contact_axis(ends[1]), Parity::Even),
-            false => (self.line_axis(ends), Parity::Odd),
+    /// Panels from the first of the ascending `features` to the last, graded towards all of them, but not towards
+    /// the first one of an even half.
+    fn between_features(&self, features: &[f64], parity: Parity) -> Panels {
+        let last = features.len() - 1;
+        let smallest =
+            |i: usize| if i == 0 || i == last { self.corner } else { KINK * self.corner };
+        let mut breaks = vec![features[0]];
+        for (i, ends) in features.windows(2).enumerate() {
+            let one_sided = i == 0 && parity == Parity::Even;
+            let reach = if one_sided { 1.0 } else { 0.5 } * (ends[1] - ends[0]);
+            if !one_sided {
+                breaks.extend(self.graded(smallest(i), reach)[1..].iter().map(|s| ends[0] + s));
+            }
+            let towards = self.graded(smallest(i + 1), reach);
+            // The features themselves are exact.
+            let inner = towards[1..towards.len() - 1].iter().rev().map(|s| ends[1] - s);
+            breaks.extend(inner.chain([ends[1]]));
         }
+        Panels::new(breaks, self.order)
     }
 
     /// The `contact` on one side of a body's middle, continued by panels to the middle and to the end

@@ -86,7 +86,7 @@ impl FreeEnds {
     /// in x and y if it is `symmetric`.
     pub fn new(half_length: f64, bodies: &[FreeBody], symmetric: bool) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
-        let (axis, parity) = resolution.contact_line([-half_length, half_length], symmetric);
+        let (axis, parity) = resolution.contact_line([-half_length, half_length], &[], symmetric);
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let distinct = distinct(bodies);

@@ -27,6 +27,14 @@ pub struct Shaped {
     pub steepness: f64,
 }
 
+impl Shaped {
+    /// Where the gap's curvature along y jumps, see [`Profile::kinks`].
+    pub fn kinks(&self) -> Vec<f64> {
+        let of = |(middle, profile): &(f64, Profile)| Some(profile.kinks()?.map(|y| middle + y));
+        self.profiles.iter().filter_map(of).flatten().collect()
+    }
+}
+
 impl Gap for Shaped {
     fn at(&self, x: f64, y: f64) -> f64 {
         let drops = self.profiles.iter().map(|(middle, profile)| profile.drop(y - middle));

@@ -3,6 +3,7 @@
 use super::solution::ContactSolution;
 use crate::base::{Panels, Wavenumbers};
 use crate::kernels::strip;
+use multiversion::multiversion;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -37,6 +38,9 @@ pub struct LineOperator<'a> {
     pub axis: &'a Panels,
     remainders: Remainders,
 }
+
+/// Entries of the compliance that are interpolated side by side.
+const SIDE: usize = 8;
 
 /// Distance at which the logarithmic kernel of the local, plane part is screened, so that the
 /// remainder for the quadrature over wavenumbers is finite at k = 0 and decays quickly.
@@ -78,13 +82,16 @@ impl Operator for LineOperator<'_> {
         let nodes = self.axis.len();
         let mut rows = vec![vec![0.0; nodes]; places.len()];
         let fine = self.compliance.wavenumbers.fine();
+        // All wavenumbers of each node.
         let transforms: Vec<_> = fine.nodes().iter().map(|k| pressure.transform(*k)).collect();
+        let transforms: Vec<Vec<f64>> =
+            (0..nodes).map(|j| transforms.iter().map(|t| t[j]).collect()).collect();
         let mut amplitudes = vec![0.0; fine.len()];
         let mut modes = Vec::new();
         for (i, &a) in pressure.half_widths.iter().enumerate() {
             amplitudes.fill(0.0);
-            for j in 0..nodes {
-                let caused = self.entries(i, j).iter().zip(&transforms).map(|(e, t)| e * t[j]);
+            for (j, transforms) in transforms.iter().enumerate() {
+                let caused = self.entries(i, j).iter().zip(transforms).map(|(e, t)| e * t);
                 amplitudes.iter_mut().zip(caused).for_each(|(sum, caused)| *sum += caused);
             }
             let c = &pressure.coefficients[i];
@@ -131,21 +138,37 @@ impl Remainders {
         let limits = fine.nodes().iter().zip(fine.weights());
         let limits: Vec<f64> =
             limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
-        let mut entries = vec![0.0; nodes * nodes * fine.len()];
-        let mut own = vec![0.0; coarse.len()];
-        let mut counts = Vec::with_capacity(nodes * nodes);
-        for (at, entries) in entries.chunks_exact_mut(fine.len()).enumerate() {
-            own.iter_mut().zip(&coarse).for_each(|(own, matrix)| *own = matrix.as_slice()[at]);
-            let mut count = 0;
-            for (i, ((first, weights), limit)) in shares.iter().zip(&limits).enumerate() {
-                entries[i] = weights.iter().zip(&own[*first..]).map(|(w, c)| w * c).sum();
-                if entries[i].abs() > *limit {
-                    count = i + 1;
-                }
+        let all = fine.len();
+        let mut entries = vec![0.0; nodes * nodes * all];
+        let mut counts = vec![0; nodes * nodes];
+        let mut own = vec![[0.0; SIDE]; coarse.len()];
+        let chunks = entries.chunks_mut(SIDE * all).zip(counts.chunks_mut(SIDE));
+        for (chunk, (entries, counts)) in chunks.enumerate() {
+            let at = chunk * SIDE..chunk * SIDE + counts.len();
+            for (own, matrix) in own.iter_mut().zip(&coarse) {
+                own[..at.len()].copy_from_slice(&matrix.as_slice()[at.clone()]);
             }
-            counts.push(count);
+            interpolate(&own, &shares, entries);
+            for (count, entries) in counts.iter_mut().zip(entries.chunks_exact(all)) {
+                let relevant = entries.iter().zip(&limits).rposition(|(e, limit)| e.abs() > *limit);
+                *count = relevant.map_or(0, |last| last + 1);
+            }
         }
-        Self { entries, wavenumbers: fine.len(), counts }
+        Self { entries, wavenumbers: all, counts }
+    }
+}
+
+/// Interpolates up to [`SIDE`] functions from their values at the coarse wavenumbers: all fine values of the first one,
+/// then those of the next.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn interpolate(coarse: &[[f64; SIDE]], shares: &[(usize, &[f64])], fine: &mut [f64]) {
+    let all = shares.len();
+    for (i, (first, weights)) in shares.iter().enumerate() {
+        let mut sums = [0.0; SIDE];
+        for (weight, values) in weights.iter().zip(&coarse[*first..]) {
+            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += weight * value);
+        }
+        fine[i..].iter_mut().step_by(all).zip(sums).for_each(|(fine, sum)| *fine = sum);
     }
 }
 

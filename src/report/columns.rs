@@ -74,17 +74,25 @@ impl Columns {
     pub fn to_csv(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
         let mut text = names.join(",") + "\n";
+        let mut digits = zmij::Buffer::new();
+        // The place in the text of each column's last number: along a line most coordinates repeat.
+        let mut written = vec![0..0; self.columns.len()];
         for row in 0..self.columns.first().map_or(0, |(_, values)| values.len()) {
-            for (i, (_, values)) in self.columns.iter().enumerate() {
+            for (i, ((_, values), written)) in self.columns.iter().zip(&mut written).enumerate() {
                 if i > 0 {
                     text.push(',');
                 }
+                let from = text.len();
                 match values {
                     Values::Texts(values) => text.push_str(&values[row]),
                     // Many stresses vanish by symmetry.
                     Values::Numbers(values) if values[row] == 0.0 => text.push('0'),
-                    Values::Numbers(values) => text.push_str(&format!("{:e}", values[row])),
+                    Values::Numbers(values) if row > 0 && values[row] == values[row - 1] => {
+                        text.extend_from_within(written.clone());
+                    }
+                    Values::Numbers(values) => text.push_str(digits.format(values[row])),
                 }
+                *written = from..text.len();
             }
             text.push('\n');
         }

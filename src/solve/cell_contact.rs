@@ -173,7 +173,8 @@ impl<'a> DeepTilt<'a> {
     fn new(scene: &'a Scene, depth: f64) -> Self {
         let end = scene.end(BodyKind::Block);
         let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
-        let axis = resolution.line_axis([-scene.half_length, scene.half_length]);
+        let ends = [-scene.half_length, scene.half_length];
+        let (axis, _) = resolution.contact_line(ends, &[], false);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest, Parity::Odd);
         let coarse = wavenumbers.coarse().nodes();

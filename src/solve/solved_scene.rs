@@ -525,7 +525,7 @@ impl Trial<'_> {
         let (scene, resolution) = (self.scene, self.resolution);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let symmetric = scene.is_symmetric();
-        let (axis, parity) = resolution.contact_line(line.ends, symmetric);
+        let (axis, parity) = resolution.contact_line(line.ends, &self.gap.kinks(), symmetric);
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let coarse = wavenumbers.coarse().nodes();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];

@@ -312,8 +312,12 @@ impl<'a> Field<'a> {
 
     /// Stresses at the points (`x`, y, `z`) for each y of `ys`, in their order. They equal
     /// [`Field::at`], interpolated if the points are closer together than the field's length of
-    /// variation. Each side of the contact is sampled by itself.
+    /// variation. Each side of the contact is sampled by itself. Between shaped bodies the field varies along the
+    /// contact as their profiles do, and nothing is interpolated.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<FlatStress> {
+        if self.follows_contact {
+            return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
+        }
         let mut stresses = vec![FlatStress::default(); ys.len()];
         let [from, to] = self.pressure.ends();
         let middle = 0.5 * (from + to);

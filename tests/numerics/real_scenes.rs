@@ -19,7 +19,7 @@ use std::sync::Arc;
 const FEW: usize = 100;
 
 /// Part of the scenes that may end without an answer, as an error that says so.
-const MOST_ERRORS: f64 = 0.04;
+const MOST_ERRORS: f64 = 0.01;
 
 /// One of so many solutions is compared with that of a tighter tolerance.
 const COMPARED: usize = 10;
