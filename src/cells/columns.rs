@@ -1,7 +1,7 @@
 //! The pressure of cells as a stress field takes it: a profile across the contact at each node along it.
 
-use super::means::means;
 use super::pressure::CellPressure;
+use super::profile::nodal;
 use crate::base::Panels;
 use crate::kernels::strip;
 use crate::stress::Load;
@@ -9,7 +9,7 @@ use crate::stress::round::LocalContact;
 use nalgebra::DMatrix;
 
 /// The part of the pressure of cells that is even in x, at the nodes of an axis along the contact: uniform across each cell,
-/// and along the line the polynomials next to it by least squares.
+/// and along the line the polynomials next to what has their means.
 #[derive(Debug)]
 pub struct Columns<'a> {
     axis: &'a Panels,
@@ -22,40 +22,25 @@ pub struct Columns<'a> {
 
 impl<'a> Columns<'a> {
     /// The pressures of `cells` at the nodes of `axis`, which ends where they do; of a `symmetric` contact, with even numbers of cells, the
-    /// axis is the half y > 0.
-    pub fn new(cells: &CellPressure, axis: &'a Panels, symmetric: bool) -> Self {
+    /// axis is the half y > 0. At the ends of the line the pressure goes like s^-m of the distance s, m of `exponents`, zero where it is
+    /// finite.
+    pub fn new(
+        cells: &CellPressure,
+        axis: &'a Panels,
+        symmetric: bool,
+        exponents: [f64; 2],
+    ) -> Self {
         let nx = cells.grid.nx;
         let a = cells.grid.half_sides().0;
         let count = nx - nx / 2;
-        let nodal =
-            at_nodes(cells, axis, symmetric, |row, i| 0.5 * (row[nx / 2 + i] + row[count - 1 - i]));
+        let even = |row: &[f64], i: usize| 0.5 * (row[nx / 2 + i] + row[count - 1 - i]);
+        let nodal = nodal(cells, axis, symmetric, Some(exponents), count, even);
         let next = |node: usize, i: usize| if i < count { nodal[(node, i)] } else { 0.0 };
         let steps =
             DMatrix::from_fn(axis.len(), count, |node, i| nodal[(node, i)] - next(node, i + 1));
         let edges = (1..=count).map(|i| a * (2 * i - nx % 2) as f64).collect();
         Self { axis, symmetric, edges, steps }
     }
-}
-
-/// What `of` makes of the rows of cells for each place across the right half, at the nodes of an axis.
-pub(super) fn at_nodes(
-    cells: &CellPressure,
-    axis: &Panels,
-    symmetric: bool,
-    of: impl Fn(&[f64], usize) -> f64,
-) -> DMatrix<f64> {
-    let grid = &cells.grid;
-    let (b, count) = (grid.half_sides().1, grid.nx - grid.nx / 2);
-    let first = if symmetric { grid.ny / 2 } else { 0 };
-    let mut nodal = DMatrix::zeros(axis.len(), count);
-    let rows = cells.pressure.chunks_exact(grid.nx).skip(first);
-    for (row, means) in rows.zip(means(axis, grid, symmetric)) {
-        for (node, mean) in means {
-            let share = 2.0 * b * mean / axis.weights()[node];
-            (0..count).for_each(|i| nodal[(node, i)] += share * of(row, i));
-        }
-    }
-    nodal
 }
 
 impl Load for Columns<'_> {
@@ -113,7 +98,7 @@ mod tests {
         let pressure = across.repeat(grid.ny);
         let cells = CellPressure::of(grid, pressure);
         let axis = Panels::new(vec![0.0, 2.3, 3.5, 4.0], 4);
-        let columns = Columns::new(&cells, &axis, true);
+        let columns = Columns::new(&cells, &axis, true, [0.0; 2]);
         let k = 1.3f64;
         let want = 2.0 * (0.75 * (0.5 * k).sin() + 0.25 * (1.0 * k).sin()) / k;
         for got in columns.transforms(&[k]).iter() {

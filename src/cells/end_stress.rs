@@ -4,9 +4,9 @@
 //! add to that, the field by free ends less that by mirrored ones, is smooth but at the corner, and taken from the
 //! pressures on the nodes that carry the ends ([`super::FreeEnds`]), for their part that is even and for that which is odd in x.
 
-use super::columns::at_nodes;
 use super::ends::FreeEnds;
 use super::pressure::CellPressure;
+use super::profile::nodal;
 use crate::base::{Panels, Parity, StressTensor};
 use crate::stress::{Field, Load};
 use nalgebra::DMatrix;
@@ -43,7 +43,7 @@ impl<'a> EndLoads<'a> {
         let nx = cells.grid.nx;
         let (half, count) = (cells.grid.half_sides().0, nx - nx / 2);
         let parts = Parity::BOTH.map(|parity| {
-            let nodal = at_nodes(cells, ends.axis(), false, |row, i| {
+            let nodal = nodal(cells, ends.axis(), false, None, count, |row, i| {
                 // The cell in the middle of an odd number stands for both sides.
                 let share = if nx % 2 == 1 && i == 0 { 0.5 } else { 1.0 };
                 share * 0.5 * (row[nx / 2 + i] + parity.sign() * row[count - 1 - i])

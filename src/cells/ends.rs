@@ -72,6 +72,8 @@ pub struct FreeEnds {
     axis: Panels,
     /// Whether pressures are even in x and y, and the axis lies along half of the contact.
     symmetric: bool,
+    /// Exponents m of the pressure s^-m at the distance s from the contact's ends, zero where it is finite.
+    exponents: [f64; 2],
     wavenumbers: Wavenumbers,
     /// Bodies of one place, one length and one Poisson's ratio are one.
     bodies: Vec<Freed>,
@@ -83,8 +85,14 @@ pub struct FreeEnds {
 
 impl FreeEnds {
     /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free ends, under pressures that are even
-    /// in x and y if it is `symmetric`.
-    pub fn new(half_length: f64, bodies: &[FreeBody], symmetric: bool) -> Self {
+    /// in x and y if it is `symmetric`, and that go like s^-m at the distance s (C) from its ends, m of `exponents`, zero where they are
+    /// finite.
+    pub fn new(
+        half_length: f64,
+        bodies: &[FreeBody],
+        symmetric: bool,
+        exponents: [f64; 2],
+    ) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
         let (axis, parity) = resolution.contact_line([-half_length, half_length], &[], symmetric);
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
@@ -105,7 +113,8 @@ impl FreeEnds {
         });
         let bodies = bodies.collect();
         let basis = rigid(&axis, symmetric);
-        let mut ends = Self { bodies, axis, symmetric, wavenumbers, basis, matrices: Vec::new() };
+        let matrices = Vec::new();
+        let mut ends = Self { bodies, axis, symmetric, exponents, wavenumbers, basis, matrices };
         ends.compress(sums);
         ends
     }
@@ -177,7 +186,7 @@ impl FreeEnds {
 
     /// The pressures of `cells` on the nodes.
     pub fn columns(&self, cells: &CellPressure) -> Columns<'_> {
-        Columns::new(cells, &self.axis, self.symmetric)
+        Columns::new(cells, &self.axis, self.symmetric, self.exponents)
     }
 
     /// The moments of `pressure`, see [`Load::moments`].

@@ -1,36 +1,51 @@
-//! Means of an axis's polynomials over cells.
+//! Integrals of an axis's polynomials over cells.
 
 use super::grid::Grid;
 use crate::base::Panels;
 
-/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact over those on the axis's half.
-pub(super) fn means(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<(usize, f64)>> {
+/// What lies in one panel of a cell: the panel's index, and the cell's part in it with its own nodes.
+pub(super) type Part = (usize, Panels);
+
+/// The parts of each cell along the line, of a `symmetric` contact of those on the axis's half.
+pub(super) fn parts(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<Part>> {
     let length = 2.0 * grid.half_sides().1;
-    let order = axis.order();
     let (from, count) = match symmetric {
         true => (0.0, grid.ny / 2),
         false => (-grid.half_length, grid.ny),
     };
     let of_cell = |j: usize| {
         let cell = [j, j + 1].map(|j| from + length * j as f64);
-        let mut all = Vec::new();
-        for panel in 0..axis.panel_count() {
+        let inside = |panel: usize| {
             let [from, to] = axis.panel(panel);
             let (from, to) = (from.max(cell[0]), to.min(cell[1]));
-            if to <= from {
-                continue;
-            }
-            let start = all.len();
-            all.extend((0..order).map(|i| (panel * order + i, 0.0)));
-            let part = Panels::new(vec![from, to], order);
-            for (y, weight) in part.nodes().iter().zip(part.weights()) {
-                let values = axis.polynomials(panel, *y).map(|v| v * weight / length);
-                all[start..].iter_mut().zip(values).for_each(|((_, mean), v)| *mean += v);
-            }
-        }
-        all
+            (from < to).then(|| (panel, Panels::new(vec![from, to], axis.order())))
+        };
+        (0..axis.panel_count()).filter_map(inside).collect()
     };
     (0..count).map(of_cell).collect()
+}
+
+/// The integrals over a cell of `f(y)` times each polynomial of `axis` that is not zero there: its node, and the integral.
+pub(super) fn integrals(axis: &Panels, cell: &[Part], f: impl Fn(f64) -> f64) -> Vec<(usize, f64)> {
+    let order = axis.order();
+    let mut all = Vec::with_capacity(cell.len() * order);
+    for (panel, part) in cell {
+        let start = all.len();
+        all.extend((0..order).map(|i| (panel * order + i, 0.0)));
+        for (y, weight) in part.nodes().iter().zip(part.weights()) {
+            let value = f(*y) * weight;
+            let polynomials = axis.polynomials(*panel, *y);
+            all[start..].iter_mut().zip(polynomials).for_each(|((_, sum), v)| *sum += v * value);
+        }
+    }
+    all
+}
+
+/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact over those on the axis's half.
+pub(super) fn means(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<(usize, f64)>> {
+    let length = 2.0 * grid.half_sides().1;
+    let parts = parts(axis, grid, symmetric);
+    parts.iter().map(|cell| integrals(axis, cell, |_| 1.0 / length)).collect()
 }
 
 #[cfg(test)]

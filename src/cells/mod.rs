@@ -32,6 +32,7 @@ mod means;
 mod plans;
 mod pressure;
 mod problem;
+mod profile;
 mod solver;
 mod whole;
 #[cfg(feature = "cli")]

@@ -190,7 +190,7 @@ impl<'a> DeepTilt<'a> {
     /// The tilt (C / (2 R)) under the pressures of cells on smooth surfaces.
     fn of(&self, pressure: &CellPressure) -> f64 {
         let scene = self.scene;
-        let columns = Columns::new(pressure, &self.axis, false);
+        let columns = Columns::new(pressure, &self.axis, false, scene.end_exponents());
         let moments = columns.moments(&self.wavenumbers);
         let field = |kind: BodyKind| {
             let stack = &self.stacks[kind];

@@ -37,6 +37,9 @@ pub fn check_layers(case: &Case, options: &Options, depths_m: &[f64], cells: usi
             })?;
         }
     }
+    if depths_m.is_empty() {
+        return Ok(());
+    }
     let kept = 6.0 * (depths_m.len() * options.bodies.len()) as f64;
     let what = format!("{} layers of {cells} cells", depths_m.len());
     check_memory(&what, 8.0 * cells as f64 * (WORK + 2.0 * kept), "ask for fewer layers or cells")

@@ -37,14 +37,20 @@ impl Scene {
         }
         let even = grid.nx.is_multiple_of(2) && grid.ny.is_multiple_of(2);
         let symmetric = self.span().symmetric && even;
-        let free =
-            (!free.is_empty()).then(|| Arc::new(FreeEnds::new(self.half_length, &free, symmetric)));
+        let exponents = self.end_exponents();
+        let ends = || Arc::new(FreeEnds::new(self.half_length, &free, symmetric, exponents));
+        let free = (!free.is_empty()).then(ends);
         let tilt = match self.tilt {
             Tilt::Held(tilt) => CellTilt::Held(tilt),
             Tilt::Free(arm) => CellTilt::Free(self.off_middle(arm)),
         };
         let (load, most_iterations) = (self.load, MOST_ITERATIONS);
         CellProblem { grid, images, free, load, tilt, tolerance, most_iterations }
+    }
+
+    /// The exponents m of the pressure s^-m at the overlap's ends, zero where it is finite.
+    pub(super) fn end_exponents(&self) -> [f64; 2] {
+        self.corner_exponents().map(|exponent| exponent.unwrap_or(0.0))
     }
 
     /// The smooth gap over cells.

@@ -158,7 +158,7 @@ fn stresses_under_free_ends_are_the_line_engines() {
             let limit = if got.name.starts_with("surface") { 4e-3 } else { 2e-3 };
             small(&format!("{name}, {} of the {}", got.name, got.body.name()), rms, limit);
         }
-        // Most of it is the line engine's own, at a tolerance of 1e-3.
+        // Finer cells and tolerances leave 0.0018 of it: means over the line by the two engines.
         near(name, cells.summary.approach_m / line.summary.approach_m, 1.0, 5e-3);
     }
 }
@@ -203,13 +203,18 @@ fn apart_from_line(case: &Case, options: &Options, counts: [usize; 2]) -> [f64; 
             count += 1.0;
         }
     }
-    // On the surface the stresses show the steps of the cells' pressure.
+    // On the surface the stresses show the steps of the cells' pressure, and beside the contact's edges the mean over a steep
+    // slope.
+    let beside_edge = |[x, y, z]: [f64; 3]| {
+        let [inner, outer] = [-0.05, 0.05].map(|by| solved.pressure(x.abs() + by, y) > 0.0);
+        z == 0.0 && inner != outer
+    };
     let mut worst = [0.0f64; 2];
     for (got, want) in cells.curves.stress.iter().zip(&line.curves.stress) {
         assert_eq!((got.body, &got.name, got.at.len()), (want.body, &want.name, want.at.len()));
         let pairs = got.at.iter().zip(got.stress.iter().zip(&want.stress));
         let off: Vec<f64> = pairs
-            .filter(|(at, _)| away_from_edges(**at, [from, to], 0.15))
+            .filter(|(at, _)| away_from_edges(**at, [from, to], 0.15) && !beside_edge(**at))
             .map(|(_, (got, want))| crate::common::apart(got, want).powi(2))
             .collect();
         let own = &mut worst[usize::from(got.name.starts_with("surface"))];
@@ -241,32 +246,32 @@ fn corners_are_the_line_engines_on_a_small_grid() {
         options.curves = ["depth-0.9", "along-y-0.78C"].map(String::from).to_vec();
         let [pressure, stress, ..] = apart_from_line(&case, &options, [48, 72]);
         let long = name.contains("20");
-        small(&format!("{name}, pressure"), pressure, if long { 2e-2 } else { 4e-3 });
-        small(&format!("{name}, stress"), stress, if long { 3e-2 } else { 1e-2 });
+        small(&format!("{name}, pressure"), pressure, if long { 1.5e-2 } else { 3e-3 });
+        small(&format!("{name}, stress"), stress, if long { 4e-3 } else { 3e-3 });
     }
 }
 
-/// The table of docs/performance.md, "Contacts on cells", of the corners that are symmetric.
+/// The tables of docs/performance.md, "Contacts on cells".
 #[test]
 #[ignore = "some minutes"]
 fn corners_are_the_line_engines_by_every_model() {
-    for (name, case) in eight_corners().into_iter().take(4) {
-        for model in EdgeModel::ALL {
+    for (name, case) in eight_corners() {
+        // The published models' pressure is singular at more of the ends: corners without symmetry add nothing.
+        let skew = name.contains("skew");
+        for model in EdgeModel::ALL.into_iter().filter(|m| !skew || *m == EdgeModel::QuarterSpace) {
             let options = Options::new(model);
             let grids = [[64, 100], [128, 200], [256, 400]];
             let found = grids.map(|counts| apart_from_line(&case, &options, counts));
             println!("{name} {model}: {found:?}");
-            let [_, coarse, [pressure, stress, ..]] = found;
+            let [coarse, _, fine] = found;
+            let [pressure, stress, surface, ..] = fine;
             small(&format!("{name}, {model}, pressure"), pressure, 4e-3);
-            // The published models' pressure is singular at more of the ends.
-            let free = model == EdgeModel::QuarterSpace;
-            // Cells of 0.1 C show their steps on the surface beside a singular end.
-            let limit = match (free, name.as_str()) {
-                (true, "S_l 20, L_r 0.5") => 0.016,
-                (true, _) => 6e-3,
-                (false, _) => 0.05,
-            };
+            let limit = if model == EdgeModel::QuarterSpace { 6e-3 } else { 0.05 };
             small(&format!("{name}, {model}, stress"), stress, limit);
+            if model == EdgeModel::QuarterSpace {
+                small(&format!("{name}, {model}, stress on the surface"), surface, limit);
+                assert!((0..2).all(|i| fine[i] < coarse[i]), "{name}: {found:?}");
+            }
             assert!(pressure < coarse[0], "{name}, {model}: {found:?}");
         }
     }
@@ -275,15 +280,9 @@ fn corners_are_the_line_engines_by_every_model() {
 /// Layers by transforms are the stresses at their points, of a skew contact with waves on it.
 #[test]
 fn layers_are_the_stresses_at_points_by_every_model() {
-    let mut case = skew(1);
+    let case = with_waves(skew(1));
     let [from, to] = case.overlap();
     let c_m = case.hertz().c_m;
-    let steps = [4.0 * c_m / 59.0, (to - from) * c_m / 79.0];
-    let values =
-        (0..60 * 80).map(|k| 2e-8 * (f64::from(k / 80) * 0.9 + f64::from(k % 80) * 0.4).sin());
-    let samples = Some(Arc::new(Heights::new([60, 80], steps, values.collect()).unwrap()));
-    let [dx_m, dy_m] = steps;
-    case.surface = Some(Surface { heights: "waves".into(), dx_m, dy_m, detrend: None, samples });
     let cells = CellOptions { counts: Some([64, 72]), ..CellOptions::default() };
     for model in [EdgeModel::Guilbault, EdgeModel::QuarterSpace] {
         let mut options = Options::new(model);
@@ -446,6 +445,43 @@ fn vanishing_heights_on_skew_bodies_with_free_ends_change_nothing() {
                 let off = crate::common::apart(&curve.stress[i], &want);
                 assert!(off < 8e-3, "skew {number}, {}, {at:?}: {off}", curve.name);
             }
+        }
+    }
+}
+
+/// Waves of 20 nm over the contact of `case`.
+fn with_waves(mut case: Case) -> Case {
+    let [from, to] = case.overlap();
+    let c_m = case.hertz().c_m;
+    let steps = [4.0 * c_m / 59.0, (to - from) * c_m / 79.0];
+    let values =
+        (0..60 * 80).map(|k| 2e-8 * (f64::from(k / 80) * 0.9 + f64::from(k % 80) * 0.4).sin());
+    let samples = Some(Arc::new(Heights::new([60, 80], steps, values.collect()).unwrap()));
+    let [dx_m, dy_m] = steps;
+    case.surface = Some(Surface { heights: "waves".into(), dx_m, dy_m, detrend: None, samples });
+    case
+}
+
+#[test]
+fn threads_change_nothing_with_free_ends() {
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves = ["depth-0.9", "surface-along-y"].map(String::from).to_vec();
+    let cells = CellOptions { counts: Some([96, 128]), ..CellOptions::default() };
+    let symmetric = builtin_case("half-short").unwrap().unwrap();
+    for (name, case) in
+        [("symmetric", symmetric), ("skew", skew(0)), ("rough", with_waves(skew(3)))]
+    {
+        let [one, three] = [1, 3].map(|threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            pool.install(|| solve_on_cells(&case, &options, &cells, &|_, _| {}).unwrap())
+        });
+        let pairs = one.pressure.pressure.iter().zip(&three.pressure.pressure);
+        let off = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        small(&format!("{name}, pressure"), off, 1e-12);
+        for (a, b) in one.solution.curves.stress.iter().zip(&three.solution.curves.stress) {
+            let pairs = a.stress.iter().zip(&b.stress);
+            let off = pairs.fold(0.0, |m: f64, (a, b)| m.max(crate::common::apart(a, b)));
+            small(&format!("{name}, {} of the {}", a.name, a.body.name()), off, 1e-12);
         }
     }
 }

@@ -404,6 +404,10 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
         (&["--cells", "64,64"][..], "--engine cells"),
         (&["--engine", "cells", "--cells", "64"], "64,128"),
         (&["--engine", "cells", "--cells", "512,8"], "as long as wide"),
+        (
+            &["--engine", "cells", "--cells", "65536,65536"],
+            "a contact on 65536 x 65536 cells takes about",
+        ),
         (&["--engine", "cells", "--field"], "--field"),
         (&["--engine", "cells", "--tolerance", "1e-20"], "1e-12"),
     ] {
@@ -412,6 +416,14 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
         let said = refused(folder.path(), &all);
         assert!(said.contains(wanted), "{said}");
     }
+    let case = edgeline::case::builtin_case("flush-short").unwrap().unwrap().to_toml();
+    let narrow = format!("{case}\n[cells]\nhalf_width_m = 1e-4\n");
+    std::fs::write(folder.path().join("narrow.toml"), narrow).unwrap();
+    let narrow =
+        ["solve", "narrow.toml", "--engine", "cells", "--cells", "64,100", "--out", "none"];
+    let said = refused(folder.path(), &narrow);
+    assert!(said.contains("the contact reaches the edge of the cells at x = 0.39"), "{said}");
+    assert!(files(&folder.path().join("none")).is_empty());
 }
 
 /// A two-dimensional array in numpy's format 1.0.
