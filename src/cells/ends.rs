@@ -236,7 +236,7 @@ impl FreeEnds {
         let matrices: Vec<DMatrix<f64>> = all.map(compliance).collect();
         let compliance = contact::Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
         let transform = |k: f64| pressure.transforms(&[k]).column(0).into_owned();
-        contact::Reference::new(&compliance, transform).at(depth)
+        contact::Reference::new(&compliance, self.axis.weights(), None, transform).at(depth)
     }
 
     /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to

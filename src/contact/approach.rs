@@ -9,6 +9,19 @@ use std::f64::consts::PI;
 /// of the surface.
 const LONG: f64 = 0.6;
 
+/// Wavenumber times half-length of the shorter body from which the displacements of bodies that end are accurate: the
+/// equations of their faces are close to singular for longer waves.
+const SHORT: f64 = 0.15;
+
+/// What is known of the displacements by long waves.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct LongWaves {
+    /// The wavenumber (1/C) times the mean displacement (C^2 / (2 R)) along the line, for vanishing wavenumbers.
+    pub limit: f64,
+    /// Half of the length of the shorter body (C).
+    pub half: f64,
+}
+
 /// The mean displacement along the line that the load causes at any depth: with the kernel e^(-k depth) the logarithmic
 /// growth of the displacement with the extent of the bodies cancels in the difference from the approach.
 ///
@@ -20,13 +33,31 @@ pub struct Reference {
     fine: Panels,
     /// The mean displacement along the line of each fine wavenumber.
     means: Vec<f64>,
-    /// alpha, beta, gamma of alpha / k + beta + gamma ln k below the first panel's end, whatever the bodies' extent.
-    fit: Vector3<f64>,
+    /// Wavenumber below which the mean is a fit.
+    short: f64,
+    fit: Fit,
+}
+
+/// The mean displacement by long waves.
+#[derive(Debug, Clone, PartialEq)]
+enum Fit {
+    /// alpha, beta, gamma of alpha / k + beta + gamma ln k, whatever the bodies' extent.
+    Any(Vector3<f64>),
+    /// alpha, beta, gamma of alpha / k + beta + gamma k, with the alpha of [`LongWaves`].
+    Known([f64; 3]),
 }
 
 impl Reference {
-    /// That of a load whose pressure has the `transform` at the nodes, for any wavenumber.
-    pub fn new(compliance: &Compliance, transform: impl Fn(f64) -> DVector<f64>) -> Self {
+    /// That of a load whose pressure has the `transform` at the nodes of the line, for any wavenumber; `weights` are
+    /// those of the nodes' quadrature, `long` is what is known of long waves.
+    pub fn new(
+        compliance: &Compliance,
+        weights: &[f64],
+        long: Option<LongWaves>,
+        transform: impl Fn(f64) -> DVector<f64>,
+    ) -> Self {
+        // The nodes crowd at the ends: a mean of equal shares would be one of the ends.
+        let shares = DVector::from_column_slice(weights) / weights.iter().sum::<f64>();
         let wavenumbers = compliance.wavenumbers;
         let fine = wavenumbers.fine().clone();
         let numbers = fine.nodes();
@@ -36,31 +67,43 @@ impl Reference {
             .nodes()
             .iter()
             .zip(compliance.matrices)
-            .map(|(&k, c)| c.row_mean_tr().add_scalar(-plane(k) / c.nrows() as f64))
+            .map(|(&k, c)| c.tr_mul(&shares) - &shares * plane(k))
             .collect();
         let mean_at = |(i, &k): (usize, &f64)| -> f64 {
             let transform = transform(k);
-            let (first, shares) = wavenumbers.interpolation(i);
-            let rests =
-                shares.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
-            plane(k) * transform.mean() + rests.sum::<f64>()
+            let (first, basis) = wavenumbers.interpolation(i);
+            let rests = basis.iter().zip(&rests[first..]).map(|(w, rest)| w * rest.dot(&transform));
+            plane(k) * transform.dot(&shares) + rests.sum::<f64>()
         };
         let means: Vec<f64> = numbers.iter().enumerate().map(mean_at).collect();
-        let ends = [0, fine.order() / 2, fine.order() - 1];
-        let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
-        let system = Matrix3::from_fn(|i, j| rows[i][j]);
-        let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i]))).unwrap_or_default();
-        Self { fine, means, fit }
+        let (short, fit) = match long {
+            Some(LongWaves { limit, half }) => {
+                let last = numbers.len() - 1;
+                let near = numbers.partition_point(|k| k * half < SHORT).min(last - 1);
+                let far = numbers.partition_point(|k| *k < 2.0 * numbers[near]).min(last);
+                let rest = |i: usize| means[i] - limit / numbers[i];
+                let slope = (rest(far) - rest(near)) / (numbers[far] - numbers[near]);
+                let fit = [limit, rest(near) - slope * numbers[near], slope];
+                (numbers[near], Fit::Known(fit))
+            }
+            None => {
+                let ends = [0, fine.order() / 2, fine.order() - 1];
+                let rows = ends.map(|i| [1.0 / numbers[i], 1.0, numbers[i].ln()]);
+                let system = Matrix3::from_fn(|i, j| rows[i][j]);
+                let fit = system.lu().solve(&Vector3::from(ends.map(|i| means[i])));
+                (fine.breaks()[1], Fit::Any(fit.unwrap_or_default()))
+            }
+        };
+        Self { fine, means, short, fit }
     }
 
     /// The displacement at `depth` (C), in units of C^2 / (2 R).
     pub fn at(&self, depth: f64) -> f64 {
         let numbers = self.fine.nodes();
-        let first = self.fine.breaks()[1];
         let top = self.fine.breaks().partition_point(|k| *k < LONG).min(self.fine.panel_count());
         let top = self.fine.breaks()[top];
         let below = numbers.partition_point(|k| *k < top);
-        let own = fading_panels(depth, first, top);
+        let own = fading_panels(depth, self.short, top);
         let faded: f64 = own
             .nodes()
             .iter()
@@ -81,10 +124,12 @@ impl Reference {
 
     /// The mean displacement of the wavenumber `k`.
     fn mean(&self, k: f64) -> f64 {
-        let Self { fine, means, fit } = self;
-        let numbers = fine.nodes();
-        if k < fine.breaks()[1] {
-            return fit[0] / k + fit[1] + fit[2] * k.ln();
+        let (numbers, means) = (self.fine.nodes(), &self.means);
+        if k < self.short {
+            return match &self.fit {
+                Fit::Any(fit) => fit[0] / k + fit[1] + fit[2] * k.ln(),
+                Fit::Known([limit, constant, slope]) => limit / k + constant + slope * k,
+            };
         }
         // k times the mean is smooth in ln k: 2 pi / k for waves shorter than the line.
         let from = numbers.partition_point(|n| *n < k).saturating_sub(2).min(numbers.len() - 4);
@@ -98,8 +143,9 @@ impl Reference {
 }
 
 /// Panels that resolve e^(-k `depth`) and the decay of the mean up to the wavenumber `top`, with a
-/// break at `first`.
+/// break at `first`, if that is less.
 fn fading_panels(depth: f64, first: f64, top: f64) -> Panels {
+    let first = first.min(top);
     let smallest = (1e-3 / depth).min(first);
     let steps = ((top / smallest).ln() / 1.1f64).ceil().max(1.0) as i32;
     let graded = |i| smallest * (top / smallest).powf(f64::from(i) / f64::from(steps));

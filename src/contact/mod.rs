@@ -25,7 +25,7 @@ mod slices;
 mod solution;
 mod solver;
 
-pub use approach::Reference;
+pub use approach::{LongWaves, Reference};
 pub use check::gaps;
 pub use gap::{Gap, Shaped, Straight};
 pub use operator::{Compliance, LineOperator, Operator};

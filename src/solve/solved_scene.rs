@@ -5,13 +5,14 @@ use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
 use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
-use crate::body::{Resolution, Shape, Stack};
+use crate::body::{EdgeModel, Resolution, Shape, Stack};
 use crate::contact::{
-    self, Compliance, ContactSettings, ContactSolution, Problem, Reference, Rotation, Shaped,
-    Slices,
+    self, Compliance, ContactSettings, ContactSolution, LongWaves, Problem, Reference, Rotation,
+    Shaped, Slices,
 };
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
+use std::f64::consts::PI;
 use std::time::Instant;
 
 /// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
@@ -249,7 +250,11 @@ impl SolvedScene {
     /// The approach of points at any depth.
     pub(super) fn approaches(&self) -> Approaches {
         let own = &self.own.contact;
-        let reference = Reference::new(&self.compliance(), |k| own.transform(k));
+        let axis = self.own.pressure.axis();
+        let lines: Vec<f64> = own.transform(0.0).iter().copied().collect();
+        let long = self.own.scene.long_waves(axis, &lines);
+        let weights = axis.weights();
+        let reference = Reference::new(&self.compliance(), weights, long, |k| own.transform(k));
         Approaches { approach: own.approach, reference, unit: self.unit }
     }
 
@@ -307,6 +312,32 @@ impl Scene {
             return Resolution::for_tips(tolerance);
         }
         Resolution::of(tolerance, &self.end(BodyKind::Block), self.corner_exponent())
+    }
+
+    /// What is known of the displacements along `axis` by long waves, under `lines`, the loads per length at its nodes. Bodies
+    /// between free faces are plates for them, loaded on their edge: they move as a whole by pi / (k H (1 - nu^2)), times the
+    /// load, and turn by 3 pi / (k H^3 (1 - nu)(3 + nu)), times the moment (Kirchhoff's plate).
+    pub(super) fn long_waves(&self, axis: &Panels, lines: &[f64]) -> Option<LongWaves> {
+        if self.model != EdgeModel::QuarterSpace {
+            return None;
+        }
+        let symmetric = self.is_symmetric();
+        let sides = if symmetric { 2.0 } else { 1.0 };
+        let nodes = axis.nodes().iter().zip(axis.weights()).zip(lines);
+        let (load, first) = nodes.fold((0.0, 0.0), |(load, first), ((y, weight), line)| {
+            (load + sides * weight * line, first + weight * line * y)
+        });
+        let centre = 0.5 * (axis.breaks()[0] + axis.end());
+        let of_body = |body: &SceneBody| {
+            let SceneBody { half, middle, nu, share, .. } = *body;
+            let moved = load / (half * (1.0 - nu * nu));
+            let turned = 3.0 * (first - middle * load) / (half.powi(3) * (1.0 - nu) * (3.0 + nu));
+            let arm = if symmetric { 0.0 } else { centre - middle };
+            share * PI * (moved + turned * arm)
+        };
+        let limit = self.bodies.iter().map(of_body).sum();
+        let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, body| least.min(body.half));
+        Some(LongWaves { limit, half })
     }
 
     /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line

@@ -98,3 +98,35 @@ fn an_approach_that_no_legal_force_causes_is_refused() {
         assert!(said.starts_with("load.approach_m = ") && said.contains(wanted), "{said}");
     }
 }
+
+/// The mean displacement of long waves, which the solution itself finds within 1 % to 40 % only, is known.
+#[test]
+fn the_approach_is_one_at_all_tolerances() {
+    let with = |load: f64, slenderness: f64, length_ratio: f64, nu: [f64; 2]| {
+        let mut case = plain(load, slenderness, length_ratio);
+        [case.roller.material.poisson, case.block.material.poisson] = nu;
+        case
+    };
+    let mut eccentric = with(3e-4, 5.0, 0.5, [0.3, 0.3]);
+    eccentric.load.eccentricity_m = Some(0.1 * eccentric.roller.length_m);
+    let cases = [
+        with(5e-4, 5.0, 1.0, [0.3, 0.3]),
+        with(5e-4, 5.0, 0.5, [0.45, 0.0]),
+        with(1e-4, 20.0, 0.7, [0.1, 0.3]),
+        with(1e-3, 2.0, 2.0, [0.3, 0.49]),
+        eccentric,
+    ];
+    for case in cases {
+        case.check().unwrap();
+        let of = |tolerance: f64| {
+            let case = case.clone().with_tolerance(tolerance);
+            solved(&case, EdgeModel::QuarterSpace).unwrap().summary.approach_m
+        };
+        let fine = of(1e-4);
+        for (tolerance, limit) in [(1e-2, 1e-2), (5e-3, 2e-3), (1e-3, 3e-4)] {
+            let off = (of(tolerance) / fine - 1.0).abs();
+            println!("{tolerance}: {off:.1e}");
+            small(&format!("the approach at {tolerance} of {case:?}"), off, limit);
+        }
+    }
+}
