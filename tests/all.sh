@@ -87,6 +87,15 @@ if ((crates > 60)); then
     exit 1
 fi
 
+step "the package, as a registry would get it"
+cargo package --package edgeline --allow-dirty --no-verify --quiet
+unpacked=target/package/unpacked
+rm -rf "$unpacked"
+mkdir -p "$unpacked"
+tar -xzf target/package/edgeline-[0-9]*.crate --strip-components=1 -C "$unpacked"
+# Against the crates that the lints have checked.
+CARGO_TARGET_DIR=$PWD/target cargo check --profile fast --quiet --manifest-path "$unpacked/Cargo.toml"
+
 step "documentation"
 RUSTDOCFLAGS="-D warnings" cargo doc --profile fast --no-deps --quiet
 
