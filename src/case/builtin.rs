@@ -5,9 +5,10 @@ use crate::base::{Error, Result};
 use std::path::Path;
 
 /// Name and text of every case file in `cases/`.
-pub const BUILTIN_CASES: [(&str, &str); 17] = [
+pub const BUILTIN_CASES: [(&str, &str); 18] = [
     ("crown-inside", include_str!("../../cases/crown-inside.toml")),
     ("crown-to-the-ends", include_str!("../../cases/crown-to-the-ends.toml")),
+    ("designed-roller", include_str!("../../cases/designed-roller.toml")),
     ("eccentric-flush", include_str!("../../cases/eccentric-flush.toml")),
     ("eccentric-half", include_str!("../../cases/eccentric-half.toml")),
     ("flush-short", include_str!("../../cases/flush-short.toml")),

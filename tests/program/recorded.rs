@@ -108,6 +108,7 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
         ("eccentric-half", [0.005, 0.012, 0.012], 0.06),
         ("offset-flush-end", [0.005, 0.013, 0.013], 0.07),
         ("logarithmic-eccentric", [0.009, 0.012, 0.012], 0.06),
+        ("designed-roller", [0.005, 0.011, 0.008], 0.025),
     ] {
         within(&Case::find(Path::new(name)).unwrap(), limits, most);
     }
