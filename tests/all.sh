@@ -88,9 +88,10 @@ if ((crates > 60)); then
 fi
 
 step "the package, as a registry would get it"
+# The archive of another version would be left there.
+rm -rf target/package
 cargo package --package edgeline --allow-dirty --no-verify --quiet
 unpacked=target/package/unpacked
-rm -rf "$unpacked"
 mkdir -p "$unpacked"
 tar -xzf target/package/edgeline-[0-9]*.crate --strip-components=1 -C "$unpacked"
 # Against the crates that the lints have checked.

@@ -27,7 +27,7 @@ const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 /// Distance (C) from a corner within which panels grow by a ratio of their own.
 const STEEP: f64 = 0.02;
 
-/// The panels beside a kink of the gap in those at a corner: the pressure is smooth there but for s^2 ln s.
+/// Size of the panels beside a kink of the gap, in those at a corner: the pressure is smooth there but for s ln s.
 const KINK: f64 = 40.0;
 
 /// The narrowest panel between two features, as a part of those at a corner.

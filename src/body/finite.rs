@@ -102,6 +102,14 @@ pub struct Shape {
     pub nu: f64,
 }
 
+impl Shape {
+    /// The wavenumber k times the turn of the body by a unit moment under waves far longer than it is, in the compliance's unit:
+    /// Kirchhoff's plate between two free faces, loaded on its edge.
+    pub fn turned(&self) -> f64 {
+        3.0 * PI / (self.half.powi(3) * (1.0 - self.nu) * (3.0 + self.nu))
+    }
+}
+
 /// Shares of the last images of an alternating series, which close it (Euler's transformation of fifth
 /// order).
 const CLOSING: [f64; 5] = [31.0 / 32.0, 26.0 / 32.0, 16.0 / 32.0, 6.0 / 32.0, 1.0 / 32.0];

@@ -332,7 +332,7 @@ fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
         // A node acts on both sides of the middle.
         return DMatrix::from_element(1, 1, 2.0 * uniform);
     }
-    let turned = 3.0 * share * PI / (half.powi(3) * (1.0 - nu) * (3.0 + nu));
+    let turned = share * Shape { half, nu }.turned();
     let first = uniform + turned * middle * middle;
     let mixed = -turned * middle;
     DMatrix::from_row_slice(2, 2, &[first, mixed, mixed, turned])

@@ -81,7 +81,7 @@ fn cell_loads(
         let smooth = exponents.filter(|_| cells.len() >= MEANS).map(|[low, high]| {
             let singular = |y: f64| (end + y).powf(-low) * (end - y).powf(-high);
             let first = j.clamp(1, cells.len() - 2) - 1;
-            let from = cells[j][0].1.panel(0)[0];
+            let from = cell[0].1.panel(0)[0];
             let powers = |y: f64| [0, 1, 2].map(|n| ((y - from) / length).powi(n) * singular(y));
             let mean = |cell: &[Part], n: usize| -> f64 {
                 let part = |(_, part): &Part| -> f64 {

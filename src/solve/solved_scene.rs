@@ -251,10 +251,10 @@ impl SolvedScene {
     pub(super) fn approaches(&self) -> Approaches {
         let own = &self.own.contact;
         let axis = self.own.pressure.axis();
-        let lines: Vec<f64> = own.transform(0.0).iter().copied().collect();
-        let long = self.own.scene.long_waves(axis, &lines);
-        let weights = axis.weights();
-        let reference = Reference::new(&self.compliance(), weights, long, |k| own.transform(k));
+        let centre = 0.5 * (axis.breaks()[0] + axis.end());
+        let long = self.own.scene.long_waves(centre, moment(axis, own));
+        let transform = |k| own.transform(k);
+        let reference = Reference::new(&self.compliance(), axis.weights(), long, transform);
         Approaches { approach: own.approach, reference, unit: self.unit }
     }
 
@@ -314,26 +314,21 @@ impl Scene {
         Resolution::of(tolerance, &self.end(BodyKind::Block), self.corner_exponent())
     }
 
-    /// What is known of the displacements along `axis` by long waves, under `lines`, the loads per length at its nodes. Bodies
-    /// between free faces are plates for them, loaded on their edge: they move as a whole by pi / (k H (1 - nu^2)), times the
-    /// load, and turn by 3 pi / (k H^3 (1 - nu)(3 + nu)), times the moment (Kirchhoff's plate).
-    pub(super) fn long_waves(&self, axis: &Panels, lines: &[f64]) -> Option<LongWaves> {
+    /// What is known of the displacements by long waves, along a line with the middle `centre`, under a load with the
+    /// `moment` about y = 0. Bodies between free faces are plates for them, loaded on their edge: they move as a whole by
+    /// pi / (k H (1 - nu^2)), times the load, and turn, see [`Shape::turned`]. In symmetry none turns.
+    fn long_waves(&self, centre: f64, moment: f64) -> Option<LongWaves> {
         if self.model != EdgeModel::QuarterSpace {
             return None;
         }
-        let symmetric = self.is_symmetric();
-        let sides = if symmetric { 2.0 } else { 1.0 };
-        let nodes = axis.nodes().iter().zip(axis.weights()).zip(lines);
-        let (load, first) = nodes.fold((0.0, 0.0), |(load, first), ((y, weight), line)| {
-            (load + sides * weight * line, first + weight * line * y)
-        });
-        let centre = 0.5 * (axis.breaks()[0] + axis.end());
         let of_body = |body: &SceneBody| {
             let SceneBody { half, middle, nu, share, .. } = *body;
-            let moved = load / (half * (1.0 - nu * nu));
-            let turned = 3.0 * (first - middle * load) / (half.powi(3) * (1.0 - nu) * (3.0 + nu));
-            let arm = if symmetric { 0.0 } else { centre - middle };
-            share * PI * (moved + turned * arm)
+            let moved = PI * self.load / (half * (1.0 - nu * nu));
+            let turned = match self.is_symmetric() {
+                true => 0.0,
+                false => Shape { half, nu }.turned() * (moment - middle * self.load),
+            };
+            share * (moved + turned * (centre - middle))
         };
         let limit = self.bodies.iter().map(of_body).sum();
         let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, body| least.min(body.half));
