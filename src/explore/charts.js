@@ -73,6 +73,24 @@ const seen = new IntersectionObserver((entries) => {
   }
 }, { rootMargin: "100px" });
 
+// Puts parts of a drawing on top of each other, and touches those alone that have changed: laying out text anew is
+// what takes a browser longest.
+function layers(parent, ...parts) {
+  while (parent.children.length > parts.length) parent.lastChild.remove();
+  while (parent.children.length < parts.length) parent.append(document.createElementNS("http://www.w3.org/2000/svg", "g"));
+  parts.forEach((part, i) => {
+    const layer = parent.children[i];
+    if (layer.drawn === part) return;
+    layer.innerHTML = part;
+    layer.drawn = part;
+  });
+}
+
+// Sets an attribute if it differs: even the same viewBox, set again, lays a drawing out anew.
+function set(element, name, value) {
+  if (element.getAttribute(name) !== String(value)) element.setAttribute(name, value);
+}
+
 let charts = 0;
 // One pair of axes in a card of its own. `show` takes series { name, label, x, y, near, stale }, whose points `near` an
 // edge the axes need not make room for.
@@ -87,6 +105,8 @@ export class Chart {
     [this.caption, this.svg, this.out] = card.children;
     this.caption.textContent = title;
     this.clip = `inside-${(charts += 1)}`;
+    // Axes, curves, and the frame with the cursor.
+    this.svg.innerHTML = `<g></g><g clip-path="url(#${this.clip})"></g><g></g>`;
     this.cursor = null;
     this.data = null;
     this.visible = true;
@@ -103,7 +123,7 @@ export class Chart {
   show(data) {
     this.data = data;
     this.late = !this.visible;
-    this.svg.setAttribute("aria-label", `${data.title}: ${data.yTitle} over ${data.xTitle}`);
+    set(this.svg, "aria-label", `${data.title}: ${data.yTitle} over ${data.xTitle}`);
     if (this.late) return;
     if (this.caption.textContent !== data.title) this.caption.textContent = data.title;
     const width = Math.max(260, Math.round(widthOf(this.card) - 24));
@@ -118,32 +138,33 @@ export class Chart {
     }
     if (x0 > x1) [x0, x1, y0, y1] = [0, 1, 0, 1];
     if (y1 - y0 < Math.max(1e-12, 1e-6 * Math.abs(y1))) { const h = Math.max(1e-3 * (data.unit || 1), 0.1 * Math.abs(y1)); y0 -= h; y1 += h; }
-    const margin = 0.06 * (y1 - y0);
-    [y0, y1] = [y0 === 0 ? 0 : y0 - margin, y1 + margin];
+    const margin = 0.04 * (y1 - y0);
+    // Limits that stay where they are while a slider moves a little.
+    const by = step(y0, y1, 5) / 2;
+    [y0, y1] = [y0 === 0 ? 0 : by * Math.floor((y0 - margin) / by), by * Math.ceil((y1 + margin) / by)];
     const yTicks = ticks(y0, y1, 5);
     const left = 30 + 7 * Math.max(...yTicks.map(([, text]) => text.length));
     const box = { left, right: width - 8, top: 8, bottom: height - 38 };
     const px = (v) => box.left + (v - x0) / (x1 - x0 || 1) * (box.right - box.left);
     const py = (v) => box.bottom - (v - y0) / (y1 - y0) * (box.bottom - box.top);
     this.scale = { px, py, x0, x1, box, width };
-    const parts = [`<clipPath id="${this.clip}"><rect x="${box.left}" y="${box.top}" width="${box.right - box.left}" height="${box.bottom - box.top}"/></clipPath>`];
+    const axes = [`<clipPath id="${this.clip}"><rect x="${box.left}" y="${box.top}" width="${box.right - box.left}" height="${box.bottom - box.top}"/></clipPath>`];
     for (const [from, to] of data.shades || []) {
       const [a, b] = [px(from), px(to)].map((v) => Math.min(box.right, Math.max(box.left, v)));
-      if (b > a) parts.push(`<rect class="excluded" x="${a.toFixed(1)}" y="${box.top}" width="${(b - a).toFixed(1)}" height="${box.bottom - box.top}"/>`);
+      if (b > a) axes.push(`<rect class="excluded" x="${a.toFixed(1)}" y="${box.top}" width="${(b - a).toFixed(1)}" height="${box.bottom - box.top}"/>`);
     }
     for (const [v, text] of ticks(x0, x1, Math.max(3, width / 75))) {
       const x = px(v).toFixed(1);
-      parts.push(`<path class="grid" d="M${x} ${box.top}V${box.bottom}"/><text x="${x}" y="${box.bottom + 16}" text-anchor="middle">${text}</text>`);
+      axes.push(`<path class="grid" d="M${x} ${box.top}V${box.bottom}"/><text x="${x}" y="${box.bottom + 16}" text-anchor="middle">${text}</text>`);
     }
     for (const [v, text] of yTicks) {
       const y = py(v).toFixed(1);
-      parts.push(`<path class="grid" d="M${box.left} ${y}H${box.right}"/><text x="${box.left - 6}" y="${Number(y) + 4}" text-anchor="end">${text}</text>`);
+      axes.push(`<path class="grid" d="M${box.left} ${y}H${box.right}"/><text x="${box.left - 6}" y="${Number(y) + 4}" text-anchor="end">${text}</text>`);
     }
     const middle = (box.top + box.bottom) / 2;
-    parts.push(`<text class="dim" x="${(box.left + box.right) / 2}" y="${height - 4}" text-anchor="middle">${escaped(data.xTitle)}</text>`);
-    parts.push(`<text class="dim" text-anchor="middle" transform="translate(12 ${middle}) rotate(-90)">${escaped(data.yTitle)}</text>`);
-    parts.push(`<g clip-path="url(#${this.clip})">`);
-    for (const s of data.series) {
+    axes.push(`<text class="dim" x="${(box.left + box.right) / 2}" y="${height - 4}" text-anchor="middle">${escaped(data.xTitle)}</text>`);
+    axes.push(`<text class="dim" text-anchor="middle" transform="translate(12 ${middle}) rotate(-90)">${escaped(data.yTitle)}</text>`);
+    const curves = data.series.map((s) => {
       const points = finite(s).map((i) => [px(s.x[i]), py(s.y[i])]);
       const line = points.map(([x, y]) => `${x.toFixed(1)} ${Math.max(-1e4, Math.min(1e4, y)).toFixed(1)}`).join("L");
       const marks = [];
@@ -154,13 +175,15 @@ export class Chart {
         marks.push(markAt(s.name, x, y));
         last = [x, y];
       }
-      parts.push(`<g data-series="${s.name}"${s.stale ? ' class="stale"' : ""}><path class="curve" stroke="${colour(s.name)}" stroke-dasharray="${LOOKS[s.name].dash || "none"}" d="${line ? `M${line}` : ""}"/><path class="mark" stroke="${colour(s.name)}" d="${marks.join("")}"/></g>`);
-    }
-    if (data.star) parts.push(`<path class="star" d="${star(px(data.star[0]), py(data.star[1]))}"><title>most stressed place</title></path>`);
-    parts.push("</g>");
-    parts.push(`<rect class="frame" x="${box.left}" y="${box.top}" width="${box.right - box.left}" height="${box.bottom - box.top}"/><path class="cursor" d=""/>`);
-    this.svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    this.svg.innerHTML = parts.join("");
+      return `<g data-series="${s.name}"${s.stale ? ' class="stale"' : ""}><path class="curve" stroke="${colour(s.name)}" stroke-dasharray="${LOOKS[s.name].dash || "none"}" d="${line ? `M${line}` : ""}"/><path class="mark" stroke="${colour(s.name)}" d="${marks.join("")}"/></g>`;
+    });
+    if (data.star) curves.push(`<path class="star" d="${star(px(data.star[0]), py(data.star[1]))}"><title>most stressed place</title></path>`);
+    const frame = `<rect class="frame" x="${box.left}" y="${box.top}" width="${box.right - box.left}" height="${box.bottom - box.top}"/><path class="cursor" d=""/>`;
+    const [behind, within, before] = this.svg.children;
+    set(this.svg, "viewBox", `0 0 ${width} ${height}`);
+    layers(behind, axes.join(""));
+    layers(within, ...curves);
+    layers(before, frame);
     this.point(this.cursor);
   }
 
@@ -232,12 +255,14 @@ export function drawMap(holder, map, view) {
   const width = Math.max(260, Math.round(widthOf(holder)));
   const height = Math.round(Math.min(300, Math.max(200, width * 0.48)));
   const box = { left: 52, right: width - 84, top: 8, bottom: height - 38 };
-  const [nx, ny] = [box.right - box.left, box.bottom - box.top].map(Math.round);
+  const [wide, high] = [box.right - box.left, box.bottom - box.top].map(Math.round);
+  // The browser fills in between: the cells are much larger than a pixel.
+  const [nx, ny] = [wide, high].map((pixels) => Math.ceil(pixels / 2));
   const rows = map.y.length;
   const [y0, y1] = [map.y[0] - map.dy[0] / 2, map.y[rows - 1] + map.dy[rows - 1] / 2];
   const reach = map.dx * (Math.max(...map.p.map((row) => row.length)) - 0.5);
   if (canvas.width !== nx || canvas.height !== ny) { canvas.width = nx; canvas.height = ny; }
-  Object.assign(canvas.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${nx}px`, height: `${ny}px` });
+  Object.assign(canvas.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${wide}px`, height: `${high}px` });
   const context = canvas.getContext("2d");
   const image = context.createImageData(nx, ny);
   const half = Math.ceil(ny / 2);
@@ -263,31 +288,32 @@ export function drawMap(holder, map, view) {
     }
   }
   context.putImageData(image, 0, 0);
-  const px = (y) => box.left + (y - y0) / (y1 - y0) * nx;
-  const py = (x) => box.top + (reach - x) / (2 * reach) * ny;
-  const parts = [`<rect class="frame" x="${box.left}" y="${box.top}" width="${nx}" height="${ny}"/>`];
+  const px = (y) => box.left + (y - y0) / (y1 - y0) * wide;
+  const py = (x) => box.top + (reach - x) / (2 * reach) * high;
+  const parts = [`<rect class="frame" x="${box.left}" y="${box.top}" width="${wide}" height="${high}"/>`];
   for (const [v, text] of ticks(y0 * view.length, y1 * view.length, width / 80)) parts.push(`<path class="frame" d="M${px(v / view.length).toFixed(1)} ${box.bottom}v4"/><text x="${px(v / view.length).toFixed(1)}" y="${box.bottom + 17}" text-anchor="middle">${text}</text>`);
   for (const [v, text] of ticks(-reach * view.length, reach * view.length, 5)) parts.push(`<path class="frame" d="M${box.left} ${py(v / view.length).toFixed(1)}h-4"/><text x="${box.left - 7}" y="${(py(v / view.length) + 4).toFixed(1)}" text-anchor="end">${text}</text>`);
   parts.push(`<text class="dim" x="${(box.left + box.right) / 2}" y="${height - 4}" text-anchor="middle">y (${view.lengthUnit})</text>`);
   parts.push(`<text class="dim" text-anchor="middle" transform="translate(11 ${(box.top + box.bottom) / 2}) rotate(-90)">x (${view.lengthUnit})</text>`);
   const bar = box.right + 14;
-  PALETTE.forEach((c, i) => { if (i % 8 === 0) parts.push(`<rect x="${bar}" y="${(box.bottom - (i + 8) / 256 * ny).toFixed(1)}" width="12" height="${(ny / 32 + 0.6).toFixed(1)}" fill="rgb(${c})"/>`); });
-  for (const [v, text] of ticks(0, view.most * view.stress, 5)) parts.push(`<text x="${bar + 17}" y="${(box.bottom - v / (view.most * view.stress) * ny + 4).toFixed(1)}">${text}</text>`);
+  PALETTE.forEach((c, i) => { if (i % 8 === 0) parts.push(`<rect x="${bar}" y="${(box.bottom - (i + 8) / 256 * high).toFixed(1)}" width="12" height="${(high / 32 + 0.6).toFixed(1)}" fill="rgb(${c})"/>`); });
+  for (const [v, text] of ticks(0, view.most * view.stress, 5)) parts.push(`<text x="${bar + 17}" y="${(box.bottom - v / (view.most * view.stress) * high + 4).toFixed(1)}">${text}</text>`);
   parts.push(`<text class="dim" text-anchor="middle" transform="translate(${width - 3} ${(box.top + box.bottom) / 2}) rotate(-90)">p (${view.stressUnit})</text>`);
+  const marks = [];
   const [mx, my] = [px(view.max[1]), py(view.max[0])];
-  for (const [stroke, w] of [["#fff", 4], ["#111", 1.6]]) parts.push(`<path fill="none" stroke="${stroke}" stroke-width="${w}" d="M${mx - 7} ${my}h14M${mx} ${my - 7}v14"/>`);
-  if (view.critical) parts.push(`<path class="star" d="${star(px(view.critical[1]), py(view.critical[0]))}"><title>most stressed place</title></path>`);
-  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-  svg.setAttribute("width", width); svg.setAttribute("height", height);
-  svg.setAttribute("aria-label", `Contact pressure over the contact; the cross is its largest value${view.critical ? ", the star the most stressed place" : ""}`);
-  svg.innerHTML = parts.join("");
-  const stretched = (ny / (2 * reach)) / (nx / (y1 - y0));
+  for (const [stroke, w] of [["#fff", 4], ["#111", 1.6]]) marks.push(`<path fill="none" stroke="${stroke}" stroke-width="${w}" d="M${mx - 7} ${my}h14M${mx} ${my - 7}v14"/>`);
+  if (view.critical) marks.push(`<path class="star" d="${star(px(view.critical[1]), py(view.critical[0]))}"><title>most stressed place</title></path>`);
+  set(svg, "viewBox", `0 0 ${width} ${height}`);
+  set(svg, "width", width); set(svg, "height", height);
+  set(svg, "aria-label", `Contact pressure over the contact; the cross is its largest value${view.critical ? ", the star the most stressed place" : ""}`);
+  layers(svg, parts.join(""), marks.join(""));
+  const stretched = (high / (2 * reach)) / (wide / (y1 - y0));
   return {
     stretched,
     at(clientX, clientY) {
       const rect = svg.getBoundingClientRect();
-      const y = y0 + (clientX - rect.left - box.left) / nx * (y1 - y0);
-      const x = reach - (clientY - rect.top - box.top) / ny * 2 * reach;
+      const y = y0 + (clientX - rect.left - box.left) / wide * (y1 - y0);
+      const x = reach - (clientY - rect.top - box.top) / high * 2 * reach;
       if (y < y0 || y > y1 || Math.abs(x) > reach) return null;
       let j = 0;
       for (let i = 1; i < rows; i += 1) if (Math.abs(map.y[i] - y) < Math.abs(map.y[j] - y)) j = i;
@@ -350,7 +376,7 @@ export function drawBodies(svg, it) {
   label((sy(cut[0]) + sy(cut[1])) / 2, ground + depth * scale + 15, it.labels.block);
   label(cx, ground + depth * scale + 15, it.labels.width[0]);
   label(cx, ground + depth * scale + 30, it.labels.width[1]);
-  svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
-  svg.setAttribute("aria-label", `From the side: ${it.labels.roller} on ${it.labels.block}. From the end: ${it.labels.radius}, ${it.labels.width.join(" ")}.`);
-  svg.innerHTML = parts.join("");
+  set(svg, "viewBox", `0 0 ${width} ${height}`);
+  set(svg, "aria-label", `From the side: ${it.labels.roller} on ${it.labels.block}. From the end: ${it.labels.radius}, ${it.labels.width.join(" ")}.`);
+  layers(svg, parts.join(""));
 }

@@ -248,8 +248,15 @@ async function quick() {
   const own = { abort: new AbortController(), since: performance.now() };
   flight = own;
   const asked = revision;
+  const landed = () => {
+    if (flight !== own) return;
+    flight = null;
+    if (wanted !== null) quick();
+  };
   try {
     const data = await (await ask("solve", own.abort.signal, { method: MAIN, coarser: start.quick_tolerance })).json();
+    // The program solves the next state while this one is drawn.
+    landed();
     answers[MAIN] = { revision: asked, quick: true, data };
     complain(null);
     draw();
@@ -257,20 +264,18 @@ async function quick() {
   } catch (e) {
     if (e.reason === "case") complain(e.message);
   } finally {
-    flight = null;
-    if (wanted !== null) quick();
+    landed();
   }
 }
 
 // Measures from the move of a slider until its picture is on the screen.
 const painted = new MessageChannel();
 let waiting = [];
+let moves = [];
 painted.port1.onmessage = () => {
-  for (const moved of waiting.splice(0)) performance.measure("move", { start: moved, end: performance.now() });
-  const all = performance.getEntriesByName("move");
+  for (const moved of waiting.splice(0)) moves.push(performance.measure("move", { start: moved, end: performance.now() }).duration);
   root.moves = Number(root.moves || 0) + 1;
-  if (all.length > 500) performance.clearMeasures("move");
-  status();
+  if (moves.length > 500) { performance.clearMeasures("move"); moves = moves.slice(-1); }
 };
 function onScreen(moved) {
   waiting.push(moved);
@@ -453,8 +458,7 @@ function status() {
   const main = answers[MAIN];
   if (!main) return;
   const d = main.data.summary;
-  const moves = performance.getEntriesByName("move");
-  const last = moves.length ? `; on the screen ${significant(moves[moves.length - 1].duration, 3)} ms after the last move` : "";
+  const last = moves.length ? `; on the screen ${significant(moves[moves.length - 1], 3)} ms after the last move` : "";
   byId("status").textContent = `${MAIN}, tolerance ${significant(d.details.tolerance, 2)} p0${main.quick ? " while the slider moves" : ""}: ${d.iterations} iterations, ${significant(d.seconds.total * 1e3, 3)} ms${main.quick ? last : `; ${d.converged ? "converged" : "not converged"}, load met to ${significant(d.load_error_rel, 1)}${last}`}`;
 }
 
