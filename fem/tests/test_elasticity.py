@@ -9,6 +9,7 @@ from mpi4py import MPI
 from edgeline_fem.contact import ContactGrid
 from edgeline_fem.elasticity import Body, load_mesh
 from edgeline_fem.meshing import Section, box_geo, graded_axis, run_gmsh
+from edgeline_fem.request import FemError
 
 POISSON = 0.3
 YOUNG = 1.0 - POISSON**2  # so that E / (1 - nu^2) is 1
@@ -112,3 +113,25 @@ def test_pressed_rectangle_against_boussinesq(tmp_path):
               (0.0, 0.8, 0.6), (1.3, 0.2, 0.7), (1.5, 1.2, 1.0)]
     expected = np.array([rectangle_stress(p, a, b, POISSON) for p in points])
     assert np.abs(body.stress_field().sample(points) - expected).max() < 6e-3
+
+
+def test_a_wrong_solve_is_refused(tmp_path):
+    """An answer that does not balance its load ends the run, whoever computed it."""
+    axis = np.array([0.0, 0.5, 1.0])
+    domain = mesh_of(box_geo("block", axis, axis, axis, 1), tmp_path, "block")
+    body = Body(domain, YOUNG, POISSON, [(0, plane(0, 0.0)), (1, plane(1, 0.0)), (2, plane(2, 1.0, 1.0))])
+    grid = ContactGrid(axis, axis)
+    press(body, grid, grid.weights)
+    solver = body._solver
+
+    class Careless:
+        def solve(self, load, answer):
+            solver.solve(load, answer)
+            answer.array[np.argmax(np.abs(answer.array))] *= 1.01
+
+        def __getattr__(self, name):
+            return getattr(solver, name)
+
+    body._solver = Careless()
+    with pytest.raises(FemError, match="without balance"):
+        body.press(grid.weights.ravel())
