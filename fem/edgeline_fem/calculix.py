@@ -149,54 +149,64 @@ class _Body:
 
 @dataclasses.dataclass(frozen=True)
 class _Contact:
-    """What the contact's run left: ``forces`` on the block's surface, their ``surface``, ``approach``, and errors."""
+    """What the contact's run left: ``forces`` on the nodes of :func:`ending_surface`, ``approach``, and errors."""
 
     forces: np.ndarray
-    surface: Surface
     approach: float
     reaction_error: float
     load_error: float
 
 
 def _contact(bodies, stresses, approach, scene):
-    """The contact forces that balance the block's stresses."""
-    surface = Surface(bodies["block"])
+    """The contact forces that balance the stresses of the body that ends where the contact does.
+
+    Where both touched, unloaded, is known of this body alone: its end slides outwards on the other one as they strain.
+    """
     inner = {name: bodies[name].nodal_forces(stresses[name])[:, 2] for name in BODIES}
-    forces = inner["block"][surface.rows]
-    reactions = [abs(inner[name][bodies[name].sets["support"]].sum()) for name in BODIES]
+    name, surface = ending_surface(bodies, scene)
+    forces = inner[name][surface.rows] * (1.0 if name == "block" else -1.0)
+    reactions = [abs(inner[body][bodies[body].sets["support"]].sum()) for body in BODIES]
     worst = max(abs(reaction / scene.load - 1.0) for reaction in reactions)
-    return _Contact(forces, surface, approach, worst, abs(forces.sum() / scene.load - 1.0))
+    return _Contact(forces, approach, worst, abs(forces.sum() / scene.load - 1.0))
+
+
+def ending_surface(bodies, scene):
+    """The body that ends where the contact does, the block if both do, and its surface: ``(name, Surface)``."""
+    name = "roller" if scene.ends[-1].goes_on("block") else "block"
+    return name, Surface(bodies[name])
 
 
 def matching(surface, other):
-    """For each node of the ``surface``, that of the ``other`` one above it."""
-    order, others = (np.lexsort(np.round(s.places, 4).T) for s in (surface, other))
-    if len(order) != len(others) or np.abs(surface.places[order] - other.places[others]).max() > 1e-3:
+    """For each node of the ``surface``, that of the ``other`` one opposite to it."""
+    distances = (np.abs(other.places - place).max(axis=1) for place in surface.places)
+    found, nearest = zip(*((int(np.argmin(away)), away.min()) for away in distances))
+    if max(nearest) > 1e-3:
         raise FemError("the nodes of both contact surfaces do not match")
-    found = np.empty(len(order), dtype=int)
-    found[order] = others
-    return found
+    return np.array(found)
 
 
-def apply_forces(request, folder, bodies, surface, forces, log):
-    """Stresses (units of p0) of both bodies under ``forces`` on the nodes of the block's ``surface``, by a linear run.
+def apply_forces(request, folder, bodies, forces, log):
+    """Stresses (units of p0) of both bodies under ``forces`` on the nodes of :func:`ending_surface`, by a linear run.
 
     Returns ``({body: (m, 8, 6)}, seconds)``.
     """
-    above = Surface(bodies["roller"])
-    on_roller = np.empty_like(forces)
-    on_roller[matching(surface, above)] = forces
-    write_forces(request, folder, bodies, {"block": surface, "roller": above}, {"block": forces, "roller": on_roller})
+    _, surface = ending_surface(bodies, Scene.of(request.case))
+    on_bodies = {}
+    for body, bricks in bodies.items():
+        other = Surface(bricks)
+        on_bodies[body] = np.zeros(len(other.rows))
+        on_bodies[body][matching(surface, other)] = forces
+    write_forces(request, folder, bodies, on_bodies)
     seconds = run_ccx(request.ccx, folder, "forces", log)
     stresses, _ = read_dat(Path(folder) / "forces.dat", bodies)
     return {name: s / (request.case.scales().p0_pa * 1e-6) for name, s in stresses.items()}, seconds
 
 
-def sampler(request, bodies, meshed, stresses, surface, forces):
-    """A :class:`~edgeline_fem.sampling.Sampler` of ``stresses`` under nodal ``forces`` on the block's ``surface``."""
+def sampler(request, bodies, meshed, stresses, forces):
+    """A :class:`~edgeline_fem.sampling.Sampler` of ``stresses`` under ``forces`` on the nodes of :func:`ending_surface`."""
     scene, axes = Scene.of(request.case), meshed["axes_c"]
     grid = ContactGrid(axes["x_contact"], axes["y_contact"], scene.symmetric)
-    grid = _Grid(grid, surface.pressure(forces, grid))
+    grid = _Grid(grid, ending_surface(bodies, scene)[1].pressure(forces, grid))
     models = {
         name: _Body(name, bodies[name], stresses[name], getattr(request.case, name).poisson) for name in BODIES
     }
@@ -228,9 +238,9 @@ def solve_case(request, folder, log, stiffness=STIFFNESS):
     raw, moved = read_dat(folder / "model.dat", bodies)
     raw = {name: s / (scales.p0_pa * 1e-6) for name, s in raw.items()}
     contact = _contact(bodies, raw, moved * 1e-3 / scales.c_m, scene)
-    stresses, seconds["forces"] = apply_forces(request, folder, bodies, contact.surface, contact.forces, log)
+    stresses, seconds["forces"] = apply_forces(request, folder, bodies, contact.forces, log)
     mark = time.perf_counter()
-    grid, samples = sampler(request, bodies, meshed, stresses, contact.surface, contact.forces)
+    grid, samples = sampler(request, bodies, meshed, stresses, contact.forces)
     tables = {
         "curves.csv": table(CURVE_HEADER, curve_table(request, samples)),
         "pressure.csv": _pressure_table(request, samples),

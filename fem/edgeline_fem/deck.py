@@ -10,13 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
-from .bricks import Bricks
+from .bricks import Bricks, Surface
 from .meshing import write_atomically
 from .request import FemError
 from .scene import BODIES, Scene, surface_slope
 
 # Contact stiffness in units of E* / C: the surfaces then overlap by p / stiffness, a few 1e-4 of the gap at x = C.
 STIFFNESS = 2000.0
+# How far beyond an end the surface of the body that goes on may be touched: a body that ends slides outwards by about
+# C / R, 0.05 at W = 1e-3, since both strain.
+SLIP = 0.3
 _ELEMENT = "C3D20R"
 _PER_LINE = 12
 FILES = ("model.inp", "mesh.inp", "bodies.inp", "block.vtu", "roller.vtu")
@@ -41,9 +44,11 @@ def read_bricks(request, folder):
     except (OSError, ValueError) as error:
         raise FemError(f"{folder / 'mesh.json'}: run the mesh stage first ({error})") from error
     support = {"block": request.mesh.block_depth, "roller": scene.radius}
-    contact = meshed["axes_c"]["x_contact"][-1], scene.stop
+    across = meshed["axes_c"]["x_contact"][-1]
     bodies = {
-        name: Bricks.read(folder / f"{name}.msh", name, scene, support[name], contact) for name in BODIES
+        name: Bricks.read(folder / f"{name}.msh", name, scene, support[name],
+                          (across, scene.stop + (SLIP if scene.ends[-1].goes_on(name) else 0.0)))
+        for name in BODIES
     }
     return bodies, meshed
 
@@ -208,17 +213,17 @@ def write_deck(request, folder, stiffness=STIFFNESS):
     return bodies, meshed
 
 
-def write_forces(request, folder, bodies, surfaces, forces):
+def write_forces(request, folder, bodies, forces):
     """Write ``forces.inp`` beside the deck: a linear step with supports held and the contact's forces applied.
 
-    ``surfaces``: ``{body: Surface}``; ``forces``: for each body the z components (into that body, units of C and p0) on the
-    nodes of its surface. A force is normal to the unloaded surface, as in the other engine.
+    ``forces``: for each body the z components (into that body, units of C and p0) on the nodes of its :class:`Surface`. A
+    force is normal to the unloaded surface, as in the other engine.
     """
     scene, scales = Scene.of(request.case), request.case.scales()
     unit = scales.p0_pa * scales.c_m**2
     loads = []
     for name, body in bodies.items():
-        surface, sign = surfaces[name], 1.0 if name == "block" else -1.0
+        surface, sign = Surface(body), 1.0 if name == "block" else -1.0
         slopes = surface_slope(name, body.points[surface.rows, 0], scene.radius)
         for node, slope, force in zip(surface.rows + _first(bodies)[name][0], slopes, forces[name] * unit):
             loads.append(f"{node}, 3, {sign * force:.12e}")

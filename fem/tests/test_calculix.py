@@ -10,9 +10,9 @@ import pytest
 
 from conftest import run_stage, steel_case
 from edgeline_fem.bricks import FACES, Surface
-from edgeline_fem.calculix import apply_forces, matching, read_dat, sampler
+from edgeline_fem.calculix import apply_forces, ending_surface, matching, read_dat, sampler
 from edgeline_fem.contact import ContactGrid
-from edgeline_fem.deck import FILES, check_scene, estimated_approach, write_deck
+from edgeline_fem.deck import FILES, SLIP, check_scene, estimated_approach, write_deck
 from edgeline_fem.meshing import make_meshes
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError, parse_request
@@ -49,7 +49,7 @@ def test_bricks_hold_a_uniform_stress_in_balance(deck):
 
 def test_pressures_and_their_forces_belong_together(deck):
     request, _, bodies, meshed = deck
-    surface = Surface(bodies["block"])
+    surface = Surface(bodies["roller"])
     grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"], True)
     x, y = np.meshgrid(grid.gauss_x, grid.gauss_y, indexing="ij")
     wanted = 1.0 - 0.3 * x**2 + 0.1 * x * y
@@ -61,9 +61,13 @@ def test_pressures_and_their_forces_belong_together(deck):
     assert np.abs(surface.pressure(forces, grid) - wanted).max() < 0.02
     ones = surface.pressure(surface.forces(np.ones_like(wanted), grid), grid)
     assert np.abs(ones - 1.0).max() < 1e-9
-    above = Surface(bodies["roller"])
-    found = above.places[matching(surface, above)]
-    assert np.abs(found - surface.places).max() < 1e-4
+    # The block goes on: what the roller's end may slide onto carries nothing under this pressure.
+    block = Surface(bodies["block"])
+    beyond = block.places[:, 1] > surface.places[:, 1].max() + 1e-6
+    assert beyond.any() and not block.forces(wanted, grid)[beyond].any()
+    assert np.isclose(block.forces(wanted, grid).sum(), forces.sum())
+    assert np.abs(block.places[matching(surface, block)] - surface.places).max() < 1e-4
+    assert ending_surface(bodies, Scene.of(request.case))[0] == "roller"
 
 
 def test_a_deck_is_whole_and_says_what_it_is(deck):
@@ -84,7 +88,10 @@ def test_a_deck_is_whole_and_says_what_it_is(deck):
     for body in bodies.values():
         # Right-handed elements, and contact faces that look at the other body.
         assert body.nodal_forces(np.ones((len(body.cells), 8, 6))).shape == body.points.shape
-        assert len(body.faces) == len(bodies["block"].faces) and max(f for _, f in body.faces) < len(FACES)
+        assert max(face for _, face in body.faces) < len(FACES)
+    # The roller ends with the contact; of the block a little more may be touched.
+    ends = {name: Surface(body).places[:, 1].max() for name, body in bodies.items()}
+    assert np.isclose(ends["roller"], 3.0) and 3.0 < ends["block"] <= 3.0 + SLIP
     assert estimated_approach(request.case, 640.0) > 0.0
 
 
@@ -153,22 +160,22 @@ def test_a_missing_calculix_is_told(tmp_path, deck, program, wanted):
 
 @pytest.fixture(scope="module")
 def pressed(deck):
-    """The deck's bodies under a Hertz pressure along the whole line: (deck, surface, forces, stresses)."""
+    """The deck's bodies under a Hertz pressure along the whole line: (deck, forces, stresses)."""
     request, folder, bodies, meshed = deck
     scene = Scene.of(request.case)
     grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"], True)
     across = np.sqrt(np.maximum(1.0 - grid.gauss_x**2, 0.0))
-    surface = Surface(bodies["block"])
-    forces = surface.forces(np.outer(across, np.ones(len(grid.gauss_y))), grid)
+    pressure = np.outer(across, np.ones(len(grid.gauss_y)))
+    forces = ending_surface(bodies, scene)[1].forces(pressure, grid)
     forces *= scene.load / forces.sum()
-    stresses, _ = apply_forces(request, folder, bodies, surface, forces, lambda text: None)
-    return deck, surface, forces, stresses
+    stresses, _ = apply_forces(request, folder, bodies, forces, lambda text: None)
+    return deck, forces, stresses
 
 
 @needs_ccx
 def test_its_results_survive_no_damage(pressed, tmp_path):
     """Real results, cut at many places and with single bytes changed: refused or read, never a crash."""
-    (_, folder, bodies, _), _, _, _ = pressed
+    (_, folder, bodies, _), _, _ = pressed
     whole = (folder / "forces.dat").read_bytes()
     read_dat(folder / "forces.dat", bodies)
     damaged, refused = tmp_path / "d.dat", 0
@@ -194,9 +201,9 @@ def test_elasticity_alone_is_that_of_the_other_engine(pressed):
 
     from edgeline_fem.model import _number_contact, build_bodies
 
-    (request, folder, bodies, meshed), surface, forces, stresses = pressed
+    (request, folder, bodies, meshed), forces, stresses = pressed
     scene, axes = Scene.of(request.case), meshed["axes_c"]
-    _, ours = sampler(request, bodies, meshed, stresses, surface, forces)
+    _, ours = sampler(request, bodies, meshed, stresses, forces)
     grid = ContactGrid(axes["x_contact"], axes["y_contact"], True)
     theirs, _ = build_bodies(MPI.COMM_SELF, folder, request, axes["y_contact"])
     _number_contact(theirs, grid, scene.radius)
