@@ -14,10 +14,17 @@ if (($# == 0)); then
     set -- "${targets[@]}"
 fi
 for target in "$@"; do
-    mkdir -p "work/$target"
+    mkdir -p "work/$target" "corpus/$target"
+    # The project's own files of this kind are inputs, too.
+    own=()
+    case $target in
+        case | study) own=(../cases) ;;
+        design | sweep) own=(../examples) ;;
+        gates) own=(../src/study/gates) ;;
+    esac
     echo "=== $target"
     # Nothing unsafe is reached here: without a sanitizer many more inputs are tried.
-    cargo +nightly fuzz run --sanitizer none "$target" "work/$target" "corpus/$target" -- \
+    cargo +nightly fuzz run --sanitizer none "$target" "work/$target" "corpus/$target" "${own[@]}" -- \
         -max_total_time="$seconds" -rss_limit_mb=2048 -timeout=20 -max_len=16384 \
         -dict=words.dict -print_final_stats=1
 done

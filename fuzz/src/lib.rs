@@ -1,8 +1,10 @@
 //! What every reader of outside files has to do with any bytes: return, with a value that holds what it
 //! promises or an error that names the file. `tests/program/corpora.rs` runs the same on a stable compiler.
 
-use edgeline::case::{Case, Study, Sweep, builtin_case};
+use edgeline::case::{Case, Design, Study, Sweep, builtin_case};
+use edgeline::cells::Heights;
 use edgeline::fem::{FemResults, MeshResult, MeshSummary, ResultTexts};
+use edgeline::study::brought::{BroughtFile, Statements};
 use std::path::Path;
 use std::sync::LazyLock;
 
@@ -124,6 +126,49 @@ pub fn fem_result(data: &[u8]) {
     match MeshResult::parse(&FLUSH, 1.0, 1, texts, Path::new("run")) {
         Ok(result) => assert!(result.summary.unknowns > 0 && !result.curves.stress.is_empty()),
         Err(e) => refusal(&e, "run/"),
+    }
+}
+
+/// Curves from anywhere.
+pub fn brought(data: &[u8]) {
+    let Some(text) = text(data) else { return };
+    match BroughtFile::parse(text, Path::new("f.csv"), &HALF, &Statements::default()) {
+        Ok(file) => {
+            assert!(file.points > 0);
+            let stress = file.curves.stress.iter().flat_map(|curve| &curve.at);
+            let lines = file.curves.pressure.iter().flat_map(|line| &line.at);
+            assert!(stress.flatten().chain(lines.flatten()).all(|v| v.is_finite()));
+        }
+        Err(e) => refusal(&e, "f.csv"),
+    }
+}
+
+/// A measured surface in each format.
+pub fn heights(data: &[u8]) {
+    for name in ["f.npy", "f.csv", "f.x3p"] {
+        match Heights::parse(data, Path::new(name), [1e-6; 2]) {
+            Ok(heights) => assert!(heights.half_spans_m().iter().all(|v| *v > 0.0)),
+            Err(e) => assert!(e.to_string().contains("; "), "{e}"),
+        }
+    }
+}
+
+/// A design file.
+pub fn design(data: &[u8]) {
+    let Some(text) = text(data) else { return };
+    match Design::parse(text, Path::new("nowhere/f.toml")) {
+        Ok(design) => assert!(!design.loads.is_empty() && !design.parameters.is_empty()),
+        // The case that it names may be the one at fault.
+        Err(e) => assert!(!e.to_string().is_empty()),
+    }
+}
+
+/// A file of gates.
+pub fn gates(data: &[u8]) {
+    let Some(text) = text(data) else { return };
+    match edgeline::study::gate::parse(text, Path::new("f.toml")) {
+        Ok(gates) => assert!(gates.gate.iter().all(|gate| gate.limit > 0.0)),
+        Err(e) => refusal(&e, "f.toml"),
     }
 }
 

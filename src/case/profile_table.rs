@@ -37,12 +37,9 @@ pub(super) fn read_profile_table(path: &Path) -> Result<Table> {
     }
     let (mut places, mut drops) = (Vec::new(), Vec::new());
     for (line, row) in rows {
-        let numbers: Vec<f64> = row
-            .split(',')
-            .filter_map(|v| v.trim().parse().ok())
-            .filter(|v: &f64| v.is_finite())
-            .collect();
-        let [y, drop] = numbers[..] else {
+        let number = |word: &str| word.trim().parse().ok().filter(|v: &f64| v.is_finite());
+        let numbers: Vec<Option<f64>> = row.split(',').map(number).collect();
+        let [Some(y), Some(drop)] = numbers[..] else {
             let message = format!("{row:?} is not two finite numbers");
             return Err(refuse(
                 line,

@@ -43,7 +43,14 @@ impl Heights {
             COPIES * bytes as f64,
             "give fewer samples",
         )?;
-        let content = std::fs::read(path).map_err(io)?;
+        Self::parse(&std::fs::read(path).map_err(io)?, path, steps_m)
+    }
+
+    /// Reads the `content` of a file; the name of its `path` says in which format.
+    ///
+    /// # Errors
+    /// [`Error::File`] when it has another format, and [`Error::Value`] as [`Heights::new`].
+    pub fn parse(content: &[u8], path: &Path, steps_m: [f64; 2]) -> Result<Self> {
         let refuse = |(line, message): (Option<usize>, String)| Error::File {
             path: path.to_path_buf(),
             line,
@@ -52,11 +59,11 @@ impl Heights {
         };
         #[cfg(feature = "cli")]
         if Self::has_steps(path) {
-            let (shape, own_m, values) = x3p::read(&content).map_err(|e| refuse((None, e)))?;
+            let (shape, own_m, values) = x3p::read(content).map_err(|e| refuse((None, e)))?;
             return Self::new(shape, own_m, values);
         }
         let is_csv = has_extension(path, "csv");
-        let read = if is_csv { csv(&content) } else { npy(&content).map_err(|e| (None, e)) };
+        let read = if is_csv { csv(content) } else { npy(content).map_err(|e| (None, e)) };
         let (shape, values) = read.map_err(refuse)?;
         Self::new(shape, steps_m, values)
     }
@@ -115,11 +122,13 @@ fn npy(content: &[u8]) -> std::result::Result<Array, String> {
     let [kind, order, shape] =
         ["descr", "fortran_order", "shape"].map(|key| field(key).ok_or_else(broken));
     let (kind, order, shape) = (kind?.trim_matches('\''), order?, shape?);
-    let counts: Vec<usize> =
-        shape.trim_matches(['(', ')']).split(',').filter_map(|n| n.trim().parse().ok()).collect();
-    let [nx, ny] = counts[..] else {
+    let counts = shape.trim_matches(['(', ')']).split(',').map(|n| n.trim().parse::<usize>());
+    let [Ok(nx), Ok(ny)] = counts.collect::<Vec<_>>()[..] else {
         return Err(format!("has an array of the shape {shape}"));
     };
+    if nx == 0 || ny == 0 {
+        return Err(format!("has an empty array of the shape {shape}"));
+    }
     let data = &content[start + length..];
     let size = match kind {
         "<f8" => 8,
@@ -186,6 +195,8 @@ mod tests {
             ("a.npy", b"hello".to_vec(), "not an array that numpy wrote"),
             ("a.npy", b"\x93NUMPY\x01\x00\xff\xff{".to_vec(), "not an array"),
             ("a.npy", array("<f8", "False", "(4,)", &data), "shape (4,)"),
+            ("a.npy", array("<f8", "False", "(2, x, 2)", &data), "shape (2, x, 2)"),
+            ("a.npy", array("<f8", "False", "(18446744073709551615, 0)", &[]), "an empty array"),
             ("a.npy", array("<i8", "False", "(2, 2)", &data), "type <i8"),
             (
                 "a.npy",

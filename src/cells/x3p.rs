@@ -8,6 +8,9 @@ use zip::ZipArchive;
 /// of the last index next to each other.
 pub(super) type Samples = ([usize; 2], [f64; 2], Vec<f64>);
 
+/// More samples than cells can be: an archive may hold far more than it weighs.
+const MOST_SAMPLES: usize = 1 << 27;
+
 /// Most bytes of the description, and of each height.
 const MOST_TEXT: u64 = 16 << 20;
 const MOST_BYTES: u64 = 24;
@@ -41,7 +44,8 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
     if count("SizeZ").unwrap_or(1) != 1 {
         return Err("has several layers of heights".into());
     }
-    let samples = nx.checked_mul(ny).ok_or("has a shape that is no array's")?;
+    let samples = nx.checked_mul(ny).filter(|n| (1..=MOST_SAMPLES).contains(n));
+    let samples = samples.ok_or_else(|| format!("has heights of the shape {nx} x {ny}"))?;
     let raw = match find(root, "PointDataLink") {
         Ok(link) => {
             let most = (samples as u64).saturating_mul(MOST_BYTES);

@@ -7,16 +7,25 @@ mod targets;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::path::{Path, PathBuf};
 
-/// The inputs of one target, by name.
+/// The inputs of one target, by name: those that were found, and the project's own files of this kind.
 fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("fuzz/corpus").join(target);
-    let entries = std::fs::read_dir(&folder).unwrap_or_else(|e| panic!("{folder:?}: {e}"));
-    let mut inputs: Vec<(PathBuf, Vec<u8>)> = entries
+    let own = match target {
+        "case" | "study" => "cases",
+        "design" | "sweep" => "examples",
+        "gates" => "src/study/gates",
+        _ => "",
+    };
+    let found = format!("fuzz/corpus/{target}");
+    let folders = [found.as_str(), own].map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f));
+    let used = folders.iter().zip([&*found, own]).filter(|(path, f)| !f.is_empty() && path.exists());
+    let mut inputs: Vec<(PathBuf, Vec<u8>)> = used
+        .flat_map(|(path, _)| std::fs::read_dir(path).unwrap())
         .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_file())
         .map(|path| (path.clone(), std::fs::read(path).unwrap()))
         .collect();
     inputs.sort();
-    assert!(!inputs.is_empty(), "{folder:?} holds no input");
+    assert!(!inputs.is_empty(), "there is no input for {target}");
     inputs
 }
 
@@ -89,4 +98,4 @@ macro_rules! targets {
     };
 }
 
-targets! { case study sweep table points fem_result mesh record }
+targets! { case study sweep table points fem_result mesh record brought heights design gates }
