@@ -108,6 +108,18 @@ impl Shape {
     pub fn turned(&self) -> f64 {
         3.0 * PI / (self.half.powi(3) * (1.0 - self.nu) * (3.0 + self.nu))
     }
+
+    /// The wavenumber k times the body's displacement by a unit load under waves far longer than it is, in the compliance's
+    /// unit: plane stress.
+    pub fn moved(&self) -> f64 {
+        PI / (self.half * (1.0 - self.nu * self.nu))
+    }
+
+    /// The wavenumber k times the displacement of free ends' long waves, at `y` from the body's middle, under a `load` and its
+    /// `moment` about the middle.
+    pub fn as_plate(&self, load: f64, moment: f64, y: f64) -> f64 {
+        self.moved() * load + self.turned() * moment * y
+    }
 }
 
 /// Shares of the last images of an alternating series, which close it (Euler's transformation of fifth

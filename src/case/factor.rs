@@ -57,6 +57,21 @@ impl FactorKey {
         plain.unwrap_or(path)
     }
 
+    /// The unit of its levels as axes of plots have it; none for those of `[dimensionless]`.
+    pub fn unit(self) -> Option<&'static str> {
+        match self {
+            Self::Number(key) => match key.leaf().rsplit_once('_')?.1 {
+                "m" => Some("m"),
+                "pa" => Some("Pa"),
+                "n" => Some("N"),
+                "rad" => Some("rad"),
+                _ => None,
+            },
+            Self::EndDrop(_) => Some("C²/2R"),
+            Self::Eccentricity => Some("lengths of the shorter body"),
+        }
+    }
+
     /// What stands before its level in the names of cases.
     pub fn token(self) -> String {
         match self {

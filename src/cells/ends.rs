@@ -13,7 +13,7 @@
 //!
 //! Towards k = 0 R grows like 1 / k, too fast to be interpolated, for the two shapes of a rigid motion: a body of half-length H and of a
 //! plane wave's width is a plate, loaded on its edge. What it does is taken out in closed form, faded beyond 1 / H, and put
-//! back at all wavenumbers: uniform pressure displaces by pi / (k H) between any two places, and a moment turns the plate
+//! back at all wavenumbers: a load displaces by pi / (k H (1 - nu^2)) wherever it acts, plane stress, and a moment turns the plate
 //! by 3 pi / (k H^3 (1 - nu) (3 + nu)) (Kirchhoff's plate w = (A + B k z) e^(-k z) cos k x under the moment M cos k x on its edge
 //! without shear, whose slope is 2 M / (D k (1 - nu) (3 + nu)) with the plate's stiffness D).
 
@@ -24,7 +24,7 @@ use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
-use crate::contact;
+use crate::contact::{Compliance, LongWaves, Reference};
 use crate::stress::{Field, Load};
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
@@ -51,8 +51,8 @@ const MIRRORED: End = End { image_weight: Some(1.0), freed: false, gamma: None }
 /// End faces free of traction.
 const FREED: End = End { image_weight: Some(1.0), freed: true, gamma: None };
 
-/// Accuracy (p0) of the nodes that carry the free ends: the finest, as contacts of all lengths are few to set up.
-const TOLERANCE: f64 = 1e-4;
+/// Accuracy (p0) of the nodes that carry the free ends.
+const TOLERANCE: f64 = 5e-4;
 
 /// Shapes along the line that displace less than this part of the largest one are left out.
 const NEGLIGIBLE: f64 = 1e-5;
@@ -60,6 +60,7 @@ const NEGLIGIBLE: f64 = 1e-5;
 /// A body with free ends at the coarse wavenumbers, and the same as a mirrored half-space.
 #[derive(Debug)]
 struct Freed {
+    body: FreeBody,
     stack: Stack,
     mirrored: Stack,
     /// What [`FreeEnds::long`] has of it, times k e^(k H).
@@ -109,7 +110,7 @@ impl FreeEnds {
                 stack.add_compliance(i, own.share, sum);
                 mirrored.add_compliance(i, -own.share, sum);
             }
-            Freed { stack, mirrored, long: long(own, symmetric) }
+            Freed { body: *own, stack, mirrored, long: long(own, symmetric) }
         });
         let bodies = bodies.collect();
         let basis = rigid(&axis, symmetric);
@@ -219,24 +220,40 @@ impl FreeEnds {
     }
 
     /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on
-    /// `grid` has it; see [`contact::Reference`].
+    /// `grid` has it; see [`Reference`].
     pub(super) fn reference(&self, pressure: &dyn Load, grid: &Grid, depth: f64) -> f64 {
         let wavenumbers = self.resolving(grid);
-        let rigid = self.bodies[0].long.nrows();
-        let compliance = |(matrix, k): (&DMatrix<f64>, &f64)| {
-            let mut own = matrix.clone();
-            own.view_mut((0, 0), (rigid, rigid)).copy_from(&self.long(*k));
-            let mut whole = &self.basis * own * self.basis.transpose();
-            for (mut column, weight) in whole.column_iter_mut().zip(self.axis.weights()) {
-                column *= *weight;
-            }
-            whole
-        };
-        let all = self.matrices.iter().zip(self.wavenumbers.coarse().nodes());
-        let matrices: Vec<DMatrix<f64>> = all.map(compliance).collect();
-        let compliance = contact::Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
         let transform = |k: f64| pressure.transforms(&[k]).column(0).into_owned();
-        contact::Reference::new(&compliance, self.axis.weights(), None, transform).at(depth)
+        let own = |stack: fn(&Freed) -> &Stack, long: Option<LongWaves>| {
+            let n = self.axis.len();
+            let mut matrices = vec![DMatrix::zeros(n, n); wavenumbers.coarse().len()];
+            for freed in &self.bodies {
+                for (i, matrix) in matrices.iter_mut().enumerate() {
+                    stack(freed).add_compliance(i, freed.body.share, matrix);
+                }
+            }
+            let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
+            Reference::new(&compliance, self.axis.weights(), long, transform).at(depth)
+        };
+        // The transform of a cell has no value at 0 itself.
+        let long = self.long_waves(&transform(1e-9));
+        own(|freed| &freed.stack, Some(long)) - own(|freed| &freed.mirrored, None)
+    }
+
+    /// What is known of the displacements by long waves under the loads per length `lines` at the nodes.
+    fn long_waves(&self, lines: &DVector<f64>) -> LongWaves {
+        let (axis, sides) = (&self.axis, if self.symmetric { 2.0 } else { 1.0 });
+        let centre = if self.symmetric { 0.0 } else { 0.5 * (axis.breaks()[0] + axis.end()) };
+        let nodes = || axis.nodes().iter().zip(axis.weights()).zip(lines);
+        let load = sides * nodes().map(|((_, weight), line)| weight * line).sum::<f64>();
+        let of_body = |freed: &Freed| {
+            let FreeBody { half, middle, nu, share } = freed.body;
+            let moment = |((y, weight), line): ((&f64, &f64), &f64)| (y - middle) * weight * line;
+            let moment = if self.symmetric { 0.0 } else { nodes().map(moment).sum() };
+            share * Shape { half, nu }.as_plate(load, moment, centre - middle)
+        };
+        let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, b| least.min(b.body.half));
+        LongWaves { limit: self.bodies.iter().map(of_body).sum(), half }
     }
 
     /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to
@@ -327,7 +344,7 @@ fn rigid(axis: &Panels, symmetric: bool) -> DMatrix<f64> {
 /// What a body's long waves displace over the shapes of rigid motions, times k.
 fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
     let FreeBody { half, middle, nu, share } = *body;
-    let uniform = share * PI / half;
+    let uniform = share * Shape { half, nu }.moved();
     if symmetric {
         // A node acts on both sides of the middle.
         return DMatrix::from_element(1, 1, 2.0 * uniform);

@@ -10,6 +10,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
+use crate::report::solution::MOST_CELLS;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
     CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
@@ -332,6 +333,7 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
 
 /// The short summary for a reader.
 fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
+    let pressure = if found.cells.len() > MOST_CELLS { "" } else { " pressure.csv," };
     let found = &found.summary;
     let (factors, hertz) = (case.factors(), found.hertz);
     let p0 = hertz.p0_pa;
@@ -376,7 +378,7 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
     };
     let plots = if arguments.plots { ", pictures and summary.html" } else { "" };
     lines.push(format!(
-        "wrote summary.json, pressure.csv, line_load.csv, curves.csv{points}{field}{plots} into {}",
+        "wrote summary.json,{pressure} line_load.csv, curves.csv{points}{field}{plots} into {}",
         arguments.out.display()
     ));
     lines.join("\n") + "\n"

@@ -10,7 +10,7 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Most cells that are written as text: more of them have a file of their own, see [`super::cells`].
-const MOST_CELLS: usize = 100_000;
+pub const MOST_CELLS: usize = 100_000;
 
 /// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV but for
 /// pressures on very many cells, and `summary.json` last, so that its presence means that all are there.

@@ -12,7 +12,6 @@ use crate::contact::{
 };
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
-use std::f64::consts::PI;
 use std::time::Instant;
 
 /// Largest violation of the laws of contact, in tolerances. Solutions over the whole range of
@@ -315,20 +314,16 @@ impl Scene {
     }
 
     /// What is known of the displacements by long waves, along a line with the middle `centre`, under a load with the
-    /// `moment` about y = 0. Bodies between free faces are plates for them, loaded on their edge: they move as a whole by
-    /// pi / (k H (1 - nu^2)), times the load, and turn, see [`Shape::turned`]. In symmetry none turns.
+    /// `moment` about y = 0. Bodies between free faces are plates for them, loaded on their edge, which move as a whole and
+    /// turn, see [`Shape::as_plate`]. In symmetry none turns.
     fn long_waves(&self, centre: f64, moment: f64) -> Option<LongWaves> {
         if self.model != EdgeModel::QuarterSpace {
             return None;
         }
         let of_body = |body: &SceneBody| {
             let SceneBody { half, middle, nu, share, .. } = *body;
-            let moved = PI * self.load / (half * (1.0 - nu * nu));
-            let turned = match self.is_symmetric() {
-                true => 0.0,
-                false => Shape { half, nu }.turned() * (moment - middle * self.load),
-            };
-            share * (moved + turned * (centre - middle))
+            let moment = if self.is_symmetric() { 0.0 } else { moment - middle * self.load };
+            share * Shape { half, nu }.as_plate(self.load, moment, centre - middle)
         };
         let limit = self.bodies.iter().map(of_body).sum();
         let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, body| least.min(body.half));

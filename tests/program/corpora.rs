@@ -17,7 +17,8 @@ fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
     };
     let found = format!("fuzz/corpus/{target}");
     let folders = [found.as_str(), own].map(|f| Path::new(env!("CARGO_MANIFEST_DIR")).join(f));
-    let used = folders.iter().zip([&*found, own]).filter(|(path, f)| !f.is_empty() && path.exists());
+    let used =
+        folders.iter().zip([&*found, own]).filter(|(path, f)| !f.is_empty() && path.exists());
     let mut inputs: Vec<(PathBuf, Vec<u8>)> = used
         .flat_map(|(path, _)| std::fs::read_dir(path).unwrap())
         .map(|entry| entry.unwrap().path())

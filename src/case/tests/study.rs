@@ -177,6 +177,22 @@ fn factors_have_names_of_their_own() {
 }
 
 #[test]
+fn factors_have_the_units_of_their_numbers() {
+    for (name, unit) in [
+        ("W", None),
+        ("S_l", None),
+        ("block.poisson", None),
+        ("roller.end_drop", Some("C²/2R")),
+        ("eccentricity", Some("lengths of the shorter body")),
+        ("roller.radius_m", Some("m")),
+        ("block.young_pa", Some("Pa")),
+        ("pose.tilt_rad", Some("rad")),
+    ] {
+        assert_eq!(FactorKey::find(name).unwrap().unit(), unit, "{name}");
+    }
+}
+
+#[test]
 fn an_end_drop_is_that_of_the_profile_at_the_end() {
     for profile in [
         "kind = \"crown\"",

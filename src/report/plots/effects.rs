@@ -2,6 +2,7 @@
 
 use crate::base::number::significant;
 use crate::body::EdgeModel;
+use crate::case::FactorKey;
 use crate::report::draw::{Bar, Figure, Look, Marker, Note, Panel, Rule, Series, look};
 use crate::report::effects_text::{TOLD, label};
 use crate::report::study_files::StudyFiles;
@@ -104,6 +105,14 @@ fn factor(files: &StudyFiles, name: &str) -> (String, String) {
     }
 }
 
+/// What an axis says of a factor: what it is called there, and its unit.
+fn with_unit(called: String, name: &str) -> String {
+    match FactorKey::find(name).and_then(FactorKey::unit) {
+        Some(unit) => format!("{called} ({unit})"),
+        None => called,
+    }
+}
+
 /// Most interactions of a response that are drawn.
 const MOST_INTERACTIONS: usize = 6;
 
@@ -175,8 +184,8 @@ fn interaction(corners: &[&StudyRow], of: &EffectRows, [a, b]: [&str; 2]) -> Pan
     Panel {
         title: format!("{}: {} × {}", label(of.response), first.1, second.1),
         x_label: match second.1 == b {
-            true => first.0,
-            false => format!("{}; lines: {}", first.0, second.0),
+            true => with_unit(first.0, a),
+            false => format!("{}; lines: {}", with_unit(first.0, a), second.0),
         },
         series,
         notes,
