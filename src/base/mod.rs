@@ -20,7 +20,7 @@ mod wavenumbers;
 pub use bodies::{BodyKind, PerBody};
 pub use error::{Error, Result};
 pub use material::Material;
-pub use panels::Panels;
+pub use panels::{Corner, Panels};
 pub use parity::Parity;
 pub use profile::Profile;
 pub use quadrature::gauss_legendre;

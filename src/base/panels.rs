@@ -6,7 +6,8 @@ use super::quadrature::{gauss_legendre, legendre};
 ///
 /// A function on the axis is given by its values at the nodes. On each panel it is the
 /// interpolating polynomial, without continuity between panels: a pressure may jump at the roller's
-/// end, and a steep end needs small panels only there.
+/// end, and a steep end needs small panels only there. A load that grows without bound towards a [`Corner`]
+/// is a polynomial times its power there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panels {
     breaks: Vec<f64>,
@@ -15,9 +16,136 @@ pub struct Panels {
     weights: Vec<f64>,
     unit_nodes: Vec<f64>,
     barycentric: Vec<f64>,
+    corners: Vec<Corner>,
+    /// The corner whose power the loads of each panel have.
+    laws: Vec<Option<Corner>>,
+    /// The inverse of that power at the nodes.
+    leveled: Vec<f64>,
+    /// A rule for integrals on (0, 1) of what is steep at 0.
+    steep_rule: Vec<(f64, f64)>,
+}
+
+/// A place towards which the loads on an axis grow like s^-m, with the distance s.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Corner {
+    /// The place.
+    pub at: f64,
+    /// 1 if the loads are at larger coordinates, -1 if at smaller ones.
+    pub side: f64,
+    /// The exponent m, in (0, 1).
+    pub exponent: f64,
+    /// The distance up to which loads have the power.
+    pub reach: f64,
+}
+
+/// The least distance from a corner, in the panel's lengths: loads are bounded there.
+const NEAREST: f64 = 1e-9;
+
+/// Nodes beyond a panel's own, and the power of the map that crowds them, for integrals at a corner.
+const MORE_NODES: usize = 6;
+const POWER: i32 = 4;
+
+impl Corner {
+    /// Whether the loads between `a` and `b` have the power.
+    fn governs(&self, [a, b]: [f64; 2]) -> bool {
+        let [near, far] = if self.side > 0.0 { [a, b] } else { [b, a] };
+        let same = 1e-6 * self.reach;
+        self.side * (near - self.at) > -same && self.side * (far - self.at) <= self.reach + same
+    }
+
+    /// The power at `x`, in a panel of the given `length`.
+    fn power(&self, x: f64, length: f64) -> f64 {
+        (x - self.at).abs().max(NEAREST * length).powf(-self.exponent)
+    }
 }
 
 impl Panels {
+    /// The same panels with loads that grow towards `corners`, at which panels end. The weights integrate these loads.
+    #[must_use]
+    pub fn with_corners(mut self, corners: &[Corner]) -> Self {
+        self.corners = corners.to_vec();
+        if !corners.is_empty() {
+            let (nodes, weights) = gauss_legendre(self.order + MORE_NODES);
+            let crowded = |(t, w): (&f64, &f64)| {
+                let t = 0.5 * (1.0 + t);
+                (t.powi(POWER), 0.5 * w * f64::from(POWER) * t.powi(POWER - 1))
+            };
+            self.steep_rule = nodes.iter().zip(&weights).map(crowded).collect();
+        }
+        for panel in 0..self.panel_count() {
+            let ends = self.panel(panel);
+            let Some(law) = corners.iter().find(|c| c.governs(ends)) else { continue };
+            self.laws[panel] = Some(*law);
+            let own = panel * self.order..(panel + 1) * self.order;
+            for (leveled, x) in self.leveled[own.clone()].iter_mut().zip(&self.nodes[own]) {
+                *leveled = 1.0 / law.power(*x, ends[1] - ends[0]);
+            }
+            if self.corner_of(panel).is_some() {
+                let mut moments = vec![0.0; self.order];
+                self.integrate(panel, |_| 1.0, &mut moments);
+                self.weights[panel * self.order..][..self.order].copy_from_slice(&moments);
+            }
+        }
+        self
+    }
+
+    /// The corners towards which loads grow.
+    pub fn corners(&self) -> &[Corner] {
+        &self.corners
+    }
+
+    /// The corner at which panel `i` ends, if any, at exactly that end.
+    pub fn corner_of(&self, i: usize) -> Option<Corner> {
+        let law = self.laws[i]?;
+        let [a, b] = self.panel(i);
+        let at = [a, b].into_iter().find(|end| (end - law.at).abs() < 1e-4 * (b - a))?;
+        Some(Corner { at, ..law })
+    }
+
+    /// The integrals of the loads of panel `i` times a `factor`.
+    fn integrate(&self, i: usize, factor: impl Fn(f64) -> f64, out: &mut [f64]) {
+        let [a, b] = self.panel(i);
+        let [near, far] =
+            if self.corner_of(i).is_some_and(|c| c.at == b) { [b, a] } else { [a, b] };
+        out.fill(0.0);
+        for (t, w) in &self.steep_rule {
+            let x = near + (far - near) * t;
+            let weight = w * (b - a) * factor(x);
+            out.iter_mut().zip(self.loads(i, x)).for_each(|(sum, own)| *sum += weight * own);
+        }
+    }
+
+    /// Values at `x` of the loads of panel `i` that are 1 at one of its nodes and 0 at the others: its polynomials,
+    /// times the power of a corner.
+    pub fn loads(&self, i: usize, x: f64) -> impl Iterator<Item = f64> {
+        let [a, b] = self.panel(i);
+        let power = self.laws[i].map_or(1.0, |law| law.power(x, b - a));
+        let leveled = &self.leveled[i * self.order..];
+        self.polynomials(i, x).zip(leveled).map(move |(value, leveled)| value * leveled * power)
+    }
+
+    /// The load at `x` from those at the nodes of its panel, with weights; see [`Panels::interpolation`].
+    /// Nearer to a corner than the nodes are, it is that of the outermost one.
+    pub fn load_interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
+        let panel = self.panel_of(x);
+        let own = &self.nodes[panel * self.order..(panel + 1) * self.order];
+        let bounded = match self.corner_of(panel) {
+            Some(corner) if corner.at < own[0] => x.max(own[0]),
+            Some(_) => x.min(own[self.order - 1]),
+            None => x,
+        };
+        (panel * self.order..).zip(self.loads(panel, bounded))
+    }
+
+    /// The same axis in units of length that are 1 / `factor` of the present ones.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        let breaks = self.breaks.iter().map(|x| factor * x).collect();
+        let corner = |c: &Corner| Corner { at: factor * c.at, reach: factor * c.reach, ..*c };
+        let corners: Vec<Corner> = self.corners.iter().map(corner).collect();
+        Self::new(breaks, self.order).with_corners(&corners)
+    }
+
     /// Panels between ascending `breaks` (at least two), with `order` >= 1 nodes each.
     pub fn new(breaks: Vec<f64>, order: usize) -> Self {
         assert!(breaks.len() >= 2 && breaks.windows(2).all(|b| b[0] < b[1]), "{breaks:?}");
@@ -36,7 +164,21 @@ impl Panels {
                 1.0 / others.map(|j| unit_nodes[i] - unit_nodes[j]).product::<f64>()
             })
             .collect();
-        Self { breaks, order, nodes, weights, unit_nodes, barycentric }
+        let laws = vec![None; breaks.len() - 1];
+        let leveled = vec![1.0; nodes.len()];
+        let corners = Vec::new();
+        Self {
+            breaks,
+            order,
+            nodes,
+            weights,
+            unit_nodes,
+            barycentric,
+            corners,
+            laws,
+            leveled,
+            steep_rule: Vec::new(),
+        }
     }
 
     /// Number of nodes.
@@ -108,12 +250,17 @@ impl Panels {
         })
     }
 
-    /// Integrals of each Lagrange polynomial of panel `i` times cos(`wavenumber` x) over the panel,
-    /// into `out` (length `order`); exact for any wavenumber.
+    /// Integrals of each of the [`Panels::loads`] of panel `i` times cos(`wavenumber` x) over the panel,
+    /// into `out` (length `order`); exact for any wavenumber where they are polynomials, and for waves longer than
+    /// the panel where they are not.
     ///
     /// From the Legendre expansion of the Lagrange polynomials and
     /// int P_n(t) e^(i w t) dt = 2 i^n j_n(w) (Abramowitz and Stegun 1964, 10.1.14).
     pub fn cosine_moments(&self, i: usize, wavenumber: f64, out: &mut [f64]) {
+        if self.laws[i].is_some() {
+            self.integrate(i, |x| (wavenumber * x).cos(), out);
+            return;
+        }
         let [a, b] = self.panel(i);
         let (mid, half) = (0.5 * (a + b), 0.5 * (b - a));
         let bessel = spherical_bessel(self.order, wavenumber * half);
@@ -179,6 +326,51 @@ mod tests {
         }
         let integral: f64 = axis.weights().iter().zip(&values).map(|(w, v)| w * v).sum();
         assert!((integral - (3.0 - 9.0 + 81.0 / 8.0)).abs() < 1e-12);
+    }
+
+    #[test]
+    fn loads_grow_towards_corners_and_are_integrated() {
+        let corner = |at, side| Corner { at, side, exponent: 0.3, reach: 1.2 };
+        let corners = [corner(-1.0, 1.0), corner(3.0, -1.0)];
+        let breaks = vec![-1.0, -0.9, -0.4, 0.0, 1.9, 2.5, 2.9, 3.0];
+        let axis = Panels::new(breaks, 4).with_corners(&corners);
+        // (x + 1)^-0.3 (2 - x + x^3) beside the first corner, the same from the second one.
+        let g = |x: f64| 2.0 - x + x.powi(3);
+        let f = |x: f64| match x {
+            _ if x < 0.0 => (x + 1.0).powf(-0.3) * g(x),
+            _ if x < 1.9 => g(x),
+            _ => (3.0 - x).powf(-0.3) * g(x),
+        };
+        let values: Vec<f64> = axis.nodes().iter().map(|x| f(*x)).collect();
+        for x in [-0.98, -0.7, 0.3, 2.0, 2.7, 2.99] {
+            let got: f64 = axis.load_interpolation(x).map(|(node, w)| w * values[node]).sum();
+            assert!((got - f(x)).abs() < 1e-10 * f(x).abs(), "{x}: {got} {}", f(x));
+        }
+        // At the corner itself it is bounded.
+        let end: f64 = axis.load_interpolation(3.0).map(|(node, w)| w * values[node]).sum();
+        assert!((end - values[values.len() - 1]).abs() < 1e-10 * end, "{end}");
+        let fine = |from: f64, to: f64| {
+            let (nodes, weights) = gauss_legendre(40);
+            let own = nodes.iter().zip(&weights).map(|(t, w)| (0.5 * (1.0 + t), 0.5 * w));
+            // Crowded at both ends.
+            own.map(|(t, w)| {
+                let (s, ds) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t));
+                let (u, du) = (s * s * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s));
+                let x = from + (to - from) * u;
+                w * ds * du * (to - from) * f(x)
+            })
+            .sum::<f64>()
+        };
+        for panel in [0, 6] {
+            let [a, b] = axis.panel(panel);
+            let own = panel * 4..panel * 4 + 4;
+            let got: f64 = own.map(|j| axis.weights()[j] * values[j]).sum();
+            assert!((got - fine(a, b)).abs() < 1e-6 * got.abs(), "{got} {}", fine(a, b));
+        }
+        // Lengths twice as long.
+        let (double, n) = (axis.scaled(2.0), axis.len());
+        assert!((double.weights()[n - 1] - 2.0 * axis.weights()[n - 1]).abs() < 1e-12);
+        assert_eq!(double.corner_of(6).map(|c| c.at), Some(6.0));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Axes chosen from a requested accuracy.
 
 use super::end::End;
-use crate::base::{Panels, Parity, Wavenumbers};
+use crate::base::{Corner, Panels, Parity, Wavenumbers};
 use serde::{Deserialize, Serialize};
 
 /// Wavenumber below which the contact's width has no effect.
@@ -32,6 +32,9 @@ const KINK: f64 = 40.0;
 
 /// The narrowest panel between two features, as a part of those at a corner.
 const SLIVER: f64 = 0.5;
+
+/// Distance (C) from the contact's end within which the loads have the power of a singular pressure.
+const LAW: f64 = 1.0;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
@@ -77,7 +80,7 @@ pub struct Resolution {
 }
 
 /// The tolerances that have levels of their own.
-const TOLERANCES: [f64; 4] = [1e-2, 5e-3, 1e-3, 1e-4];
+const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Lengths that differ by less than this part of a body's are the same.
 const SAME: f64 = 1e-10;
@@ -87,9 +90,10 @@ const ROUNDING: f64 = 1e-12;
 
 /// The levels where the pressure at the contact's end has a limit, at each of [`TOLERANCES`].
 ///
-/// `cargo bench --bench promise -- search` found these and the next ones: the cheapest that keep the errors of
-/// twelve scenes within about the tolerance. `-- hold` measures others.
-const FINITE: [Resolution; 4] = [
+/// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of some scenes within
+/// the tolerance; `-- hold` measures others. These and the next ones lie between what it proposed and finer ones, where the
+/// tests of fields, approaches and ends asked for them.
+const FINITE: [Resolution; 6] = [
     Resolution {
         order: 3,
         corner: 0.06,
@@ -108,9 +112,41 @@ const FINITE: [Resolution; 4] = [
     },
     Resolution {
         order: 3,
-        corner: 0.018,
-        corner_ratio: 2.54,
-        ratio: 2.54,
+        corner: 0.06,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.04,
+        corner_ratio: 2.6,
+        ratio: 2.6,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.012,
+        corner_ratio: 2.4,
+        ratio: 2.4,
         modes: 4,
         spacing: 0.05,
         k_max: 25.0,
@@ -158,7 +194,23 @@ const FINITE: [Resolution; 4] = [
 
 /// The same where the pressure grows without bound at a free end: the loads on the end face do so too, and carry
 /// much from next to the corner. Its panels are many times smaller, and grow fast.
-const SINGULAR: [Resolution; 4] = [
+const SINGULAR: [Resolution; 6] = [
+    Resolution {
+        order: 3,
+        corner: 0.01,
+        corner_ratio: 7.29,
+        ratio: 2.7,
+        modes: 3,
+        spacing: 0.12,
+        k_max: 20.0,
+        k_order: 3,
+        k_step: 3.0,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
     Resolution {
         order: 3,
         corner: 0.01,
@@ -177,18 +229,34 @@ const SINGULAR: [Resolution; 4] = [
     },
     Resolution {
         order: 4,
-        corner: 0.004,
-        corner_ratio: 7.84,
-        ratio: 2.8,
-        modes: 4,
-        spacing: 0.09,
-        k_max: 30.0,
+        corner: 0.007,
+        corner_ratio: 7.29,
+        ratio: 2.7,
+        modes: 3,
+        spacing: 0.187,
+        k_max: 40.0,
         k_order: 4,
         k_step: 4.0,
         k_min: 0.05,
-        k_ratio: 4.5,
+        k_ratio: 4.35,
         images: 1,
         face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.004,
+        corner_ratio: 7.84,
+        ratio: 2.8,
+        modes: 3,
+        spacing: 0.14,
+        k_max: 35.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.04,
+        k_ratio: 4.5,
+        images: 1,
+        face_reach: 12.0,
         reach: 8.0,
     },
     Resolution {
@@ -225,9 +293,68 @@ const SINGULAR: [Resolution; 4] = [
     },
 ];
 
+/// Those of contacts that may end before their bodies do, in place of [`FINITE`] and [`SINGULAR`]: half-widths near the end
+/// say where that is, and loads beside a singular end, which may carry nothing, are plain polynomials.
+const LIFTING_FINITE: [Resolution; 6] = [
+    FINITE[0],
+    FINITE[0],
+    FINITE[0],
+    Resolution { order: 3, corner: 0.018, corner_ratio: 2.54, ratio: 2.54, ..FINITE[3] },
+    FINITE[4],
+    FINITE[5],
+];
+const LIFTING_SINGULAR: [Resolution; 6] = [
+    SINGULAR[0],
+    SINGULAR[0],
+    SINGULAR[0],
+    Resolution {
+        order: 4,
+        modes: 4,
+        spacing: 0.09,
+        k_max: 30.0,
+        k_min: 0.05,
+        face_reach: 10.0,
+        ..SINGULAR[3]
+    },
+    SINGULAR[4],
+    SINGULAR[5],
+];
+
 /// The same where the contact ends before its bodies do: its pressure falls to zero there, and only its length
 /// has to be found.
-const TIPS: [Resolution; 4] = [
+const TIPS: [Resolution; 6] = [
+    Resolution {
+        order: 3,
+        corner: 0.06,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.06,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.15,
+        k_max: 12.0,
+        k_order: 3,
+        k_step: 2.5,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
     Resolution {
         order: 3,
         corner: 0.06,
@@ -296,7 +423,7 @@ const TIPS: [Resolution; 4] = [
 
 /// The same for half-spaces: their pressure is the steepest at its end, and nodes and wavenumbers cost little
 /// without end faces.
-const ENDLESS: [Resolution; 4] = [
+const ENDLESS: [Resolution; 6] = [
     Resolution {
         order: 5,
         corner: 0.015,
@@ -315,32 +442,64 @@ const ENDLESS: [Resolution; 4] = [
     },
     Resolution {
         order: 5,
-        corner: 0.008,
-        corner_ratio: 2.8,
-        ratio: 2.8,
-        modes: 4,
-        spacing: 0.06,
-        k_max: 70.0,
-        k_order: 5,
+        corner: 0.015,
+        corner_ratio: 3.0,
+        ratio: 3.0,
+        modes: 3,
+        spacing: 0.1,
+        k_max: 60.0,
+        k_order: 4,
         k_step: 4.0,
         k_min: 0.05,
-        k_ratio: 2.4,
+        k_ratio: 2.6,
         images: 1,
         face_reach: 10.0,
         reach: 8.0,
     },
     Resolution {
         order: 5,
+        corner: 0.015,
+        corner_ratio: 3.0,
+        ratio: 2.35,
+        modes: 4,
+        spacing: 0.0949,
+        k_max: 60.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.0141,
+        k_ratio: 2.6,
+        images: 1,
+        face_reach: 12.9,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.008,
+        corner_ratio: 2.8,
+        ratio: 2.4,
+        modes: 4,
+        spacing: 0.0569,
+        k_max: 70.0,
+        k_order: 5,
+        k_step: 4.0,
+        k_min: 0.05,
+        k_ratio: 2.4,
+        images: 1,
+        face_reach: 12.2,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 5,
         corner: 0.0027,
         corner_ratio: 2.5,
-        ratio: 2.5,
+        ratio: 2.11,
         modes: 6,
         spacing: 0.025,
         k_max: 110.0,
-        k_order: 5,
+        k_order: 6,
         k_step: 4.0,
-        k_min: 0.018,
-        k_ratio: 2.6,
+        k_min: 0.0151,
+        k_ratio: 2.34,
         images: 1,
         face_reach: 10.0,
         reach: 14.0,
@@ -365,10 +524,10 @@ const ENDLESS: [Resolution; 4] = [
 
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
-    pub const FINEST: f64 = TOLERANCES[3];
+    pub const FINEST: f64 = TOLERANCES[5];
 
     /// Smallest tolerance with a coarse resolution.
-    pub const COARSE: f64 = TOLERANCES[1];
+    pub const COARSE: f64 = TOLERANCES[3];
 
     /// The resolution of a body with end faces `end`, under a pressure that is singular at the
     /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
@@ -379,6 +538,15 @@ impl Resolution {
             Self::for_singular_end(tolerance)
         } else {
             Self::for_tolerance(tolerance)
+        }
+    }
+
+    /// The same for a contact that may end before its bodies do.
+    pub fn of_lifting(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
+        match (end.image_weight, corner) {
+            (None, _) => Self::for_half_space(tolerance),
+            (Some(_), Some(_)) => Self::between(&LIFTING_SINGULAR, tolerance),
+            (Some(_), None) => Self::between(&LIFTING_FINITE, tolerance),
         }
     }
 
@@ -404,9 +572,10 @@ impl Resolution {
     }
 
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.
-    fn between(levels: &[Self; 4], tolerance: f64) -> Self {
-        let at = tolerance.clamp(TOLERANCES[3], TOLERANCES[0]);
-        let next = TOLERANCES.iter().position(|level| *level <= at).unwrap_or(3).max(1);
+    fn between(levels: &[Self; 6], tolerance: f64) -> Self {
+        let at = tolerance.clamp(Self::FINEST, TOLERANCES[0]);
+        let next =
+            TOLERANCES.iter().position(|level| *level <= at).unwrap_or(TOLERANCES.len() - 1).max(1);
         let [wide, tight] = [next - 1, next].map(|i| TOLERANCES[i]);
         let share = (wide / at).ln() / (wide / tight).ln();
         let (from, to) = (&levels[next - 1], &levels[next]);
@@ -481,8 +650,15 @@ impl Resolution {
     }
 
     /// The contact line between its `ends`, or one half of it if all is `symmetric`, with panels graded towards the
-    /// ends and the `kinks` of the gap; and the parity that its wavenumbers have to serve.
-    pub fn contact_line(&self, ends: [f64; 2], kinks: &[f64], symmetric: bool) -> (Panels, Parity) {
+    /// ends and the `kinks` of the gap; and the parity that its wavenumbers have to serve. Loads grow with the
+    /// `exponents`, if any, towards the ends.
+    pub fn contact_line(
+        &self,
+        ends: [f64; 2],
+        exponents: [Option<f64>; 2],
+        kinks: &[f64],
+        symmetric: bool,
+    ) -> (Panels, Parity) {
         let parity = if symmetric { Parity::Even } else { Parity::Odd };
         let from = if symmetric { 0.0 } else { ends[0] };
         let mut features = vec![from];
@@ -496,7 +672,12 @@ impl Resolution {
             }
         }
         features.push(ends[1]);
-        (self.between_features(&features, parity), parity)
+        let reach = LAW.min(0.5 * (ends[1] - ends[0]));
+        let [first, last] = [(0, 1.0), (1, -1.0)].map(|(i, side)| {
+            exponents[i].map(|exponent| Corner { at: ends[i], side, exponent, reach })
+        });
+        let corners: Vec<Corner> = first.filter(|_| !symmetric).into_iter().chain(last).collect();
+        (self.between_features(&features, parity).with_corners(&corners), parity)
     }
 
     /// Panels from the first of the ascending `features` to the last, graded towards all of them, but not towards
@@ -538,12 +719,18 @@ impl Resolution {
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
             breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
         }
-        Panels::new(breaks, self.order)
+        Panels::new(breaks, self.order).with_corners(contact.corners())
     }
 
     /// Panels of the depth along an end face, graded towards the edge, deep enough for the
-    /// smallest wavenumber.
-    pub fn face_axis(&self, ledge: f64, half: f64, parity: Parity) -> Panels {
+    /// smallest wavenumber. Its loads grow with the `exponent` towards the edge, if any.
+    pub fn face_axis(
+        &self,
+        ledge: f64,
+        half: f64,
+        parity: Parity,
+        exponent: Option<f64>,
+    ) -> Panels {
         let deepest = self.face_reach / self.smallest_wavenumber(half, parity);
         let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
         // Panels may grow faster where the load only decays.
@@ -557,7 +744,8 @@ impl Resolution {
             next *= growth;
         }
         s.push(deepest);
-        Panels::new(s, self.order)
+        let corner = |exponent| Corner { at: 0.0, side: 1.0, exponent, reach: LAW };
+        Panels::new(s, self.order).with_corners(exponent.map(corner).as_slice())
     }
 
     /// Wavenumbers across the contact, for bodies of half-length up to `half` under loads that are even about

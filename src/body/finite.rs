@@ -171,8 +171,10 @@ impl Body {
         let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = half - contact.end();
+        let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
+        let exponent = corner.map(|c| c.exponent);
         let contact = first..first + contact.len();
-        let face = Sources::new(resolution.face_axis(ledge, half, parity));
+        let face = Sources::new(resolution.face_axis(ledge, half, parity, exponent));
         let surface = Sources::new(surface);
         let images = images(half, &end, parity, resolution);
         // An image that the displacement weighs has its full weight in the stresses.

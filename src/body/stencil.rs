@@ -212,8 +212,10 @@ impl Stencil {
                 let cluster = &sources.clusters[index];
                 let [a, b] = cluster.ends;
                 let far = distances(a, b, own, depth);
-                let factor =
-                    if cluster.halves.is_some() { CLUSTER_DISTANCE } else { PANEL_DISTANCE };
+                // The weights of a panel at a corner integrate polynomials of less than its order.
+                let coarse = cluster.halves.is_some()
+                    || sources.axis.corner_of(cluster.panels.start).is_some();
+                let factor = if coarse { CLUSTER_DISTANCE } else { PANEL_DISTANCE };
                 if far >= factor * (b - a) {
                     for charge in index * order..(index + 1) * order {
                         self.offsets.push(image.sign * (own - sources.places[charge]));
@@ -242,11 +244,12 @@ impl Stencil {
     ) {
         let (axis, order) = (&sources.axis, self.order);
         let [a, b] = axis.panel(panel);
+        let corner = axis.corner_of(panel).map(|c| c.at);
         let mut add = |s: f64, weight: f64| {
             self.offsets.push(image.sign * (own - s));
             self.near.push((panel * order) as u32);
             let weight = image.weight * weight;
-            self.near_weights.extend(axis.polynomials(panel, s).map(|b| weight * b));
+            self.near_weights.extend(axis.loads(panel, s).map(|b| weight * b));
         };
         // Divided at the target first, so that pieces end there.
         if a < own && own < b {
@@ -258,14 +261,18 @@ impl Stencil {
             let length = d - c;
             // Images of a panel's end differ from it by rounding.
             let touches = |end: f64| (end - own).abs() < SAME * (b - a);
-            let steep = line.peak == Peak::Logarithm && (touches(c) || touches(d));
-            let flat = steep || line.peak == Peak::Kink;
+            let touched = [c, d].into_iter().find(|end| touches(*end));
+            let steep = touched.filter(|_| line.peak == Peak::Logarithm);
+            let flat = steep.is_some() || line.peak == Peak::Kink;
             let short = line.depth == 0.0 && flat && length <= line.shortest;
-            if !short && distances(c, d, own, line.depth) < PIECE_DISTANCE * length {
+            let corner = corner.filter(|at| *at == c || *at == d);
+            // Nodes crowd at one end.
+            let both = steep.is_some() && corner.is_some_and(|at| !touches(at));
+            if both || !short && distances(c, d, own, line.depth) < PIECE_DISTANCE * length {
                 let mid = 0.5 * (c + d);
                 pieces.extend([[c, mid], [mid, d]]);
-            } else if short && steep {
-                let (from, away) = if touches(c) { (c, length) } else { (d, -length) };
+            } else if let Some(from) = corner.or(steep.filter(|_| short)) {
+                let away = if from == c { length } else { -length };
                 for (t, w) in sources.steep_rule.0.iter().zip(&sources.steep_rule.1) {
                     let t = 0.5 * (1.0 + t);
                     let slope = f64::from(POWER) * t.powi(POWER - 1);
@@ -360,6 +367,7 @@ fn distances(a: f64, b: f64, own: f64, depth: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Corner;
 
     #[test]
     fn logarithms_are_integrated_from_any_target() {
@@ -398,6 +406,44 @@ mod tests {
             }
         }
     }
+
+    #[test]
+    fn loads_that_grow_towards_a_corner_are_integrated_against_logarithms() {
+        let corner = Corner { at: 3.0, side: -1.0, exponent: 0.4, reach: 1.0 };
+        let breaks = vec![0.0, 1.2, 2.0, 2.5, 2.8, 3.0];
+        let axis = Panels::new(breaks, 5).with_corners(&[corner]);
+        let sources = Sources::new(axis.clone());
+        let f = |s: f64| if s < 2.0 { 0.0 } else { (3.0 - s).powf(-0.4) };
+        let direct = [Image { sign: 1.0, shift: 0.0, weight: 1.0 }];
+        for y in [0.5, 1.9, 2.4, 2.7, 2.95, 2.999, 3.0, 3.05, 4.0] {
+            let stencil = Stencil::new(&sources, &direct, y, 0.0, 0.01, Peak::Logarithm);
+            let mut row = DMatrix::zeros(axis.len(), 1);
+            let mut charges = vec![0.0; sources.charge_count()];
+            let kernel: Vec<f64> = stencil.offsets().iter().map(|u| -u.abs().ln()).collect();
+            stencil.add_row(&kernel, &mut charges, row.as_mut_slice());
+            sources.scatter(&charges, &mut row);
+            let nodal = axis.nodes().iter().zip(row.iter());
+            let got: f64 = nodal.map(|(s, r)| r * f(*s)).sum();
+            // s = 3 - v^5 takes the singularity away; pieces end at the target.
+            let top: f64 = 1.0;
+            let cut = (3.0 - y).max(0.0).powf(0.2).min(top);
+            let (nodes, weights) = gauss_legendre(60);
+            let mut want = 0.0;
+            for [from, to] in [[0.0, cut], [cut, top]] {
+                for (t, w) in nodes.iter().zip(&weights) {
+                    let t = 0.5 * (1.0 + t);
+                    // Crowded at both ends of the piece.
+                    let (u, du) = (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t));
+                    let v: f64 = from + (to - from) * u;
+                    let density = 5.0 * v.powi(2);
+                    let log = -(y - 3.0 + v.powi(5)).abs().max(1e-300).ln();
+                    want += 0.5 * w * du * (to - from) * density * log;
+                }
+            }
+            assert!((got - want).abs() < 2e-3, "{y}: {got} {want}");
+        }
+    }
+
     #[test]
     fn a_few_columns_of_charges_are_added_as_many_are() {
         let sources = Sources::new(Panels::new(vec![0.0, 1.0, 1.5, 1.8], 3));

@@ -95,7 +95,8 @@ impl FreeEnds {
         exponents: [f64; 2],
     ) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
-        let (axis, parity) = resolution.contact_line([-half_length, half_length], &[], symmetric);
+        let ends = [-half_length, half_length];
+        let (axis, parity) = resolution.contact_line(ends, [None; 2], &[], symmetric);
         let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let distinct = distinct(bodies);

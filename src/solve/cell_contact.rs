@@ -174,7 +174,7 @@ impl<'a> DeepTilt<'a> {
         let end = scene.end(BodyKind::Block);
         let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
         let ends = [-scene.half_length, scene.half_length];
-        let (axis, _) = resolution.contact_line(ends, &[], false);
+        let (axis, _) = resolution.contact_line(ends, [None; 2], &[], false);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let wavenumbers = resolution.wavenumbers(longest, Parity::Odd);
         let coarse = wavenumbers.coarse().nodes();

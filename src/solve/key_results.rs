@@ -286,7 +286,8 @@ mod tests {
             let (case, solution) = KeySolution::new(&case, method).unwrap();
             let found = solution.of(&case).critical;
             let less = all.value_pa / p0 - found.value;
-            assert!(less < 2e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
+            // The curves' points are interpolated, to some tenths of the tolerance.
+            assert!(less < 3e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
         }
     }
 }

@@ -86,7 +86,7 @@ fn own_loads(solved: &SolvedCase, edges: &[f64]) -> Vec<f64> {
             return 0.0;
         }
         let at = if pressure.is_symmetric() { y.abs() } else { y };
-        axis.interpolation(at).map(|(j, weight)| weight * nodal[j].load).sum::<f64>()
+        axis.load_interpolation(at).map(|(j, weight)| weight * nodal[j].load).sum::<f64>()
     };
     let of_slice = |e: &[f64]| {
         let mut own: Vec<f64> = breaks.iter().copied().filter(|b| *b > e[0] && *b < e[1]).collect();

@@ -91,14 +91,20 @@ fn of_body(solved: &SolvedCase, body: BodyKind, objective: Objective, excluded: 
     let depths = DEPTHS.map(|z| z * width);
     let symmetric = scene.scene.is_symmetric();
     highest(scene.ends(), symmetric, PLACES, |y| search.at(y, &across, &depths));
-    // Closer in depth and across.
-    let mut step = 0.075 * width;
+    // Closer in all directions: between the depths of the first search the largest value may lie at another place.
+    let (mut step, [from, to]) = (0.075 * width, scene.ends());
+    let mut along = FRAC_PI_2 * 0.5 * (to - from) / (PLACES - 1) as f64;
     for _ in 0..HALVINGS {
         let [x, y, z] = search.best.at;
         let zs: Vec<f64> = [z - step, z, z + step].into_iter().filter(|z| *z >= 0.0).collect();
         let xs = if x == 0.0 { vec![0.0] } else { vec![x - step, x, x + step] };
-        search.at(y, &xs, &zs);
+        for y in [y - along, y, y + along] {
+            if (from..=to).contains(&y) {
+                search.at(y, &xs, &zs);
+            }
+        }
         step *= 0.5;
+        along *= 0.5;
     }
     search.best
 }

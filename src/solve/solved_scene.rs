@@ -310,7 +310,11 @@ impl Scene {
         if slices.is_some_and(ends_inside) {
             return Resolution::for_tips(tolerance);
         }
-        Resolution::of(tolerance, &self.end(BodyKind::Block), self.corner_exponent())
+        let (end, corner) = (self.end(BodyKind::Block), self.corner_exponent());
+        match self.may_end() {
+            true => Resolution::of_lifting(tolerance, &end, corner),
+            false => Resolution::of(tolerance, &end, corner),
+        }
     }
 
     /// What is known of the displacements by long waves, along a line with the middle `centre`, under a load with the
@@ -546,7 +550,10 @@ impl Trial<'_> {
         let (scene, resolution) = (self.scene, self.resolution);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let symmetric = scene.is_symmetric();
-        let (axis, parity) = resolution.contact_line(line.ends, &self.gap.kinks(), symmetric);
+        // A contact that may end before its bodies do may have no pressure at all at their ends.
+        let exponents = if scene.may_end() { [None; 2] } else { scene.corner_exponents() };
+        let (axis, parity) =
+            resolution.contact_line(line.ends, exponents, &self.gap.kinks(), symmetric);
         let wavenumbers = resolution.wavenumbers(longest, parity);
         let coarse = wavenumbers.coarse().nodes();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];

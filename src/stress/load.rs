@@ -56,7 +56,7 @@ pub trait Load: Debug + Sync {
         if !(from - rounding..=to + rounding).contains(&y) {
             return Vec::new();
         }
-        self.axis().interpolation(if self.is_symmetric() { y.abs() } else { y }).collect()
+        self.axis().load_interpolation(if self.is_symmetric() { y.abs() } else { y }).collect()
     }
 }
 

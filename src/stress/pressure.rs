@@ -47,10 +47,9 @@ impl Pressure {
     /// The same pressure in units of length and of pressure that are 1 / `factor` of the present ones.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        let breaks = self.axis.breaks().iter().map(|y| factor * y).collect();
         let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();
         Self {
-            axis: Panels::new(breaks, self.axis.order()),
+            axis: self.axis.scaled(factor),
             symmetric: self.symmetric,
             half_widths: scale(&self.half_widths),
             coefficients: self.coefficients.iter().map(scale).collect(),
@@ -74,9 +73,10 @@ impl Pressure {
             return None;
         }
         let mut coefficients = vec![0.0; self.coefficients[0].len()];
-        let mut half_width = 0.0;
+        let along = if self.symmetric { y.abs() } else { y };
+        let widths = self.axis.interpolation(along).map(|(j, w)| w * self.half_widths[j]);
+        let half_width = widths.sum();
         for (j, w) in neighbours {
-            half_width += w * self.half_widths[j];
             for (sum, c) in coefficients.iter_mut().zip(&self.coefficients[j]) {
                 *sum += w * c;
             }

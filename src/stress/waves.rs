@@ -297,7 +297,7 @@ impl Influence {
             Position::Within(Places::new(offsets, depth, shears))
         } else {
             let beyond = along > axis.end() * (1.0 + 1e-12);
-            let shares = if beyond { Vec::new() } else { axis.interpolation(along).collect() };
+            let shares = if beyond { Vec::new() } else { axis.load_interpolation(along).collect() };
             Position::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
         };
         Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }
