@@ -39,26 +39,18 @@ impl Fold {
         if breaks[0] < same {
             breaks[0] = 0.0;
         }
-        let corner = |c: &Corner| Corner {
-            at: (c.at - middle).abs(),
-            side: if c.at < middle { -c.side } else { c.side },
-            ..*c
-        };
-        let mut corners: Vec<Corner> = line.corners().iter().map(corner).collect();
-        corners.dedup_by(|b, a| (b.at - a.at).abs() <= same);
+        let corner = |c: &Corner| Corner { at: c.at - middle, ..*c };
+        let corners: Vec<Corner> = line.corners().iter().map(corner).collect();
+        // Loads that grow at one end alone have no power on the axis of |y|.
+        debug_assert!(symmetric || corners.is_empty());
         let axis = Panels::new(breaks, line.order()).with_corners(&corners);
         let within = |y: f64| (from..=to).contains(&y);
         let value = |y: f64| match within(y) {
-            true => interpolation(line, y + middle, |axis, y| axis.load_interpolation(y).collect()),
+            true => interpolation(line, y + middle),
             false => Vec::new(),
         };
         let sides = axis.nodes().iter().map(|&y| [value(y), value(-y)]).collect();
-        let place = |y: &f64| {
-            (
-                *y < middle,
-                interpolation(&axis, (y - middle).abs(), |axis, y| axis.interpolation(y).collect()),
-            )
-        };
+        let place = |y: &f64| (*y < middle, interpolation(&axis, (y - middle).abs()));
         let places = line.nodes().iter().map(place).collect();
         Self { axis, symmetric, sides, places }
     }
@@ -123,18 +115,14 @@ impl Fold {
 }
 
 /// The interpolation on `axis`, without the nodes that have no weight.
-fn interpolation(
-    axis: &Panels,
-    y: f64,
-    shares: fn(&Panels, f64) -> Vec<(usize, f64)>,
-) -> Vec<(usize, f64)> {
+fn interpolation(axis: &Panels, y: f64) -> Vec<(usize, f64)> {
     // A node of one axis may be a rounding off that of another.
     let same = SAME * (axis.end() - axis.breaks()[0]);
     let after = axis.nodes().partition_point(|n| *n < y);
     let near = |i: &usize| axis.nodes().get(*i).is_some_and(|n| (n - y).abs() <= same);
     match [after, after.wrapping_sub(1)].into_iter().find(near) {
         Some(node) => vec![(node, 1.0)],
-        None => shares(axis, y),
+        None => axis.interpolation(y).collect(),
     }
 }
 
