@@ -99,12 +99,11 @@ fn kronecker<const N: usize>(index: usize) -> [f64; N] {
     std::array::from_fn(|d| (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract())
 }
 
-/// A scene's values: the pressure on its two lines, and the stresses of both bodies' curves.
+/// A scene's values: the pressure on its three lines, the approach, and the stresses on both bodies' curves and inside them.
 struct Values {
     pressure: Vec<f64>,
     approach: f64,
     stress: Vec<Vec<StressTensor>>,
-    /// None yet where only time counts.
     inside: Vec<Vec<StressTensor>>,
 }
 

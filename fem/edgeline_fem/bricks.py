@@ -105,6 +105,11 @@ class Bricks:
         ]
         return Bricks(points, cells, sets, faces)
 
+    @functools.cached_property
+    def surface(self):
+        """The :class:`Surface` where contact is looked for."""
+        return Surface(self)
+
     def gauss_points(self):
         """The elements' 2 x 2 x 2 integration points, (m, 8, 3)."""
         return np.einsum("gn,enk->egk", _at_gauss_points()[0], self.points[self.cells])

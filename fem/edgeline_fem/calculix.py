@@ -15,7 +15,6 @@ from pathlib import Path
 
 import numpy as np
 
-from .bricks import Surface
 from .contact import ContactGrid
 from .deck import STIFFNESS, write_deck, write_forces
 from .meshing import processor_seconds, write_atomically
@@ -173,7 +172,7 @@ def _contact(bodies, stresses, approach, scene):
 def ending_surface(bodies, scene):
     """The body that ends where the contact does, the block if both do, and its surface: ``(name, Surface)``."""
     name = "roller" if scene.ends[-1].goes_on("block") else "block"
-    return name, Surface(bodies[name])
+    return name, bodies[name].surface
 
 
 def matching(surface, other):
@@ -193,9 +192,8 @@ def apply_forces(request, folder, bodies, forces, log):
     _, surface = ending_surface(bodies, Scene.of(request.case))
     on_bodies = {}
     for body, bricks in bodies.items():
-        other = Surface(bricks)
-        on_bodies[body] = np.zeros(len(other.rows))
-        on_bodies[body][matching(surface, other)] = forces
+        on_bodies[body] = np.zeros(len(bricks.surface.rows))
+        on_bodies[body][matching(surface, bricks.surface)] = forces
     write_forces(request, folder, bodies, on_bodies)
     seconds = run_ccx(request.ccx, folder, "forces", log)
     stresses, _ = read_dat(Path(folder) / "forces.dat", bodies)

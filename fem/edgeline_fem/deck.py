@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .bricks import Bricks, Surface
+from .bricks import Bricks
 from .meshing import write_atomically
 from .request import FemError
 from .scene import BODIES, Scene, surface_slope
@@ -216,14 +216,14 @@ def write_deck(request, folder, stiffness=STIFFNESS):
 def write_forces(request, folder, bodies, forces):
     """Write ``forces.inp`` beside the deck: a linear step with supports held and the contact's forces applied.
 
-    ``forces``: for each body the z components (into that body, units of C and p0) on the nodes of its :class:`Surface`. A
+    ``forces``: for each body the z components (into that body, units of C and p0) on the nodes of its surface. A
     force is normal to the unloaded surface, as in the other engine.
     """
     scene, scales = Scene.of(request.case), request.case.scales()
     unit = scales.p0_pa * scales.c_m**2
     loads = []
     for name, body in bodies.items():
-        surface, sign = Surface(body), 1.0 if name == "block" else -1.0
+        surface, sign = body.surface, 1.0 if name == "block" else -1.0
         slopes = surface_slope(name, body.points[surface.rows, 0], scene.radius)
         for node, slope, force in zip(surface.rows + _first(bodies)[name][0], slopes, forces[name] * unit):
             loads.append(f"{node}, 3, {sign * force:.12e}")

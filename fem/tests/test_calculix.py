@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from conftest import run_stage, steel_case
-from edgeline_fem.bricks import FACES, Surface
+from edgeline_fem.bricks import FACES
 from edgeline_fem.calculix import apply_forces, ending_surface, matching, read_dat, sampler
 from edgeline_fem.contact import ContactGrid
 from edgeline_fem.deck import FILES, SLIP, check_scene, estimated_approach, write_deck
@@ -49,7 +49,7 @@ def test_bricks_hold_a_uniform_stress_in_balance(deck):
 
 def test_pressures_and_their_forces_belong_together(deck):
     request, _, bodies, meshed = deck
-    surface = Surface(bodies["roller"])
+    surface = bodies["roller"].surface
     grid = ContactGrid(meshed["axes_c"]["x_contact"], meshed["axes_c"]["y_contact"], True)
     x, y = np.meshgrid(grid.gauss_x, grid.gauss_y, indexing="ij")
     wanted = 1.0 - 0.3 * x**2 + 0.1 * x * y
@@ -62,7 +62,7 @@ def test_pressures_and_their_forces_belong_together(deck):
     ones = surface.pressure(surface.forces(np.ones_like(wanted), grid), grid)
     assert np.abs(ones - 1.0).max() < 1e-9
     # The block goes on: what the roller's end may slide onto carries nothing under this pressure.
-    block = Surface(bodies["block"])
+    block = bodies["block"].surface
     beyond = block.places[:, 1] > surface.places[:, 1].max() + 1e-6
     assert beyond.any() and not block.forces(wanted, grid)[beyond].any()
     assert np.isclose(block.forces(wanted, grid).sum(), forces.sum())
@@ -90,7 +90,7 @@ def test_a_deck_is_whole_and_says_what_it_is(deck):
         assert body.nodal_forces(np.ones((len(body.cells), 8, 6))).shape == body.points.shape
         assert max(face for _, face in body.faces) < len(FACES)
     # The roller ends with the contact; of the block a little more may be touched.
-    ends = {name: Surface(body).places[:, 1].max() for name, body in bodies.items()}
+    ends = {name: body.surface.places[:, 1].max() for name, body in bodies.items()}
     assert np.isclose(ends["roller"], 3.0) and 3.0 < ends["block"] <= 3.0 + SLIP
     assert estimated_approach(request.case, 640.0) > 0.0
 

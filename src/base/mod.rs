@@ -23,7 +23,7 @@ pub use material::Material;
 pub use panels::{Corner, Panels};
 pub use parity::Parity;
 pub use profile::Profile;
-pub use quadrature::gauss_legendre;
+pub use quadrature::{crowded_legendre, gauss_legendre};
 pub use scales::HertzScales;
 pub use tensor::StressTensor;
 pub use wavenumbers::Wavenumbers;

@@ -1,6 +1,6 @@
 //! Graded axes: panels with Gauss-Legendre nodes, on which functions are piecewise polynomials.
 
-use super::quadrature::{gauss_legendre, legendre};
+use super::quadrature::{crowded_legendre, gauss_legendre, legendre};
 
 /// An axis divided into panels with the same number of Gauss-Legendre nodes each.
 ///
@@ -49,8 +49,9 @@ impl Corner {
     /// Whether the loads between `a` and `b` have the power.
     fn governs(&self, [a, b]: [f64; 2]) -> bool {
         let [near, far] = if self.side > 0.0 { [a, b] } else { [b, a] };
-        let same = 1e-6 * self.reach;
-        self.side * (near - self.at) > -same && self.side * (far - self.at) <= self.reach + same
+        // A panel may end just there, but for rounding.
+        let reach = self.reach * (1.0 + 1e-9);
+        self.side * (near - self.at) >= 0.0 && self.side * (far - self.at) <= reach
     }
 
     /// The power at `x`, in a panel of the given `length`.
@@ -65,12 +66,7 @@ impl Panels {
     pub fn with_corners(mut self, corners: &[Corner]) -> Self {
         self.corners = corners.to_vec();
         if !corners.is_empty() {
-            let (nodes, weights) = gauss_legendre(self.order + MORE_NODES);
-            let crowded = |(t, w): (&f64, &f64)| {
-                let t = 0.5 * (1.0 + t);
-                (t.powi(POWER), 0.5 * w * f64::from(POWER) * t.powi(POWER - 1))
-            };
-            self.steep_rule = nodes.iter().zip(&weights).map(crowded).collect();
+            self.steep_rule = crowded_legendre(self.order + MORE_NODES, POWER);
         }
         for panel in 0..self.panel_count() {
             let ends = self.panel(panel);
@@ -94,12 +90,9 @@ impl Panels {
         &self.corners
     }
 
-    /// The corner at which panel `i` ends, if any, at exactly that end.
+    /// The corner at which panel `i` ends, if any.
     pub fn corner_of(&self, i: usize) -> Option<Corner> {
-        let law = self.laws[i]?;
-        let [a, b] = self.panel(i);
-        let at = [a, b].into_iter().find(|end| (end - law.at).abs() < 1e-4 * (b - a))?;
-        Some(Corner { at, ..law })
+        self.laws[i].filter(|law| self.panel(i).contains(&law.at))
     }
 
     /// The integrals of the loads of panel `i` times a `factor`.

@@ -80,7 +80,7 @@ pub struct Resolution {
 }
 
 /// The tolerances that have levels of their own.
-const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
+const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Lengths that differ by less than this part of a body's are the same.
 const SAME: f64 = 1e-10;
@@ -93,23 +93,7 @@ const ROUNDING: f64 = 1e-12;
 /// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of some scenes within
 /// the tolerance; `-- hold` measures others. These and the next ones lie between what it proposed and finer ones, where the
 /// tests of fields, approaches and ends asked for them.
-const FINITE: [Resolution; 6] = [
-    Resolution {
-        order: 3,
-        corner: 0.06,
-        corner_ratio: 3.0,
-        ratio: 3.0,
-        modes: 3,
-        spacing: 0.15,
-        k_max: 12.0,
-        k_order: 3,
-        k_step: 2.5,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
+const FINITE: [Resolution; 5] = [
     Resolution {
         order: 3,
         corner: 0.06,
@@ -194,23 +178,7 @@ const FINITE: [Resolution; 6] = [
 
 /// The same where the pressure grows without bound at a free end: the loads on the end face do so too, and carry
 /// much from next to the corner. Its panels are many times smaller, and grow fast.
-const SINGULAR: [Resolution; 6] = [
-    Resolution {
-        order: 3,
-        corner: 0.01,
-        corner_ratio: 7.29,
-        ratio: 2.7,
-        modes: 3,
-        spacing: 0.12,
-        k_max: 20.0,
-        k_order: 3,
-        k_step: 3.0,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
+const SINGULAR: [Resolution; 5] = [
     Resolution {
         order: 3,
         corner: 0.01,
@@ -295,16 +263,14 @@ const SINGULAR: [Resolution; 6] = [
 
 /// Those of contacts that may end before their bodies do, in place of [`FINITE`] and [`SINGULAR`]: half-widths near the end
 /// say where that is, and loads beside a singular end, which may carry nothing, are plain polynomials.
-const LIFTING_FINITE: [Resolution; 6] = [
+const LIFTING_FINITE: [Resolution; 5] = [
     FINITE[0],
     FINITE[0],
-    FINITE[0],
-    Resolution { order: 3, corner: 0.018, corner_ratio: 2.54, ratio: 2.54, ..FINITE[3] },
+    Resolution { order: 3, corner: 0.018, corner_ratio: 2.54, ratio: 2.54, ..FINITE[2] },
+    FINITE[3],
     FINITE[4],
-    FINITE[5],
 ];
-const LIFTING_SINGULAR: [Resolution; 6] = [
-    SINGULAR[0],
+const LIFTING_SINGULAR: [Resolution; 5] = [
     SINGULAR[0],
     SINGULAR[0],
     Resolution {
@@ -314,63 +280,35 @@ const LIFTING_SINGULAR: [Resolution; 6] = [
         k_max: 30.0,
         k_min: 0.05,
         face_reach: 10.0,
-        ..SINGULAR[3]
+        ..SINGULAR[2]
     },
+    SINGULAR[3],
     SINGULAR[4],
-    SINGULAR[5],
 ];
+
+/// The first levels of [`TIPS`].
+const COARSE_TIPS: Resolution = Resolution {
+    order: 3,
+    corner: 0.06,
+    corner_ratio: 3.0,
+    ratio: 3.0,
+    modes: 3,
+    spacing: 0.15,
+    k_max: 12.0,
+    k_order: 3,
+    k_step: 2.5,
+    k_min: 0.05,
+    k_ratio: 5.0,
+    images: 1,
+    face_reach: 10.0,
+    reach: 8.0,
+};
 
 /// The same where the contact ends before its bodies do: its pressure falls to zero there, and only its length
 /// has to be found.
-const TIPS: [Resolution; 6] = [
-    Resolution {
-        order: 3,
-        corner: 0.06,
-        corner_ratio: 3.0,
-        ratio: 3.0,
-        modes: 3,
-        spacing: 0.15,
-        k_max: 12.0,
-        k_order: 3,
-        k_step: 2.5,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
-    Resolution {
-        order: 3,
-        corner: 0.06,
-        corner_ratio: 3.0,
-        ratio: 3.0,
-        modes: 3,
-        spacing: 0.15,
-        k_max: 12.0,
-        k_order: 3,
-        k_step: 2.5,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
-    Resolution {
-        order: 3,
-        corner: 0.06,
-        corner_ratio: 3.0,
-        ratio: 3.0,
-        modes: 3,
-        spacing: 0.15,
-        k_max: 12.0,
-        k_order: 3,
-        k_step: 2.5,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
+const TIPS: [Resolution; 5] = [
+    COARSE_TIPS,
+    COARSE_TIPS,
     Resolution {
         order: 3,
         corner: 0.04,
@@ -423,23 +361,7 @@ const TIPS: [Resolution; 6] = [
 
 /// The same for half-spaces: their pressure is the steepest at its end, and nodes and wavenumbers cost little
 /// without end faces.
-const ENDLESS: [Resolution; 6] = [
-    Resolution {
-        order: 5,
-        corner: 0.015,
-        corner_ratio: 3.0,
-        ratio: 3.0,
-        modes: 3,
-        spacing: 0.1,
-        k_max: 60.0,
-        k_order: 4,
-        k_step: 4.0,
-        k_min: 0.05,
-        k_ratio: 2.6,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
+const ENDLESS: [Resolution; 5] = [
     Resolution {
         order: 5,
         corner: 0.015,
@@ -524,30 +446,34 @@ const ENDLESS: [Resolution; 6] = [
 
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
-    pub const FINEST: f64 = TOLERANCES[5];
+    pub const FINEST: f64 = TOLERANCES[4];
 
     /// Smallest tolerance with a coarse resolution.
-    pub const COARSE: f64 = TOLERANCES[3];
+    pub const COARSE: f64 = TOLERANCES[2];
 
     /// The resolution of a body with end faces `end`, under a pressure that is singular at the
     /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
     pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
-        if end.image_weight.is_none() {
-            Self::for_half_space(tolerance)
-        } else if corner.is_some() {
-            Self::for_singular_end(tolerance)
-        } else {
-            Self::for_tolerance(tolerance)
-        }
+        Self::by_end(tolerance, end, corner, [&FINITE, &SINGULAR])
     }
 
     /// The same for a contact that may end before its bodies do.
     pub fn of_lifting(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
-        match (end.image_weight, corner) {
-            (None, _) => Self::for_half_space(tolerance),
-            (Some(_), Some(_)) => Self::between(&LIFTING_SINGULAR, tolerance),
-            (Some(_), None) => Self::between(&LIFTING_FINITE, tolerance),
-        }
+        Self::by_end(tolerance, end, corner, [&LIFTING_FINITE, &LIFTING_SINGULAR])
+    }
+
+    fn by_end(
+        tolerance: f64,
+        end: &End,
+        corner: Option<f64>,
+        [finite, singular]: [&[Self; 5]; 2],
+    ) -> Self {
+        let levels = match (end.image_weight, corner) {
+            (None, _) => &ENDLESS,
+            (Some(_), Some(_)) => singular,
+            (Some(_), None) => finite,
+        };
+        Self::between(levels, tolerance)
     }
 
     /// The resolution for errors of about `tolerance` (a fraction of p0) where the pressure has a limit at the
@@ -556,23 +482,13 @@ impl Resolution {
         Self::between(&FINITE, tolerance)
     }
 
-    /// The same where the pressure grows without bound at a free end, outside 0.1 C of it.
-    pub fn for_singular_end(tolerance: f64) -> Self {
-        Self::between(&SINGULAR, tolerance)
-    }
-
     /// The same of a contact that ends before its bodies do, at both ends.
     pub fn for_tips(tolerance: f64) -> Self {
         Self::between(&TIPS, tolerance)
     }
 
-    /// The same of half-spaces.
-    pub fn for_half_space(tolerance: f64) -> Self {
-        Self::between(&ENDLESS, tolerance)
-    }
-
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.
-    fn between(levels: &[Self; 6], tolerance: f64) -> Self {
+    fn between(levels: &[Self; 5], tolerance: f64) -> Self {
         let at = tolerance.clamp(Self::FINEST, TOLERANCES[0]);
         let next =
             TOLERANCES.iter().position(|level| *level <= at).unwrap_or(TOLERANCES.len() - 1).max(1);

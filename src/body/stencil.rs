@@ -1,6 +1,6 @@
 //! Quadrature of values at an axis's nodes against a kernel that peaks at a target.
 
-use crate::base::{Panels, gauss_legendre};
+use crate::base::{Panels, crowded_legendre, gauss_legendre};
 use crate::kernels::wave::WAVES;
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DMatrixView};
@@ -32,7 +32,7 @@ pub struct Sources {
     charges: DMatrix<f64>,
     /// Gauss's rules for a piece of a panel, and for one with a logarithm at its end.
     piece_rule: (Vec<f64>, Vec<f64>),
-    steep_rule: (Vec<f64>, Vec<f64>),
+    steep_rule: Vec<(f64, f64)>,
 }
 
 /// A run of panels; the first cluster is the whole axis.
@@ -101,7 +101,7 @@ impl Sources {
             }
         }
         let (piece_rule, steep_rule) =
-            (gauss_legendre(order.max(4)), gauss_legendre(order + MORE_NODES));
+            (gauss_legendre(order.max(4)), crowded_legendre(order + MORE_NODES, POWER));
         Self { axis, clusters, places, charges, piece_rule, steep_rule }
     }
 
@@ -273,10 +273,8 @@ impl Stencil {
                 pieces.extend([[c, mid], [mid, d]]);
             } else if let Some(from) = corner.or(steep.filter(|_| short)) {
                 let away = if from == c { length } else { -length };
-                for (t, w) in sources.steep_rule.0.iter().zip(&sources.steep_rule.1) {
-                    let t = 0.5 * (1.0 + t);
-                    let slope = f64::from(POWER) * t.powi(POWER - 1);
-                    add(from + away * t.powi(POWER), 0.5 * length * w * slope);
+                for (t, w) in &sources.steep_rule {
+                    add(from + away * t, length * w);
                 }
             } else {
                 for (t, w) in sources.piece_rule.0.iter().zip(&sources.piece_rule.1) {

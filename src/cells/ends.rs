@@ -251,10 +251,9 @@ impl FreeEnds {
             let FreeBody { half, middle, nu, share } = freed.body;
             let moment = |((y, weight), line): ((&f64, &f64), &f64)| (y - middle) * weight * line;
             let moment = if self.symmetric { 0.0 } else { nodes().map(moment).sum() };
-            share * Shape { half, nu }.as_plate(load, moment, centre - middle)
+            (share * Shape { half, nu }.as_plate(load, moment, centre - middle), half)
         };
-        let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, b| least.min(b.body.half));
-        LongWaves { limit: self.bodies.iter().map(of_body).sum(), half }
+        LongWaves::of(self.bodies.iter().map(of_body))
     }
 
     /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to

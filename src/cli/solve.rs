@@ -10,7 +10,6 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
-use crate::report::solution::MOST_CELLS;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
     CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
@@ -333,7 +332,7 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
 
 /// The short summary for a reader.
 fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
-    let pressure = if found.cells.len() > MOST_CELLS { "" } else { " pressure.csv," };
+    let pressure = if solution::writes_pressure(&found.cells) { " pressure.csv," } else { "" };
     let found = &found.summary;
     let (factors, hertz) = (case.factors(), found.hertz);
     let p0 = hertz.p0_pa;

@@ -22,6 +22,16 @@ pub struct LongWaves {
     pub half: f64,
 }
 
+impl LongWaves {
+    /// Those of bodies with these limits and half-lengths.
+    pub fn of(bodies: impl Iterator<Item = (f64, f64)>) -> Self {
+        bodies.fold(Self { limit: 0.0, half: f64::INFINITY }, |all, (limit, half)| Self {
+            limit: all.limit + limit,
+            half: all.half.min(half),
+        })
+    }
+}
+
 /// The mean displacement along the line that the load causes at any depth: with the kernel e^(-k depth) the logarithmic
 /// growth of the displacement with the extent of the bodies cancels in the difference from the approach.
 ///

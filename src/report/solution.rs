@@ -10,7 +10,12 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Most cells that are written as text: more of them have a file of their own, see [`super::cells`].
-pub const MOST_CELLS: usize = 100_000;
+const MOST_CELLS: usize = 100_000;
+
+/// Whether the pressures of the `cells` are few enough to be written as text.
+pub fn writes_pressure<T>(cells: &[T]) -> bool {
+    cells.len() <= MOST_CELLS
+}
 
 /// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV but for
 /// pressures on very many cells, and `summary.json` last, so that its presence means that all are there.
@@ -26,7 +31,7 @@ pub fn write<D: Serialize>(
     let mut files = more;
     let mut put = |name: String, text: String| files.push((name, text.into_bytes()));
     for table in tables(solution, options) {
-        if table.name == "pressure" && solution.cells.len() > MOST_CELLS {
+        if table.name == "pressure" && !writes_pressure(&solution.cells) {
             continue;
         }
         put(format!("{}.csv", table.name), table.to_csv());

@@ -5,7 +5,7 @@ use super::on_cells::Placed;
 use super::scene::{Scene, SceneBody, Tilt};
 use super::tilt;
 use crate::base::{BodyKind, Error, Panels, Parity, PerBody, Result, Wavenumbers};
-use crate::body::{Resolution, Shape, Stack};
+use crate::body::{Shape, Stack};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Columns, Grid, Heights, RoughGap};
 use crate::stress::{Field, Load};
@@ -171,8 +171,7 @@ struct DeepTilt<'a> {
 impl<'a> DeepTilt<'a> {
     /// The tilt of `scene` at `depth` (C).
     fn new(scene: &'a Scene, depth: f64) -> Self {
-        let end = scene.end(BodyKind::Block);
-        let resolution = Resolution::of(scene.tolerance, &end, scene.corner_exponent());
+        let resolution = scene.resolution(scene.tolerance, None);
         let ends = [-scene.half_length, scene.half_length];
         let (axis, _) = resolution.contact_line(ends, [None; 2], &[], false);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));

@@ -62,7 +62,7 @@ impl KeySolution {
     /// Solves the contact of `case` by `method`, and returns the case with its force, which is found first if the
     /// approach is given in its place. The largest stress is sought on all standard
     /// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
-    /// which finds it within 2e-3 p0 (a test of this module checks that).
+    /// which finds it within 0.3 tolerances (a test of this module checks that at 1e-2).
     ///
     /// # Errors
     /// [`crate::base::Error::NotConverged`] when the contact does not settle.
@@ -286,8 +286,11 @@ mod tests {
             let (case, solution) = KeySolution::new(&case, method).unwrap();
             let found = solution.of(&case).critical;
             let less = all.value_pa / p0 - found.value;
-            // The curves' points are interpolated, to some tenths of the tolerance.
-            assert!(less < 3e-3, "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}");
+            // The curves' points are interpolated, the search's are not; both stay within the tolerance of the truth.
+            assert!(
+                less < 0.3 * case.accuracy.tolerance,
+                "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}"
+            );
         }
     }
 }

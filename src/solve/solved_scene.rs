@@ -301,7 +301,7 @@ impl Scene {
 
     /// The resolution for a tolerance (p0), where `slices` are a first guess of a contact that may end before its
     /// bodies do.
-    fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
+    pub(super) fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
         let overlap = self.overlap();
         let least = MARGIN * self.half_length;
         let ends_inside = |slices: &Slices| {
@@ -327,11 +327,9 @@ impl Scene {
         let of_body = |body: &SceneBody| {
             let SceneBody { half, middle, nu, share, .. } = *body;
             let moment = if self.is_symmetric() { 0.0 } else { moment - middle * self.load };
-            share * Shape { half, nu }.as_plate(self.load, moment, centre - middle)
+            (share * Shape { half, nu }.as_plate(self.load, moment, centre - middle), half)
         };
-        let limit = self.bodies.iter().map(of_body).sum();
-        let half = self.bodies.iter().fold(f64::INFINITY, |least: f64, body| least.min(body.half));
-        Some(LongWaves { limit, half })
+        Some(LongWaves::of(self.bodies.iter().map(of_body)))
     }
 
     /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line
