@@ -27,7 +27,7 @@ const LIMIT: Resolution = Resolution {
     corner_ratio: 2.3,
     ratio: 1.9,
     modes: 8,
-    spacing: 0.012,
+    spacing: 0.02,
     k_max: 500.0,
     k_order: 6,
     k_step: 3.0,

@@ -75,9 +75,11 @@ impl Load for Columns<'_> {
         steps * DMatrix::from_fn(edges.len(), k.len(), |i, j| 2.0 * (k[j] * edges[i]).sin() / k[j])
     }
 
-    fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
+    fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3] {
+        let neighbours = self.neighbours(y);
         let mut sum = [0.0; 3];
-        for (edge, step) in self.edges.iter().zip(self.steps.row(j).iter()) {
+        for (i, edge) in self.edges.iter().enumerate() {
+            let step: f64 = neighbours.iter().map(|(j, w)| w * self.steps[(*j, i)]).sum();
             let own = strip::uniform(*edge, x, z);
             sum.iter_mut().zip(own).for_each(|(sum, s)| *sum += step * s);
         }
@@ -104,8 +106,8 @@ mod tests {
         for got in columns.transforms(&[k]).iter() {
             assert!((got - want).abs() < 1e-13, "{got} {want}");
         }
-        for j in [0, 5, 11] {
-            let inside = columns.endless(j, 0.7, 0.0);
+        for y in [0.0, -1.7, 3.9] {
+            let inside = columns.endless(y, 0.7, 0.0);
             assert!(
                 inside
                     .iter()

@@ -111,7 +111,7 @@ impl Load for Part<'_> {
         &self.nodal * DMatrix::from_fn(self.places.len(), k.len(), wave)
     }
 
-    fn endless(&self, _j: usize, _x: f64, _z: f64) -> [f64; 3] {
+    fn endless(&self, _y: f64, _x: f64, _z: f64) -> [f64; 3] {
         [0.0; 3]
     }
 

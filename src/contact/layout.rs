@@ -11,10 +11,6 @@ use std::ops::Range;
 const DISTURBED: f64 = 1.0;
 const INNER_MODES: usize = 3;
 
-/// Modes of the nodes between the last free one and the line's end: more of them would be noise, as their
-/// half-widths are those of the free node, and turn tensile one node after the other.
-const TAIL_MODES: usize = 3;
-
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
@@ -151,7 +147,9 @@ impl Layout {
         let (first, last) = (free[0], free[free.len() - 1]);
         let modes_at = |(j, y): (usize, &f64)| match problem.distance_to_end(*y) > DISTURBED {
             _ if !contact.contains(&j) => 0,
-            _ if j > last || problem.both_ends && j < first => settings.modes.min(TAIL_MODES),
+            _ if j > last || problem.both_ends && j < first => {
+                settings.modes.min(settings.tail_modes)
+            }
             true => settings.modes.min(INNER_MODES),
             false => settings.modes,
         };

@@ -32,6 +32,10 @@ const NEAR: f64 = 1e-3;
 const NARROWEST: f64 = 0.05;
 const TIP: f64 = 1e-3;
 
+/// Modes of the last attempt behind the last free node: there the half-widths follow those of the free nodes, and with
+/// many modes the pressures of a contact that hardly reaches its end turn tensile one after the other.
+const FEW_TAIL_MODES: usize = 3;
+
 /// Solves for the pressure that carries the problem's load.
 ///
 /// For fixed half-widths the problem is linear: collocation determines the modes at every node, and
@@ -64,6 +68,7 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
         attempt.spacing *= 2.0;
     }
     attempt.max_iterations = settings.max_iterations;
+    attempt.tail_modes = FEW_TAIL_MODES;
     checked(&attempt)
 }
 

@@ -453,7 +453,7 @@ impl<'a> Field<'a> {
         z: f64,
         remainder: StressTensor,
     ) -> StressTensor {
-        let mut s = self.with_plane(y, remainder, |j| own.endless_along(j, x, z));
+        let mut s = self.with_plane(remainder, own.endless_along(y, x, z));
         if z == 0.0 {
             s.xz = -self.pressure.at(x, y);
             (s.zz, s.yz) = (0.0, 0.0);
@@ -463,7 +463,7 @@ impl<'a> Field<'a> {
 
     /// [`Field::complete`] under the pressure.
     fn complete_pressure(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
-        let mut s = self.with_plane(y, remainder, |j| self.pressure.endless(j, x, z));
+        let mut s = self.with_plane(remainder, self.pressure.endless(y, x, z));
         if z == 0.0 {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
@@ -471,22 +471,12 @@ impl<'a> Field<'a> {
         self.free_face(y, s)
     }
 
-    /// The stress `s` and at `y` the plane strain of an endless contact, interpolated between nodes: xx, zz and xz of
-    /// the node j are `plane(j)`.
-    fn with_plane(
-        &self,
-        y: f64,
-        mut s: StressTensor,
-        plane: impl Fn(usize) -> [f64; 3],
-    ) -> StressTensor {
-        let nu = self.stack.body().nu;
-        for (j, weight) in self.pressure.neighbours(y) {
-            let [xx, zz, xz] = plane(j).map(|s| weight * s);
-            s.xx += xx;
-            s.zz += zz;
-            s.xz += xz;
-            s.yy += nu * (xx + zz);
-        }
+    /// The stress `s` and the plane strain of an endless contact with these xx, zz and xz.
+    fn with_plane(&self, mut s: StressTensor, [xx, zz, xz]: [f64; 3]) -> StressTensor {
+        s.xx += xx;
+        s.zz += zz;
+        s.xz += xz;
+        s.yy += self.stack.body().nu * (xx + zz);
         s
     }
 

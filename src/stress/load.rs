@@ -37,8 +37,8 @@ pub trait Load: Debug + Sync {
     /// Fourier transforms over x: a column for each of the wavenumbers `k`, over the nodes.
     fn transforms(&self, k: &[f64]) -> DMatrix<f64>;
 
-    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure of node `j`.
-    fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3];
+    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y`.
+    fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3];
 
     /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for
     /// each of the coarse ones, over the nodes.
@@ -62,7 +62,7 @@ pub trait Load: Debug + Sync {
 
 /// A [`Load`] whose pressure may act as a traction along x instead.
 pub trait Traction: Load {
-    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure of node `j` as a
-    /// traction along +x.
-    fn endless_along(&self, j: usize, x: f64, z: f64) -> [f64; 3];
+    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y` as a traction
+    /// along +x.
+    fn endless_along(&self, y: f64, x: f64, z: f64) -> [f64; 3];
 }

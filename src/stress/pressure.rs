@@ -84,9 +84,32 @@ impl Pressure {
         Some((half_width, coefficients))
     }
 
+    /// [`Pressure::modes`] where the contact has a width.
+    fn in_contact(&self, y: f64) -> Option<(f64, Vec<f64>)> {
+        self.modes(y).filter(|(half_width, _)| *half_width > 0.0)
+    }
+
     /// Pressure at (`x`, `y`) (p0).
     pub fn at(&self, x: f64, y: f64) -> f64 {
         self.modes(y).map_or(0.0, |(a, c)| strip::pressure(a, &c, x).max(0.0))
+    }
+
+    /// The stresses `of` a plane contact with the half-width and the modes at `y`.
+    ///
+    /// Between nodes with different half-widths, polynomials through the stresses of the nodes would not follow the
+    /// vertical tangent at the contact's edge. Next to a singular end they are what the rest of the field has as its load.
+    fn plane(&self, y: f64, of: impl Fn(f64, &[f64]) -> [f64; 3]) -> [f64; 3] {
+        let along = if self.symmetric { y.abs() } else { y };
+        let singular = self.axis.corner_of(self.axis.panel_of(along)).is_some();
+        if !singular {
+            return self.in_contact(y).map_or([0.0; 3], |(a, c)| of(a, &c));
+        }
+        let mut sum = [0.0; 3];
+        for (j, weight) in self.neighbours(y) {
+            let own = of(self.half_widths[j], &self.coefficients[j]);
+            sum.iter_mut().zip(own).for_each(|(sum, s)| *sum += weight * s);
+        }
+        sum
     }
 
     /// The load per length at every node.
@@ -115,12 +138,12 @@ impl Load for Pressure {
     }
 
     fn local_contact(&self, y: f64) -> LocalContact {
-        match self.modes(y) {
-            Some((half_width, modes)) if half_width > 0.0 => {
+        match self.in_contact(y) {
+            Some((half_width, modes)) => {
                 let load = strip::cumulative(half_width, &modes, half_width);
                 LocalContact { half_width, peak: load / (FRAC_PI_2 * half_width) }
             }
-            _ => LocalContact { half_width: 0.0, peak: 0.0 },
+            None => LocalContact { half_width: 0.0, peak: 0.0 },
         }
     }
 
@@ -132,13 +155,13 @@ impl Load for Pressure {
         })
     }
 
-    fn endless(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
-        strip::stress(self.half_widths[j], &self.coefficients[j], x, z)
+    fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3] {
+        self.plane(y, |a, c| strip::stress(a, c, x, z))
     }
 }
 
 impl Traction for Pressure {
-    fn endless_along(&self, j: usize, x: f64, z: f64) -> [f64; 3] {
-        strip::stress_along(self.half_widths[j], &self.coefficients[j], x, z)
+    fn endless_along(&self, y: f64, x: f64, z: f64) -> [f64; 3] {
+        self.plane(y, |a, c| strip::stress_along(a, c, x, z))
     }
 }

@@ -222,7 +222,7 @@ fn every_direction_converges() {
             r.ratio = r.ratio.powf(0.5f64.powf(level));
             r.corner_ratio = r.corner_ratio.powf(0.5f64.powf(level));
         }),
-        ("modes across x", |r, level| r.modes = (5.0 + 2.0 * level) as usize),
+        ("modes across x", |r, level| r.modes = (r.modes as f64 + 2.0 * level) as usize),
         ("free half-widths", |r, level| r.spacing *= 0.5f64.powf(level)),
         ("wavenumbers", |r, level| {
             r.k_max *= 2f64.powf(level);
