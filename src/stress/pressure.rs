@@ -165,3 +165,28 @@ impl Traction for Pressure {
         self.plane(y, |a, c| strip::stress_along(a, c, x, z))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stresses_on_the_surface_are_those_of_the_local_pressure() {
+        // Half-widths that fall along the line: x = 0.95 is inside the contact at some nodes of a panel, not at others.
+        let axis = Panels::new(vec![0.0, 3.0, 6.0], 5);
+        let half_widths: Vec<f64> = axis.nodes().iter().map(|y| 1.05 - 0.03 * y).collect();
+        let coefficients = half_widths.iter().map(|a| vec![*a, -0.02]).collect();
+        let pressure = Pressure::new(axis, true, half_widths, coefficients);
+        for i in 0..=60 {
+            let y = 0.1 * f64::from(i);
+            for x in [0.0, 0.6, 0.9, 0.95] {
+                let [xx, zz, xz] = pressure.endless(y, x, 0.0);
+                let inside = x < 1.05 - 0.03 * y;
+                let p = if inside { pressure.at(x, y) } else { 0.0 };
+                let off = (xx + p).abs().max((zz + p).abs()).max(xz.abs());
+                assert!(off < 1e-12, "{x} {y}: {xx} {zz} {xz}, {p}");
+            }
+        }
+        assert_eq!(pressure.endless(6.1, 0.0, 0.5), [0.0; 3]);
+    }
+}

@@ -68,6 +68,28 @@ fn strengths_do_not_depend_on_the_mesh() {
     assert_eq!(strength(&scene(5.0, 1.0, 0.3, EdgeModel::Guilbault), &usual), None);
 }
 
+#[test]
+fn a_narrow_ledge_is_free_of_stress_at_its_corner() {
+    // The block ends 0.27 and 0.11 C beyond the roller. At a corner of 90 degrees between free faces stresses vanish
+    // like the 1.7th power of the distance (Williams, Journal of Applied Mechanics 19, 1952).
+    for (slenderness, length_ratio) in [(2.53, 0.903), (2.164, 0.9535)] {
+        let scene = Scene {
+            tolerance: 1e-3,
+            ..scene(slenderness, length_ratio, 0.25, EdgeModel::QuarterSpace)
+        };
+        let solved = SolvedScene::new(&scene).unwrap();
+        let field = solved.field(BodyKind::Block);
+        let at = |off: f64| field.at(scene.bodies.block.half - off, 0.0, &[0.0])[0].yy.abs();
+        let ledge = scene.bodies.block.half - slenderness;
+        let near = at(0.5 * ledge);
+        for part in [0.05, 0.04, 0.03] {
+            let limit = 2e-3 + near * (part / 0.5f64).powf(1.7);
+            let yy = at(part * ledge);
+            assert!(yy < limit, "{length_ratio}: {yy} of {near} at {part} of the ledge");
+        }
+    }
+}
+
 // --- The stress transition factor --------------------------------------------------------------
 
 /// The values that determine sigma_yy of `guilbault` at a point, and that of the complete solution.
