@@ -119,7 +119,6 @@ fn compliance_and_contact(c: &mut Criterion) {
         };
         let settings = ContactSettings {
             modes: resolution.modes,
-            tail_modes: resolution.modes,
             spacing: resolution.spacing,
             tolerance: 1e-2 * scene.tolerance,
             max_iterations: 40,

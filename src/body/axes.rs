@@ -368,29 +368,11 @@ const LIFTING_SINGULAR: [Resolution; 5] = [
     },
 ];
 
-/// The first levels of [`TIPS`].
-const COARSE_TIPS: Resolution = Resolution {
-    order: 3,
-    corner: 0.06,
-    corner_ratio: 3.0,
-    ratio: 3.0,
-    modes: 3,
-    spacing: 0.15,
-    k_max: 12.0,
-    k_order: 3,
-    k_step: 2.5,
-    k_min: 0.05,
-    k_ratio: 5.0,
-    images: 1,
-    face_reach: 10.0,
-    reach: 8.0,
-};
-
 /// The same where the contact ends before its bodies do: its pressure falls to zero there, and only its length
 /// has to be found.
 const TIPS: [Resolution; 5] = [
-    COARSE_TIPS,
-    COARSE_TIPS,
+    FINITE[0],
+    FINITE[0],
     Resolution {
         order: 3,
         corner: 0.04,

@@ -119,7 +119,6 @@ mod tests {
         let compliance = Compliance { wavenumbers: &numbers, matrices: &matrices };
         let settings = ContactSettings {
             modes: 3,
-            tail_modes: 3,
             spacing: 0.1,
             tolerance: 1e-6,
             max_iterations: 20,

@@ -112,8 +112,13 @@ fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
 }
 
 impl Layout {
-    /// All modes at the nodes that are in `contact`, none at the others.
-    pub fn new(problem: &Problem, settings: &ContactSettings, contact: Range<usize>) -> Self {
+    /// All modes at the nodes that are in `contact`, at most `tail_modes` behind the last free one, none at the others.
+    pub fn new(
+        problem: &Problem,
+        settings: &ContactSettings,
+        tail_modes: usize,
+        contact: Range<usize>,
+    ) -> Self {
         let axis = problem.axis;
         let free = free_nodes(problem, settings.spacing, &contact);
         let narrows: Vec<bool> =
@@ -147,9 +152,7 @@ impl Layout {
         let (first, last) = (free[0], free[free.len() - 1]);
         let modes_at = |(j, y): (usize, &f64)| match problem.distance_to_end(*y) > DISTURBED {
             _ if !contact.contains(&j) => 0,
-            _ if j > last || problem.both_ends && j < first => {
-                settings.modes.min(settings.tail_modes)
-            }
+            _ if j > last || problem.both_ends && j < first => settings.modes.min(tail_modes),
             true => settings.modes.min(INNER_MODES),
             false => settings.modes,
         };

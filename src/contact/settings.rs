@@ -5,8 +5,6 @@
 pub struct ContactSettings {
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// The most of them at nodes between the last independent half-width and the line's end.
-    pub tail_modes: usize,
     /// Smallest distance of nodes with an independent half-width, from each other along the line
     /// and from its end.
     pub spacing: f64,

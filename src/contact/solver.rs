@@ -54,13 +54,13 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
     // half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
-    let checked = |attempt: &ContactSettings| {
-        let solution = solve_once(&operator, problem, attempt)?;
+    let checked = |attempt: &ContactSettings, tail_modes: usize| {
+        let solution = solve_once(&operator, problem, attempt, tail_modes)?;
         check(&operator, problem, &solution, settings.soundness)?;
         Ok(solution)
     };
     for _ in 0..3 {
-        let answer = checked(&attempt);
+        let answer = checked(&attempt, settings.modes);
         if answer.is_ok() {
             return answer;
         }
@@ -68,19 +68,19 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
         attempt.spacing *= 2.0;
     }
     attempt.max_iterations = settings.max_iterations;
-    attempt.tail_modes = FEW_TAIL_MODES;
-    checked(&attempt)
+    checked(&attempt, FEW_TAIL_MODES)
 }
 
-/// [`solve`] with the given spacing.
+/// [`solve`] with the given spacing, and at most `tail_modes` behind the last free node.
 fn solve_once(
     operator: &LineOperator,
     problem: &Problem,
     settings: &ContactSettings,
+    tail_modes: usize,
 ) -> Result<ContactSolution> {
     let n = problem.axis.len();
     let mut contact = 0..n;
-    let mut layout = Layout::new(problem, settings, contact.clone());
+    let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
     let guess = |y: &f64| problem.guess.map_or(1.0, |slices| slices.half_width(*y).max(TIP));
     let mut half_widths: Vec<f64> = problem.axis.nodes().iter().map(guess).collect();
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
@@ -140,7 +140,7 @@ fn solve_once(
         }
         if !settled {
             contact = shrunk;
-            layout = Layout::new(problem, settings, contact.clone());
+            layout = Layout::new(problem, settings, tail_modes, contact.clone());
         }
     }
     Err(Error::NotConverged {

@@ -62,7 +62,7 @@ impl KeySolution {
     /// Solves the contact of `case` by `method`, and returns the case with its force, which is found first if the
     /// approach is given in its place. The largest stress is sought on all standard
     /// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
-    /// which finds it within 0.3 tolerances (a test of this module checks that at 1e-2).
+    /// which finds it within 3e-3 p0 at 1e-2 and 2e-3 at 5e-3 (a test of this module checks that).
     ///
     /// # Errors
     /// [`crate::base::Error::NotConverged`] when the contact does not settle.
@@ -278,19 +278,21 @@ mod tests {
             let material = Material { young_pa: 210e9, poisson };
             let factors = Factors { load: 5e-4, slenderness, length_ratio };
             let case = Case::from_factors("case", 0.01, material, material, factors);
-            let case = case.with_tolerance(1e-2);
             let method = EdgeModel::QuarterSpace;
-            let whole = solve(&case, &Options::new(method)).unwrap();
-            let p0 = whole.curves.hertz.p0_pa;
-            let all = whole.summary.critical.unwrap();
-            let (case, solution) = KeySolution::new(&case, method).unwrap();
-            let found = solution.of(&case).critical;
-            let less = all.value_pa / p0 - found.value;
             // The curves' points are interpolated, the search's are not; both stay within the tolerance of the truth.
-            assert!(
-                less < 0.3 * case.accuracy.tolerance,
-                "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}"
-            );
+            for (tolerance, limit) in [(1e-2, 3e-3), (5e-3, 2e-3)] {
+                let case = case.clone().with_tolerance(tolerance);
+                let whole = solve(&case, &Options::new(method)).unwrap();
+                let p0 = whole.curves.hertz.p0_pa;
+                let all = whole.summary.critical.unwrap();
+                let (case, solution) = KeySolution::new(&case, method).unwrap();
+                let found = solution.of(&case).critical;
+                let less = all.value_pa / p0 - found.value;
+                assert!(
+                    less < limit,
+                    "{slenderness} {length_ratio} {poisson}: {found:?} of {all:?}"
+                );
+            }
         }
     }
 }

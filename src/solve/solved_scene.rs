@@ -581,7 +581,6 @@ impl Trial<'_> {
     fn contact(&self, parts: &Parts, line: &Line, known: &mut Known) -> Result<ContactSolution> {
         let settings = ContactSettings {
             modes: self.resolution.modes,
-            tail_modes: self.resolution.modes,
             spacing: self.resolution.spacing,
             tolerance: CONTACT_TOLERANCE * self.accuracy.tolerance,
             max_iterations: 40,

@@ -15,6 +15,11 @@ pub trait Load: Debug + Sync {
         true
     }
 
+    /// The place on the axis that stands for `y`.
+    fn on_axis(&self, y: f64) -> f64 {
+        if self.is_symmetric() { y.abs() } else { y }
+    }
+
     /// Whether the pressure is even or odd in x; the transforms of an odd one are those with sin(k x).
     fn parity_across(&self) -> Parity {
         Parity::Even
@@ -56,7 +61,7 @@ pub trait Load: Debug + Sync {
         if !(from - rounding..=to + rounding).contains(&y) {
             return Vec::new();
         }
-        self.axis().load_interpolation(if self.is_symmetric() { y.abs() } else { y }).collect()
+        self.axis().load_interpolation(self.on_axis(y)).collect()
     }
 }
 

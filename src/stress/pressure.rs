@@ -73,8 +73,7 @@ impl Pressure {
             return None;
         }
         let mut coefficients = vec![0.0; self.coefficients[0].len()];
-        let along = if self.symmetric { y.abs() } else { y };
-        let widths = self.axis.interpolation(along).map(|(j, w)| w * self.half_widths[j]);
+        let widths = self.axis.interpolation(self.on_axis(y)).map(|(j, w)| w * self.half_widths[j]);
         let half_width = widths.sum();
         for (j, w) in neighbours {
             for (sum, c) in coefficients.iter_mut().zip(&self.coefficients[j]) {
@@ -99,8 +98,7 @@ impl Pressure {
     /// Between nodes with different half-widths, polynomials through the stresses of the nodes would not follow the
     /// vertical tangent at the contact's edge. Next to a singular end they are what the rest of the field has as its load.
     fn plane(&self, y: f64, of: impl Fn(f64, &[f64]) -> [f64; 3]) -> [f64; 3] {
-        let along = if self.symmetric { y.abs() } else { y };
-        let singular = self.axis.corner_of(self.axis.panel_of(along)).is_some();
+        let singular = self.axis.corner_of(self.axis.panel_of(self.on_axis(y))).is_some();
         if !singular {
             return self.in_contact(y).map_or([0.0; 3], |(a, c)| of(a, &c));
         }
