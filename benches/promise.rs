@@ -9,11 +9,12 @@
 //! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where the tangent
 //! of the pressure is vertical, and the same around a flush end.
 
-use edgeline::base::{BodyKind, PerBody, StressTensor};
+use edgeline::base::{BodyKind, Material, PerBody, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
+use edgeline::case::{Case, Factors, ProfileKind, ProfileSpec};
 use edgeline::solve::{Scene, SceneBody, SolvedScene};
+use edgeline::stress::CurveSpec;
 use edgeline::stress::curves::curves_on;
-use edgeline::stress::{CurveSpec, away_from_edge};
 use std::process::ExitCode;
 
 /// Left out around a singular corner, and around the edge of the contact on the surface (C).
@@ -53,13 +54,64 @@ enum Kind {
     Endless,
     Finite,
     Singular,
+    /// With a profile, a load or a body beside the middle, or all of them: the contact may end before its bodies.
+    Real,
+}
+
+/// The kinds of straight and centred rollers.
+const STRAIGHT: [Kind; 3] = [Kind::Endless, Kind::Finite, Kind::Singular];
+
+/// A number between `low` and `high`, even in its logarithm.
+fn log(u: f64, low: f64, high: f64) -> f64 {
+    low * (high / low).powf(u)
+}
+
+/// The `index`-th real roller: straight, crowned, relieved or logarithmic with a drop of 0.1 to 5 C^2/(2R) at its ends, S_l 3 to 50,
+/// L_r 1 or 0.3 to 3, a load up to a tenth of the line off its middle, every other block offset by up to a tenth.
+fn real_scene(index: usize) -> Scene {
+    let u: [f64; 10] = kronecker(index);
+    let young_pa = 210e9;
+    let roller = Material { young_pa, poisson: 0.45 * u[3] };
+    let block = Material { young_pa: young_pa * log(u[5], 1.0 / 3.0, 3.0), poisson: 0.45 * u[4] };
+    let factors = Factors {
+        load: log(u[2], 1e-5, 3e-3),
+        slenderness: log(u[0], 3.0, 50.0),
+        length_ratio: if u[1] < 0.3 { 1.0 } else { log((u[1] - 0.3) / 0.7, 0.3, 3.0) },
+    };
+    let mut case = Case::from_factors("scene", 0.01, roller, block, factors);
+    let half = 0.5 * case.roller.length_m;
+    let drop = log(u[6], 0.1, 5.0) * case.gap_unit_m();
+    let arc = |curved: f64| Some((curved * curved + drop * drop) / (2.0 * drop));
+    let spec = |kind| ProfileSpec::new(kind);
+    case.roller.profile = match (4.0 * u[7]) as usize {
+        0 => None,
+        1 => Some(ProfileSpec { radius_m: arc(half), ..spec(ProfileKind::Crown) }),
+        2 => Some(ProfileSpec {
+            straight_m: Some(1.4 * half),
+            radius_m: arc(0.3 * half),
+            ..spec(ProfileKind::Relief)
+        }),
+        _ => Some(ProfileSpec {
+            k: Some(0.98),
+            amplitude_m: Some(drop / 0.02f64.ln().abs()),
+            ..spec(ProfileKind::Logarithmic)
+        }),
+    };
+    if u[8] < 0.5 {
+        case.pose.offset_m = 0.1 * (4.0 * u[8] - 1.0) * half;
+    }
+    let [from, to] = case.overlap().map(|y| y * case.hertz().c_m);
+    case.load.eccentricity_m = Some(0.5 * (from + to) + 0.1 * (2.0 * u[9] - 1.0) * (to - from));
+    Scene::new(&case, EdgeModel::QuarterSpace, None)
 }
 
 /// The `index`-th scene of Kronecker's sequence over the box of the promise: S_l 2 to 100, L_r 1 or 0.1 to 0.98,
 /// Poisson's ratios up to 0.45, moduli that differ by up to 3.
 fn scene(kind: Kind, index: usize) -> Scene {
+    if kind == Kind::Real {
+        return real_scene(index);
+    }
     let u: [f64; 5] = kronecker(index);
-    let log = |u: f64, low: f64, high: f64| low * (high / low).powf(u);
     let slenderness = log(u[0], 2.0, 100.0);
     let nu = [0.45 * u[1], 0.45 * u[2]];
     let moduli = log(u[3], 1.0 / 3.0, 3.0);
@@ -117,23 +169,31 @@ struct Places {
 
 impl Places {
     fn new(scene: &Scene) -> Self {
-        let length = scene.half_length;
-        let line = (0..=60).flat_map(|i| {
-            let s = RIM * (length / RIM).powf(f64::from(i) / 60.0);
-            [0.0, 0.4, 0.8].map(|x| [x, length - s])
+        let [first, last] = scene.overlap();
+        let sides =
+            if scene.is_symmetric() { vec![(last, 1.0)] } else { vec![(last, 1.0), (first, -1.0)] };
+        let line = sides.into_iter().flat_map(|(end, outward)| {
+            (0..=60).flat_map(move |i| {
+                let s = RIM * (0.5 * (last - first) / RIM).powf(f64::from(i) / 60.0);
+                [0.0, 0.4, 0.8].map(|x| [x, end - outward * s])
+            })
         });
         let curves = BodyKind::ALL
             .into_iter()
             .flat_map(|kind| curves_on(kind, &scene.span(), scene.bodies[kind].ends()));
         let inside = BodyKind::ALL.into_iter().flat_map(|kind| {
-            let far = scene.bodies[kind].half.min(length + BEYOND);
+            let [low, high] = scene.bodies[kind].ends();
+            let symmetric = scene.is_symmetric();
+            let from = if symmetric { 0.0 } else { low.max(first - BEYOND) };
+            let to = high.min(last + BEYOND);
             let columns = (0..COLUMNS).map(move |i| {
                 let u: [f64; 3] = kronecker(i + COLUMNS * kind as usize);
-                // Every other column is near the end.
-                let y = if i % 2 == 0 { far * u[0] } else { (length + 2.0 * u[0] - 1.0).min(far) };
+                // Every other column is near an end.
+                let end = if symmetric || i % 4 == 1 { last } else { first };
+                let y = if i % 2 == 0 { from + (to - from) * u[0] } else { end + 2.0 * u[0] - 1.0 };
                 let points = (0..DEPTHS).map(|j| {
                     let z = 6.0 * ((j as f64 + u[2]) / DEPTHS as f64).powi(2);
-                    [3.0 * u[1] * u[1], y.max(0.0), z]
+                    [3.0 * u[1] * u[1], y.clamp(from, to), z]
                 });
                 CurveSpec { body: kind, name: "inside", points: points.collect() }
             });
@@ -194,20 +254,29 @@ impl Known {
         }
     }
 
-    /// Whether a point on a body's curve counts.
+    /// Whether a point counts.
     fn counts(&self, [x, y, z]: [f64; 3]) -> bool {
-        let s = self.scene.half_length - y;
-        let singular = self.scene.corner_exponent().is_some();
-        let corner = if singular { CORNER } else { RIM };
-        away_from_edge([x, y, z], self.scene.half_length, corner)
-            && (z >= RIM || s < 0.0 || (x.abs() - self.half_width(y)).abs() >= RIM)
+        let exponents = self.scene.corner_exponents();
+        let away = self.scene.overlap().iter().zip(exponents).all(|(end, exponent)| {
+            let least = if exponent.is_some() { CORNER } else { RIM };
+            (y - end).hypot(z) >= least * (1.0 - 1e-9)
+        });
+        // On the surface the contact's edge, across and along the line.
+        let beside: Vec<f64> =
+            [-RIM, 0.0, RIM].map(|dy| x.abs() - self.half_width(y + dy)).to_vec();
+        let inside = beside.iter().all(|d| *d < -RIM);
+        away && (z >= RIM || inside || beside.iter().all(|d| *d > RIM))
     }
 
-    /// The half-width at the limit's node that is next to `y`.
+    /// The limit's half-width at `y`; zero beyond the contact.
     fn half_width(&self, y: f64) -> f64 {
+        let y = if self.scene.is_symmetric() { y.abs() } else { y };
         let nodes = self.solved.pressure.axis().nodes();
-        let next = nodes.partition_point(|node| *node < y).min(nodes.len() - 1);
-        self.solved.contact.half_widths[next]
+        let [from, to] = self.solved.ends();
+        let next = nodes.partition_point(|node| *node < y).clamp(1, nodes.len() - 1);
+        let share = ((y - nodes[next - 1]) / (nodes[next] - nodes[next - 1])).clamp(0.0, 1.0);
+        let [before, after] = [next - 1, next].map(|j| self.solved.contact.half_widths[j]);
+        if (from..=to).contains(&y) { before + share * (after - before) } else { 0.0 }
     }
 
     /// The largest errors of pressure and stresses, and where the latter is.
@@ -220,9 +289,13 @@ impl Known {
     fn errors_of(&self, found: &Values) -> (f64, f64, String) {
         // The approach has less error than the pressure.
         let mut pressure = APPROACH * (found.approach / self.limit.approach - 1.0).abs();
+        let mut at_pressure = [f64::NAN; 2];
         for ((at, a), b) in self.places.line.iter().zip(&found.pressure).zip(&self.limit.pressure) {
             if self.counts([at[0], at[1], 0.0]) {
-                pressure = pressure.max((a - b).abs());
+                if (a - b).abs() > pressure {
+                    pressure = (a - b).abs();
+                    at_pressure = *at;
+                }
             }
         }
         let (mut stress, mut place) = (0.0, String::new());
@@ -248,7 +321,7 @@ impl Known {
                 }
             }
         }
-        (pressure, stress, place)
+        (pressure, stress, format!("{place} p {at_pressure:.3?}"))
     }
 }
 
@@ -351,12 +424,11 @@ fn search(kind: Kind, tolerance: f64, steps: usize) {
     }
 }
 
-fn hold(count: usize) {
-    let kinds = [Kind::Endless, Kind::Finite, Kind::Singular];
+fn hold(count: usize, kinds: &[Kind]) {
     println!("kind,scene,tolerance,pressure,stress,attempt,seconds,where");
     let mut shares = vec![Vec::new(); TOLERANCES.len()];
     for index in 0..count {
-        let kind = kinds[index % 3];
+        let kind = kinds[index % kinds.len()];
         let Some(known) = Known::new(kind, index) else { continue };
         for (tolerance, shares) in TOLERANCES.iter().zip(&mut shares) {
             let scene = Scene { tolerance: *tolerance, ..known.scene.clone() };
@@ -381,7 +453,7 @@ fn hold(count: usize) {
     }
     for (tolerance, shares) in TOLERANCES.iter().zip(shares) {
         for kind in kinds {
-            let mut own: Vec<f64> = shares.iter().filter(|s| s.0 == kind).map(|s| s.1).collect();
+            let mut own: Vec<f64> = shares.iter().filter(|s| s.0 == *kind).map(|s| s.1).collect();
             own.sort_by(f64::total_cmp);
             let at = |part: f64| own[((own.len() - 1) as f64 * part) as usize];
             println!(
@@ -395,9 +467,64 @@ fn hold(count: usize) {
     }
 }
 
+/// The errors of a scene when one part of its resolution after the other is that of the limit.
+fn causes(kind: Kind, tolerance: f64, index: usize) {
+    let Some(known) = Known::new(kind, index) else { return };
+    let limit = kind.limit();
+    let scene = Scene { tolerance, ..known.scene.clone() };
+    let show = |what: &str, solved: edgeline::base::Result<SolvedScene>| match solved {
+        Ok(solved) => {
+            let (pressure, stress, place) = known.errors(&solved);
+            let [pressure, stress] = [pressure, stress].map(|error| error / tolerance);
+            println!(
+                "{what:12} {pressure:8.3} {stress:8.3} {place} ends {:.4?} of {:.4?}, {} {}",
+                solved.ends(),
+                known.solved.ends(),
+                solved.pressure.axis().len(),
+                solved.contact.spacing
+            );
+            solved.resolution
+        }
+        Err(error) => panic!("{what}: {error}"),
+    };
+    println!("{}", known.name);
+    let own = show("own", SolvedScene::new(&scene));
+    println!("{own:?}");
+    let parts: [(&str, Resolution); 8] = [
+        ("order", Resolution { order: limit.order, ..own }),
+        ("corner", Resolution { corner: limit.corner, corner_ratio: limit.corner_ratio, ..own }),
+        ("ratio", Resolution { ratio: limit.ratio, ..own }),
+        ("modes", Resolution { modes: limit.modes, ..own }),
+        ("spacing", Resolution { spacing: limit.spacing, ..own }),
+        ("k_max", Resolution { k_max: limit.k_max, ..own }),
+        (
+            "k panels",
+            Resolution {
+                k_order: limit.k_order,
+                k_step: limit.k_step,
+                k_ratio: limit.k_ratio,
+                k_min: limit.k_min,
+                ..own
+            },
+        ),
+        (
+            "extents",
+            Resolution {
+                images: limit.images,
+                face_reach: limit.face_reach,
+                reach: limit.reach,
+                ..own
+            },
+        ),
+    ];
+    for (what, resolution) in parts {
+        show(what, SolvedScene::with_resolution(&scene, &resolution));
+    }
+}
+
 /// What the limit itself is worth: its change when every panel is halved and every extent doubled.
 fn limit(count: usize) {
-    for kind in [Kind::Endless, Kind::Finite, Kind::Singular] {
+    for kind in STRAIGHT {
         for index in 0..count {
             let Some(known) = Known::new(kind, index) else { continue };
             let fine = Scene { tolerance: 1e-5, ..known.scene.clone() };
@@ -421,12 +548,25 @@ fn main() -> ExitCode {
         "endless" => Some(Kind::Endless),
         "finite" => Some(Kind::Finite),
         "singular" => Some(Kind::Singular),
+        "real" => Some(Kind::Real),
         _ => None,
     };
     let number = |word: &str| word.parse::<f64>().ok();
     match words.as_slice() {
-        [] => hold(12),
-        ["hold", count] if number(count).is_some() => hold(number(count).unwrap_or(0.0) as usize),
+        ["causes", of, tolerance, index] if kind(of).is_some() => {
+            let numbers = (number(tolerance), index.parse::<usize>().ok());
+            let (Some(of), (Some(tolerance), Some(index))) = (kind(of), numbers) else {
+                return ExitCode::from(2);
+            };
+            causes(of, tolerance, index);
+        }
+        [] => hold(12, &STRAIGHT),
+        ["hold", count] if number(count).is_some() => {
+            hold(number(count).unwrap_or(0.0) as usize, &STRAIGHT);
+        }
+        ["hold", count, "real"] if number(count).is_some() => {
+            hold(number(count).unwrap_or(0.0) as usize, &[Kind::Real]);
+        }
         ["limit", count] if number(count).is_some() => limit(number(count).unwrap_or(0.0) as usize),
         ["search", of, tolerance, steps] if kind(of).is_some() => {
             let numbers = (number(tolerance), number(steps));
@@ -437,7 +577,8 @@ fn main() -> ExitCode {
         }
         _ => {
             eprintln!(
-                "error: give hold SCENES, limit SCENES, or search endless|finite|singular TOLERANCE STEPS"
+                "error: give hold SCENES [real], limit SCENES, causes KIND TOLERANCE SCENE, or search KIND TOLERANCE STEPS; \
+                 the kinds are endless, finite, singular and real"
             );
             return ExitCode::from(2);
         }

@@ -85,6 +85,11 @@ const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 /// Lengths that differ by less than this part of a body's are the same.
 const SAME: f64 = 1e-10;
 
+/// Largest distance between half-widths that follow a gap, in the length within which it turns, and the least one (C):
+/// nearer to each other than the shortest waves are long they would be noise.
+const TURN: f64 = 0.2;
+const NARROWEST: f64 = 0.02;
+
 /// A share this small is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -261,114 +266,7 @@ const SINGULAR: [Resolution; 5] = [
     },
 ];
 
-/// Those of contacts that may end before their bodies do, in place of [`FINITE`] and [`SINGULAR`]: half-widths near the end
-/// say where that is, and loads beside a singular end, which may carry nothing, are plain polynomials.
-const LIFTING_FINITE: [Resolution; 5] = [
-    FINITE[0],
-    FINITE[0],
-    Resolution {
-        order: 3,
-        corner: 0.018,
-        corner_ratio: 2.54,
-        ratio: 2.54,
-        modes: 4,
-        spacing: 0.05,
-        k_max: 25.0,
-        k_order: 3,
-        k_step: 3.2,
-        k_min: 0.05,
-        k_ratio: 5.1,
-        images: 1,
-        face_reach: 12.0,
-        reach: 8.0,
-    },
-    Resolution {
-        order: 5,
-        corner: 0.006,
-        corner_ratio: 2.2,
-        ratio: 2.2,
-        modes: 6,
-        spacing: 0.05,
-        k_max: 110.0,
-        k_order: 4,
-        k_step: 4.0,
-        k_min: 0.01,
-        k_ratio: 2.6,
-        images: 1,
-        face_reach: 16.0,
-        reach: 15.0,
-    },
-    Resolution {
-        order: 7,
-        corner: 0.003,
-        corner_ratio: 1.85,
-        ratio: 1.85,
-        modes: 7,
-        spacing: 0.03,
-        k_max: 240.0,
-        k_order: 5,
-        k_step: 3.0,
-        k_min: 0.005,
-        k_ratio: 2.2,
-        images: 2,
-        face_reach: 18.0,
-        reach: 18.0,
-    },
-];
-const LIFTING_SINGULAR: [Resolution; 5] = [
-    SINGULAR[0],
-    SINGULAR[0],
-    Resolution {
-        order: 4,
-        corner: 0.004,
-        corner_ratio: 7.84,
-        ratio: 2.8,
-        modes: 4,
-        spacing: 0.09,
-        k_max: 30.0,
-        k_order: 4,
-        k_step: 4.0,
-        k_min: 0.05,
-        k_ratio: 4.5,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
-    Resolution {
-        order: 5,
-        corner: 0.0006,
-        corner_ratio: 4.84,
-        ratio: 2.2,
-        modes: 6,
-        spacing: 0.04,
-        k_max: 120.0,
-        k_order: 5,
-        k_step: 5.0,
-        k_min: 0.01,
-        k_ratio: 2.6,
-        images: 1,
-        face_reach: 14.0,
-        reach: 14.0,
-    },
-    Resolution {
-        order: 7,
-        corner: 0.0002,
-        corner_ratio: 3.42,
-        ratio: 1.85,
-        modes: 7,
-        spacing: 0.04,
-        k_max: 240.0,
-        k_order: 6,
-        k_step: 4.0,
-        k_min: 0.005,
-        k_ratio: 2.1,
-        images: 2,
-        face_reach: 18.0,
-        reach: 18.0,
-    },
-];
-
-/// The same where the contact ends before its bodies do: its pressure falls to zero there, and only its length
+/// Those of contacts that end before their bodies do at both ends: the pressure falls to zero there, and only its length
 /// has to be found.
 const TIPS: [Resolution; 5] = [
     FINITE[0],
@@ -518,24 +416,10 @@ impl Resolution {
     /// The resolution of a body with end faces `end`, under a pressure that is singular at the
     /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
     pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
-        Self::by_end(tolerance, end, corner, [&FINITE, &SINGULAR])
-    }
-
-    /// The same for a contact that may end before its bodies do.
-    pub fn of_lifting(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
-        Self::by_end(tolerance, end, corner, [&LIFTING_FINITE, &LIFTING_SINGULAR])
-    }
-
-    fn by_end(
-        tolerance: f64,
-        end: &End,
-        corner: Option<f64>,
-        [finite, singular]: [&[Self; 5]; 2],
-    ) -> Self {
         let levels = match (end.image_weight, corner) {
             (None, _) => &ENDLESS,
-            (Some(_), Some(_)) => singular,
-            (Some(_), None) => finite,
+            (Some(_), Some(_)) => &SINGULAR,
+            (Some(_), None) => &FINITE,
         };
         Self::between(levels, tolerance)
     }
@@ -549,6 +433,12 @@ impl Resolution {
     /// The same of a contact that ends before its bodies do, at both ends.
     pub fn for_tips(tolerance: f64) -> Self {
         Self::between(&TIPS, tolerance)
+    }
+
+    /// The same with half-widths near the contact's ends that follow a gap which turns there within a `length` (C).
+    #[must_use]
+    pub fn following(self, length: f64) -> Self {
+        Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
     }
 
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.

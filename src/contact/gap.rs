@@ -27,11 +27,24 @@ pub struct Shaped {
     pub steepness: f64,
 }
 
+/// Distance (C) over which the change of a gap's slope is looked at.
+const BESIDE: f64 = 0.05;
+
 impl Shaped {
     /// Where the gap's curvature along y jumps, see [`Profile::kinks`].
     pub fn kinks(&self) -> Vec<f64> {
         let of = |(middle, profile): &(f64, Profile)| Some(profile.kinks()?.map(|y| middle + y));
         self.profiles.iter().filter_map(of).flatten().collect()
+    }
+
+    /// The length (C) within which the gap's slope along y grows by e towards the place `y`, from the side on which `inward`
+    /// points; infinite where it does not grow.
+    pub fn turns_within(&self, y: f64, inward: f64) -> f64 {
+        let slope = |y: f64| -> f64 {
+            self.profiles.iter().map(|(middle, profile)| profile.slope(y - middle)).sum::<f64>()
+        };
+        let growth = (slope(y) / slope(y + inward * BESIDE)).ln();
+        if growth > 0.0 { BESIDE / growth } else { f64::INFINITY }
     }
 }
 

@@ -106,7 +106,7 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        Self::with_resolution(scene, &scene.own_resolution())
+        Self::within(scene, None, soundness(scene))
     }
 
     /// Solves a scene at a given resolution.
@@ -115,8 +115,7 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn with_resolution(scene: &Scene, resolution: &Resolution) -> Result<Self> {
-        let soundness = SOUNDNESS * scene.tolerance.max(Resolution::FINEST);
-        Self::within(scene, resolution, soundness)
+        Self::within(scene, Some(resolution), soundness(scene))
     }
 
     /// Solves a scene on the way to another one: it need not be sound.
@@ -124,11 +123,12 @@ impl SolvedScene {
     /// # Errors
     /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`], but for the laws of contact.
     pub(super) fn roughly(scene: &Scene) -> Result<Self> {
-        Self::within(scene, &scene.own_resolution(), f64::INFINITY)
+        Self::within(scene, None, f64::INFINITY)
     }
 
-    /// Solves a scene that may violate the laws of contact by `soundness`.
-    fn within(scene: &Scene, resolution: &Resolution, soundness: f64) -> Result<Self> {
+    /// Solves a scene that may violate the laws of contact by `soundness`, at the resolution for its tolerance
+    /// unless one is given.
+    fn within(scene: &Scene, given: Option<&Resolution>, soundness: f64) -> Result<Self> {
         let start = Instant::now();
         let unit = scene.own_unit();
         let (asked, scene) = (scene, &scene.scaled(1.0 / unit));
@@ -141,11 +141,13 @@ impl SolvedScene {
             // The ends are found at low cost; on the way there no solution has to be sound.
             let coarse = scene.resolution(SEARCH, known.slices.as_ref());
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
-            let search = Trial { scene, resolution: &coarse, accuracy, gap: &gap };
+            let search = Trial { scene, resolution: &coarse, powers: false, accuracy, gap: &gap };
             Settled { line, known, .. } = search.settled(line, known)?;
         }
+        let of_tolerance = || scene.resolution(scene.tolerance, known.slices.as_ref());
+        let resolution = given.copied().unwrap_or_else(of_tolerance);
         let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
-        let trial = Trial { scene, resolution, accuracy, gap: &gap };
+        let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
         let Settled { line, parts, contact, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let open = left_open(scene, &line, &contact);
@@ -160,7 +162,7 @@ impl SolvedScene {
         Ok(Self {
             scene: asked.clone(),
             unit,
-            resolution: *resolution,
+            resolution,
             wavenumbers,
             pressure: pressure.scaled(unit),
             contact: contact.scaled(unit),
@@ -292,14 +294,13 @@ impl Approaches {
     }
 }
 
-impl Scene {
-    /// The resolution for the scene's tolerance.
-    fn own_resolution(&self) -> Resolution {
-        let slices = self.may_end().then(|| self.slices(&self.gap()));
-        self.resolution(self.tolerance, slices.as_ref())
-    }
+/// How far a scene's solution may violate the laws of contact (p0).
+fn soundness(scene: &Scene) -> f64 {
+    SOUNDNESS * scene.tolerance.max(Resolution::FINEST)
+}
 
-    /// The resolution for a tolerance (p0), where `slices` are a first guess of a contact that may end before its
+impl Scene {
+    /// The resolution for a tolerance (p0), where `slices` are what is known of a contact that may end before its
     /// bodies do.
     pub(super) fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
         let overlap = self.overlap();
@@ -311,10 +312,15 @@ impl Scene {
             return Resolution::for_tips(tolerance);
         }
         let (end, corner) = (self.end(BodyKind::Block), self.corner_exponent());
-        match self.may_end() {
-            true => Resolution::of_lifting(tolerance, &end, corner),
-            false => Resolution::of(tolerance, &end, corner),
-        }
+        let level = Resolution::of(tolerance, &end, corner);
+        let Some(slices) = slices else { return level };
+        let gap = self.gap();
+        let turns = [0, 1].map(|side| {
+            let outward = 2.0 * side as f64 - 1.0;
+            let end = slices.ends[side].clamp(overlap[0], overlap[1]);
+            gap.turns_within(end, -outward)
+        });
+        level.following(turns[0].min(turns[1]))
     }
 
     /// What is known of the displacements by long waves, along a line with the middle `centre`, under a load with the
@@ -504,6 +510,9 @@ struct Accuracy {
 struct Trial<'a> {
     scene: &'a Scene,
     resolution: &'a Resolution,
+    /// Whether the pressure has the power of an end that it reaches. Before the contact's ends are known it may carry
+    /// nothing there.
+    powers: bool,
     accuracy: Accuracy,
     gap: &'a Shaped,
 }
@@ -548,8 +557,8 @@ impl Trial<'_> {
         let (scene, resolution) = (self.scene, self.resolution);
         let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let symmetric = scene.is_symmetric();
-        // A contact that may end before its bodies do may have no pressure at all at their ends.
-        let exponents = if scene.may_end() { [None; 2] } else { scene.corner_exponents() };
+        let known = scene.corner_exponents();
+        let exponents = [0, 1].map(|side| known[side].filter(|_| self.powers && !line.open[side]));
         let (axis, parity) =
             resolution.contact_line(line.ends, exponents, &self.gap.kinks(), symmetric);
         let wavenumbers = resolution.wavenumbers(longest, parity);

@@ -15,6 +15,8 @@ pub struct Pressure {
     symmetric: bool,
     half_widths: Vec<f64>,
     coefficients: Vec<Vec<f64>>,
+    /// The wavenumber at each node from which its transform is faded out, see [`fading`].
+    fading: Vec<f64>,
 }
 
 /// The load per length at a place.
@@ -30,6 +32,43 @@ pub struct LineLoad {
     pub half_width: f64,
 }
 
+/// Change of the phase of the pressure's transform over half a panel, per node, that a polynomial through the nodes
+/// still follows; and the least wavenumber that is faded out, in lengths of the panel.
+const PHASE: f64 = 0.3;
+const SHORTEST: f64 = 20.0;
+
+/// A change of the half-width (C) over a panel that has no effect.
+const LEVEL: f64 = 1e-9;
+
+/// The wavenumber at each node from which the pressure's transform is faded out.
+///
+/// Towards the contact's edge the transform turns by the phase k a(y). Where the half-width changes over a panel, the
+/// polynomial through the nodes cannot follow it for short waves, and would make loads that vary along the line
+/// from node to node. The field of such waves is the endless contact's, which is known without them. Between
+/// the middles of panels the wavenumber is interpolated.
+fn fading(axis: &Panels, half_widths: &[f64]) -> Vec<f64> {
+    let order = axis.order();
+    let panels: Vec<f64> = (0..axis.panel_count())
+        .map(|i| {
+            let own = &half_widths[i * order..(i + 1) * order];
+            let [low, high] = own
+                .iter()
+                .fold([f64::INFINITY, 0.0], |[low, high]: [f64; 2], a| [low.min(*a), high.max(*a)]);
+            let [a, b] = axis.panel(i);
+            (2.0 * PHASE * order as f64 / (high - low).max(LEVEL)).max(SHORTEST / (b - a)).ln()
+        })
+        .collect();
+    let last = panels.len() - 1;
+    let at = |j: usize| {
+        let i = j / order;
+        let [a, b] = axis.panel(i);
+        let [from, to] = [i.saturating_sub(1), (i + 1).min(last)]
+            .map(|beside| if beside == i { panels[i] } else { 0.5 * (panels[i] + panels[beside]) });
+        (from + (to - from) * (axis.nodes()[j] - a) / (b - a)).exp()
+    };
+    (0..axis.len()).map(at).collect()
+}
+
 impl Pressure {
     /// The pressure from the half-widths and the coefficients of the modes at the nodes of `axis`;
     /// missing modes of a node are zero. The axis of a `symmetric` pressure holds its half at y >= 0.
@@ -41,7 +80,8 @@ impl Pressure {
     ) -> Self {
         let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
-        Self { axis, symmetric, half_widths, coefficients }
+        let fading = fading(&axis, &half_widths);
+        Self { axis, symmetric, half_widths, coefficients, fading }
     }
 
     /// The same pressure in units of length and of pressure that are 1 / `factor` of the present ones.
@@ -53,6 +93,7 @@ impl Pressure {
             symmetric: self.symmetric,
             half_widths: scale(&self.half_widths),
             coefficients: self.coefficients.iter().map(scale).collect(),
+            fading: self.fading.iter().map(|k| k / factor).collect(),
         }
     }
 
@@ -149,7 +190,8 @@ impl Load for Pressure {
         let mut modes = vec![0.0; self.coefficients[0].len()];
         DMatrix::from_fn(self.axis.len(), k.len(), |j, i| {
             strip::transforms(self.half_widths[j], k[i], &mut modes);
-            modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum()
+            let sum: f64 = modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum();
+            sum / (1.0 + (k[i] / self.fading[j]).powi(4))
         })
     }
 
