@@ -11,6 +11,10 @@ use std::path::Path;
 /// Distance (C) from where the contact ends by itself within which meshes differ among themselves.
 const TIP: f64 = 0.7;
 
+/// Distance (C) on the surface from the contact's edge, where the pressure has a vertical tangent and an element is partly
+/// in contact.
+const RIM: f64 = 0.03;
+
 /// Largest of some differences (p0), and where it is.
 #[derive(Debug, Default)]
 struct Worst {
@@ -33,7 +37,7 @@ fn rms(differences: &[f64]) -> f64 {
 }
 
 /// What quarter-space is off by, outside 0.1 C of the overlap's ends: the pressure on a line and the components on a
-/// curve of the block and of the roller, RMS; and the largest difference of a stress.
+/// curve of the block and of the roller, RMS; and the largest difference of a stress. Also left out is [`RIM`].
 fn compared(case: &Case) -> ([Worst; 3], Worst) {
     let name = &case.name;
     let recorded = FemResults::embedded_of(case).unwrap().expect(name);
@@ -46,8 +50,17 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
     let tips = solution.summary.contact_y_m.map(|y| y / c_m);
     let tips: Vec<f64> =
         (0..2).filter(|i| (tips[*i] - overlap[*i]).abs() > 0.01).map(|i| tips[i]).collect();
+    let lines = &solution.line_loads;
+    let on_edge = |[x, y, z]: [f64; 3]| {
+        let next = lines.partition_point(|line| line.y < y).clamp(1, lines.len() - 1);
+        let [from, to] = [&lines[next - 1], &lines[next]];
+        let share = (y - from.y) / (to.y - from.y);
+        let half_width = from.half_width + share * (to.half_width - from.half_width);
+        z == 0.0 && (x.abs() - half_width).abs() < RIM
+    };
     let counts = |at: [f64; 3]| {
-        away_from_edges(at, overlap, EDGE) && tips.iter().all(|tip| (at[1] - tip).abs() > TIP)
+        let beside_tip = tips.iter().any(|tip| (at[1] - tip).abs() <= TIP);
+        away_from_edges(at, overlap, EDGE) && !beside_tip && !on_edge(at)
     };
     let (mut found, mut largest): ([Worst; 3], Worst) = Default::default();
     let wanted = &recorded.finest().curves;
@@ -95,19 +108,19 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
     assert!(largest.value <= most, "{name}: {largest:?} > {most}");
 }
 
-/// Profiles, eccentric loads, offsets and long rollers. Where the limits are wider than a hundredth, it is the meshes that
-/// differ by as much among themselves (`docs/fem.md`).
+/// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric` drops most within 0.1 C of the
+/// end, where its meshes differ by 0.03 p0; in `designed-roller` it is what the curved gap adds (`docs/fem.md`).
 #[test]
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
-        ("crown-to-the-ends", [0.005, 0.005, 0.008], 0.03),
-        ("crown-inside", [0.005, 0.009, 0.009], 0.04),
-        ("longer-roller", [0.005, 0.005, 0.008], 0.02),
-        ("logarithmic-steel-aluminium", [0.005, 0.005, 0.008], 0.02),
-        ("eccentric-flush", [0.005, 0.008, 0.008], 0.03),
-        ("eccentric-half", [0.005, 0.012, 0.012], 0.06),
-        ("offset-flush-end", [0.005, 0.013, 0.013], 0.07),
-        ("logarithmic-eccentric", [0.009, 0.012, 0.012], 0.06),
+        ("crown-to-the-ends", [0.003, 0.003, 0.004], 0.01),
+        ("crown-inside", [0.003, 0.005, 0.006], 0.015),
+        ("longer-roller", [0.003, 0.004, 0.008], 0.02),
+        ("logarithmic-steel-aluminium", [0.003, 0.003, 0.004], 0.012),
+        ("eccentric-flush", [0.003, 0.004, 0.008], 0.02),
+        ("eccentric-half", [0.003, 0.003, 0.008], 0.02),
+        ("offset-flush-end", [0.003, 0.004, 0.004], 0.015),
+        ("logarithmic-eccentric", [0.005, 0.008, 0.008], 0.035),
         ("designed-roller", [0.005, 0.011, 0.008], 0.025),
     ] {
         within(&Case::find(Path::new(name)).unwrap(), limits, most);
@@ -118,6 +131,6 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
-        within(case, [0.012, 0.013, 0.013], 0.07);
+        within(case, [0.005, 0.01, 0.013], 0.04);
     }
 }
