@@ -26,14 +26,16 @@ const WORST_CONDITION: f64 = 1e7;
 /// Tolerance of the contact's iteration, in tolerances of the scene.
 const CONTACT_TOLERANCE: f64 = 1e-2;
 
-/// Tolerance (p0) at which the ends of a contact are sought that ends before its bodies do.
-const SEARCH: f64 = 1e-2;
+/// Tolerance (p0) at which the ends of a contact are sought that may end before its bodies do.
+const SEARCH: f64 = 3e-2;
 
 /// Most contacts that are solved until the ends are found, or the tilt that is held.
 const MOST_TRIALS: usize = 10;
 
-/// How closely an end is found, in half-lengths of the contact.
+/// How closely an end is found at a coarse tolerance, in half-lengths of the contact; and at the finest one, in that. The
+/// pressure is steep beside an end.
 const END_ERROR: f64 = 2e-3;
+const CLOSEST: f64 = 0.1;
 
 /// How far beyond a first guess the axis reaches, in half-lengths of the contact.
 const MARGIN: f64 = 0.15;
@@ -528,7 +530,7 @@ impl Trial<'_> {
             setup += start.elapsed().as_secs_f64();
             let contact = self.contact(&parts, &line, &mut known)?;
             let found = self.found(&line, &contact);
-            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= END_ERROR * line.half();
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= self.end_error() * line.half();
             let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
             if same || trial == MOST_TRIALS {
                 return Ok(Settled { line, parts, contact, known, setup });
@@ -536,6 +538,11 @@ impl Trial<'_> {
             line = found;
         }
         unreachable!("the trials end")
+    }
+
+    /// How closely an end is found, in half-lengths of the contact.
+    fn end_error(&self) -> f64 {
+        END_ERROR * (self.accuracy.tolerance / Resolution::COARSE).clamp(CLOSEST, 1.0)
     }
 
     /// The line that ends where the contact was found to end.
