@@ -1,7 +1,9 @@
 //! Whether the tolerance keeps its promise, and at what price: the largest error of the pressure and of every
 //! stress on the standard curves, against a resolution far finer, in tolerances.
 //!
-//! `cargo bench --bench promise -- hold [SCENES]` measures scenes that no search has seen, at every decade;
+//! `cargo bench --bench promise -- hold SCENES` measures scenes that no search has seen, at every decade, and
+//! `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes KIND TOLERANCE SCENE` tells the errors
+//! of one scene when one part of its resolution after the other is the limit's;
 //! `-- search KIND TOLERANCE [STEPS]` looks for the cheapest resolution (KIND: endless, finite, singular) that
 //! keeps the promise on scenes of its own, by small random steps from the present one. The table in
 //! `src/body/axes.rs` is made from what it prints.
@@ -279,7 +281,7 @@ impl Known {
         if (from..=to).contains(&y) { before + share * (after - before) } else { 0.0 }
     }
 
-    /// The largest errors of pressure and stresses, and where the latter is.
+    /// The largest errors of pressure and stresses, and where they are.
     fn errors(&self, solved: &SolvedScene) -> (f64, f64, String) {
         let stress = stresses(solved, &self.places.curves);
         self.errors_of(&values(solved, &self.places, stress))
@@ -291,11 +293,10 @@ impl Known {
         let mut pressure = APPROACH * (found.approach / self.limit.approach - 1.0).abs();
         let mut at_pressure = [f64::NAN; 2];
         for ((at, a), b) in self.places.line.iter().zip(&found.pressure).zip(&self.limit.pressure) {
-            if self.counts([at[0], at[1], 0.0]) {
-                if (a - b).abs() > pressure {
-                    pressure = (a - b).abs();
-                    at_pressure = *at;
-                }
+            let off: f64 = (a - b).abs();
+            if off > pressure && self.counts([at[0], at[1], 0.0]) {
+                pressure = off;
+                at_pressure = *at;
             }
         }
         let (mut stress, mut place) = (0.0, String::new());
@@ -321,7 +322,7 @@ impl Known {
                 }
             }
         }
-        (pressure, stress, format!("{place} p {at_pressure:.3?}"))
+        (pressure, stress, format!("{place}; pressure at {at_pressure:.3?}"))
     }
 }
 
