@@ -55,3 +55,27 @@ impl Gap for Shaped {
         x * x + self.steepness * drops.sum::<f64>()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// ln(1 / (1 - k t^2)) has the slope 2 k t / (1 - k t^2): near t = 1 it grows by e within (1 - k) / (2 k).
+    #[test]
+    fn a_gap_turns_within_the_length_of_its_profiles_end() {
+        let profile = |k| Profile::Logarithm { amplitude: 1.0, k, start: 0.0, span: 50.0 };
+        let gap = |profiles| Shaped { profiles, steepness: 1.0 };
+        for k in [0.9, 0.96, 0.99] {
+            let shaped = gap(vec![(3.0, profile(k))]);
+            let length = 50.0 * (1.0 - k) / (2.0 * k);
+            for (end, inward) in [(53.0, -1.0), (-47.0, 1.0)] {
+                let found = shaped.turns_within(end, inward);
+                assert!((found / length - 1.0).abs() < 0.15, "{k}: {found}, not {length}");
+            }
+        }
+        // A crown turns within its length, and a straight gap nowhere.
+        let crown = gap(vec![(0.0, Profile::Arc { straight: 0.0, radius: 1e4 })]);
+        assert!((crown.turns_within(20.0, -1.0) / 20.0 - 1.0).abs() < 0.01);
+        assert_eq!(gap(vec![]).turns_within(5.0, -1.0), f64::INFINITY);
+    }
+}

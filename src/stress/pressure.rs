@@ -44,8 +44,8 @@ const LEVEL: f64 = 1e-9;
 ///
 /// Towards the contact's edge the transform turns by the phase k a(y). Where the half-width changes over a panel, the
 /// polynomial through the nodes cannot follow it for short waves, and would make loads that vary along the line
-/// from node to node. The field of such waves is the endless contact's, which is known without them. Between
-/// the middles of panels the wavenumber is interpolated.
+/// from node to node. The field of such waves is the endless contact's, which is known without them. At a panel's ends the
+/// wavenumber is the geometric mean of both panels'.
 fn fading(axis: &Panels, half_widths: &[f64]) -> Vec<f64> {
     let order = axis.order();
     let panels: Vec<f64> = (0..axis.panel_count())
