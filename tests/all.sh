@@ -76,6 +76,13 @@ fi
 step "format"
 cargo fmt --all --check
 
+# The finite-element side needs one core and nothing that is built: its tests run beside the builds.
+mkdir -p target
+fem_log=target/fem-tests.log
+/usr/bin/python3 -m pytest -q -p no:cacheprovider fem >"$fem_log" 2>&1 &
+fem_tests=$!
+trap 'kill "$fem_tests" 2>/dev/null || true' EXIT
+
 step "lints"
 cargo clippy --profile fast --workspace --all-targets --quiet -- -D warnings
 
@@ -119,8 +126,11 @@ target/fast/edgeline gate --out target/gate
 step "a changed sign of a kernel, which the gates should notice"
 bash tests/mutate.sh gates
 
-step "tests of the finite-element side"
-/usr/bin/python3 -m pytest -q -p no:cacheprovider fem
+step "tests of the finite-element side, begun beside the builds"
+status=0
+wait "$fem_tests" || status=$?
+cat "$fem_log"
+((status == 0)) || exit "$status"
 
 step "tests, those with live finite elements included"
 cargo test --profile fast -- --include-ignored

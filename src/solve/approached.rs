@@ -5,14 +5,16 @@ use super::scene::Scene;
 use super::solved_scene::{Approaches, SolvedScene};
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Result};
+use crate::body::Resolution;
 use crate::case::Case;
 
 /// Line contacts approach by about this power of the force (Palmgren's 10/9 for the inverse): along it the
 /// search is almost a straight line.
 const POWER: f64 = 0.9;
 
-/// Tolerance (p0) of the solutions at the search's beginning.
-const SEARCH: f64 = 1e-2;
+/// Tolerance (p0) of the solutions at the search's beginning, where the case's is at most [`Resolution::COARSE`]. Otherwise
+/// it would cost more than it saves.
+const SEARCH: f64 = 3e-2;
 
 /// Relative errors of the approach at which the search at low accuracy ends, and the search itself.
 const CLOSE: f64 = 1e-3;
@@ -55,7 +57,7 @@ pub(super) fn with_force(case: &Case, options: &Options) -> Result<(Case, Solved
     };
     let mut search = Search::new(case, options, wanted_m);
     let tolerance = case.accuracy.tolerance;
-    if tolerance < SEARCH {
+    if tolerance <= Resolution::COARSE {
         search.run(SEARCH, CLOSE)?;
     }
     let (loaded, mut scene) = search.run(tolerance, MET)?;

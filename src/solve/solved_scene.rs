@@ -32,8 +32,8 @@ const SEARCH: f64 = 3e-2;
 /// Most contacts that are solved until the ends are found, or the tilt that is held.
 const MOST_TRIALS: usize = 10;
 
-/// How closely an end is found at a coarse tolerance, in half-lengths of the contact; and at the finest one, in that. The
-/// pressure is steep beside an end.
+/// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser tolerances. Below,
+/// it falls with the tolerance, as the pressure is steep beside an end, to the part `CLOSEST` of this.
 const END_ERROR: f64 = 2e-3;
 const CLOSEST: f64 = 0.1;
 

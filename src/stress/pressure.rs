@@ -15,8 +15,6 @@ pub struct Pressure {
     symmetric: bool,
     half_widths: Vec<f64>,
     coefficients: Vec<Vec<f64>>,
-    /// The wavenumber at each node from which its transform is faded out, see [`fading`].
-    fading: Vec<f64>,
 }
 
 /// The load per length at a place.
@@ -80,8 +78,7 @@ impl Pressure {
     ) -> Self {
         let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
-        let fading = fading(&axis, &half_widths);
-        Self { axis, symmetric, half_widths, coefficients, fading }
+        Self { axis, symmetric, half_widths, coefficients }
     }
 
     /// The same pressure in units of length and of pressure that are 1 / `factor` of the present ones.
@@ -93,7 +90,6 @@ impl Pressure {
             symmetric: self.symmetric,
             half_widths: scale(&self.half_widths),
             coefficients: self.coefficients.iter().map(scale).collect(),
-            fading: self.fading.iter().map(|k| k / factor).collect(),
         }
     }
 
@@ -187,11 +183,12 @@ impl Load for Pressure {
     }
 
     fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
+        let fading = fading(&self.axis, &self.half_widths);
         let mut modes = vec![0.0; self.coefficients[0].len()];
         DMatrix::from_fn(self.axis.len(), k.len(), |j, i| {
             strip::transforms(self.half_widths[j], k[i], &mut modes);
             let sum: f64 = modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum();
-            sum / (1.0 + (k[i] / self.fading[j]).powi(4))
+            sum / (1.0 + (k[i] / fading[j]).powi(4))
         })
     }
 
