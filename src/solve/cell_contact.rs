@@ -200,7 +200,8 @@ impl<'a> DeepTilt<'a> {
             let rows = fields[kind].down(&[0.0], scene.off_middle(y), zs);
             rows.iter().map(|row| row[0].pressure).collect()
         };
-        let ends = contact_ends(&line_loads(pressure, scene.middle));
-        tilt::tilt(scene, &below, ends, self.depth)
+        let loads = line_loads(pressure, scene.middle);
+        let moment = loads.iter().map(|l| l.weight * l.load * l.y).sum();
+        tilt::tilt(scene, &below, (contact_ends(&loads), moment), self.depth)
     }
 }

@@ -46,8 +46,10 @@ const WIDER: f64 = 1.4;
 /// Tolerance of a contact whose tilt is sought, in those of others.
 const FOLLOWS: f64 = 0.1;
 
-/// Most tilts between the surfaces that are tried for one that is held at a depth.
+/// Most tilts between the surfaces that are tried for one that is held at a depth, and those after which the contact's own
+/// error is allowed: two solutions, as far apart as that, may follow each other from the same tilt.
 const MOST_TILTS: usize = 20;
+const PATIENCE: usize = 10;
 
 /// Run time of each stage (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -269,8 +271,9 @@ impl SolvedScene {
         let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
         let [block, roller] = &fields;
         let own = &self.own;
-        let ends = closed(&own.pressure, &own.contact);
-        tilt::of_fields(&own.scene, [block, roller], ends, depth / self.unit) * self.unit
+        let touch =
+            (closed(&own.pressure, &own.contact), moment(own.pressure.axis(), &own.contact));
+        tilt::of_fields(&own.scene, [block, roller], touch, depth / self.unit) * self.unit
     }
 }
 
@@ -625,7 +628,7 @@ impl Trial<'_> {
         // A pressure within the tolerance does not follow a change of the tilt below it.
         let settings = ContactSettings { tolerance: FOLLOWS * settings.tolerance, ..settings };
         let rough = ContactSettings { soundness: f64::INFINITY, ..settings };
-        for _ in 0..MOST_TILTS {
+        for trial in 0..MOST_TILTS {
             let Spring { tilt, compliance } =
                 known.spring.unwrap_or(Spring { tilt: wanted, compliance: 0.0 });
             let rotation = Rotation::Sprung { tilt, compliance };
@@ -634,7 +637,7 @@ impl Trial<'_> {
             off = (deep - wanted) * scene.half_length;
             // Solutions from different guesses differ by less than their error, and so do their tilts.
             let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
-            let narrow = secants.width() * scene.half_length <= error;
+            let narrow = secants.width() * scene.half_length <= error || trial >= PATIENCE;
             if off.abs() <= error || narrow && off.abs() <= self.accuracy.tolerance {
                 known.spring = Some(Spring { tilt, compliance });
                 return solved(rotation, known, &settings);
@@ -668,7 +671,8 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        tilt::of_fields(scene, [&block, &roller], closed(&pressure, contact), scene.depth)
+        let touch = (closed(&pressure, contact), moment(&parts.axis, contact));
+        tilt::of_fields(scene, [&block, &roller], touch, scene.depth)
     }
 }
 

@@ -2,20 +2,27 @@
 
 use super::scene::Scene;
 use crate::base::{BodyKind, Panels, StressTensor};
+use crate::body::{EdgeModel, Shape};
 use crate::contact::Gap;
 use crate::stress::Field;
+use std::f64::consts::PI;
 
 /// Stresses of a body below (0, y), at each of some depths.
 pub(super) type Below<'a> = dyn Fn(BodyKind, f64, &[f64]) -> Vec<StressTensor> + 'a;
 
 /// [`tilt`] from the fields of the block and of the roller.
-pub(super) fn of_fields(scene: &Scene, fields: [&Field; 2], ends: [f64; 2], depth: f64) -> f64 {
+pub(super) fn of_fields(
+    scene: &Scene,
+    fields: [&Field; 2],
+    (ends, moment): ([f64; 2], f64),
+    depth: f64,
+) -> f64 {
     let below = |kind: BodyKind, y: f64, zs: &[f64]| {
         let [block, roller] = fields;
         let field = if kind == BodyKind::Block { block } else { roller };
         field.down(&[0.0], y, zs).iter().map(|row| row[0].pressure).collect()
     };
-    tilt(scene, &below, ends, depth)
+    tilt(scene, &below, (ends, moment), depth)
 }
 
 /// Places along the contact.
@@ -25,27 +32,35 @@ const PLACES: usize = 6;
 const FIRST: f64 = 0.25;
 const ORDER: usize = 4;
 
+/// Depth, in half-lengths of a body with free ends, from which on it bends as a plate. Stresses farther down are those of
+/// waves so long that the equations of the faces are close to singular.
+const AS_PLATE: f64 = 8.0;
+
 /// The tilt of the lines x = 0 at `depth` below both surfaces, in units of C / (2 R), by least squares over
 /// the contact from `ends` to end, from the stresses `below` the line.
 ///
 /// Where the bodies touch they have closed the gap. What the line approaches beyond that is the
 /// shortening of both bodies above it, the integral of the strain (sigma_zz - nu (sigma_xx +
-/// sigma_yy)) / E. No reference far away is needed, on which the tilt would depend.
-pub(super) fn tilt(scene: &Scene, below: &Below, ends: [f64; 2], depth: f64) -> f64 {
+/// sigma_yy)) / E. No reference far away is needed, on which the tilt would depend. Deep below, a body between two free faces
+/// is Kirchhoff's plate, loaded on its edge by the `moment` (about y = 0) less that of its own middle: between two depths its
+/// lines tilt by the logarithm of their ratio ([`Shape::turned`] over the wavenumbers across the contact).
+pub(super) fn tilt(
+    scene: &Scene,
+    below: &Below,
+    (ends, moment): ([f64; 2], f64),
+    depth: f64,
+) -> f64 {
     let gap = scene.gap();
     let along = Panels::new(ends.to_vec(), PLACES);
-    let mut breaks = vec![0.0];
-    let mut next = FIRST;
-    while 1.5 * next < depth {
-        breaks.push(next);
-        next *= 2.0;
-    }
-    breaks.push(depth);
-    let down = Panels::new(breaks, ORDER);
+    let reach = |kind: BodyKind| match scene.model {
+        EdgeModel::QuarterSpace => depth.min(AS_PLATE * scene.bodies[kind].half),
+        _ => depth,
+    };
+    let columns = BodyKind::ALL.map(|kind| (kind, column(reach(kind))));
     let closed = |y: f64| -> f64 {
-        let shortened = BodyKind::ALL.into_iter().map(|kind| {
-            let body = &scene.bodies[kind];
-            let column = below(kind, y, down.nodes());
+        let shortened = columns.iter().map(|(kind, down)| {
+            let body = &scene.bodies[*kind];
+            let column = below(*kind, y, down.nodes());
             let strains = column.iter().zip(down.weights());
             let strains = strains.map(|(s, weight)| weight * (body.nu * (s.xx + s.yy) - s.zz));
             // 1 / E in units of 1 / E*.
@@ -59,5 +74,23 @@ pub(super) fn tilt(scene: &Scene, below: &Below, ends: [f64; 2], depth: f64) -> 
         let all = along.nodes().iter().zip(along.weights()).zip(&values);
         all.map(|((y, w), value)| w * of(y - middle, *value)).sum()
     };
-    sum(&|u, value| u * value) / sum(&|u, _| u * u)
+    let bent = BodyKind::ALL.map(|kind| {
+        let body = &scene.bodies[kind];
+        let turned = Shape { half: body.half, nu: body.nu }.turned() / (PI * PI);
+        let own = moment - body.middle * scene.load;
+        body.share * turned * own * (depth / reach(kind)).ln()
+    });
+    sum(&|u, value| u * value) / sum(&|u, _| u * u) + bent.iter().sum::<f64>()
+}
+
+/// The rule of a column of a body down to a depth.
+fn column(depth: f64) -> Panels {
+    let mut breaks = vec![0.0];
+    let mut next = FIRST;
+    while 1.5 * next < depth {
+        breaks.push(next);
+        next *= 2.0;
+    }
+    breaks.push(depth);
+    Panels::new(breaks, ORDER)
 }
