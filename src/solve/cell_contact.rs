@@ -3,7 +3,7 @@
 use super::cells::{contact_ends, line_loads};
 use super::on_cells::Placed;
 use super::scene::{Scene, SceneBody, Tilt};
-use super::tilt;
+use super::tilt::{self, Touch};
 use crate::base::{BodyKind, Error, Panels, Parity, PerBody, Result, Wavenumbers};
 use crate::body::{Shape, Stack};
 use crate::case::Case;
@@ -202,6 +202,7 @@ impl<'a> DeepTilt<'a> {
         };
         let loads = line_loads(pressure, scene.middle);
         let moment = loads.iter().map(|l| l.weight * l.load * l.y).sum();
-        tilt::tilt(scene, &below, (contact_ends(&loads), moment), self.depth)
+        let touch = Touch { ends: contact_ends(&loads), moment };
+        tilt::tilt(scene, &below, &touch, self.depth)
     }
 }

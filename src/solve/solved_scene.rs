@@ -2,7 +2,7 @@
 
 use super::lines::{self, Stresses};
 use super::scene::{Scene, SceneBody, Tilt};
-use super::tilt;
+use super::tilt::{self, Touch};
 use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
 use crate::body::{EdgeModel, Resolution, Shape, Stack};
@@ -271,9 +271,8 @@ impl SolvedScene {
         let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
         let [block, roller] = &fields;
         let own = &self.own;
-        let touch =
-            (closed(&own.pressure, &own.contact), moment(own.pressure.axis(), &own.contact));
-        tilt::of_fields(&own.scene, [block, roller], touch, depth / self.unit) * self.unit
+        let touch = touch(&own.pressure, &own.contact);
+        tilt::of_fields(&own.scene, [block, roller], &touch, depth / self.unit) * self.unit
     }
 }
 
@@ -457,11 +456,12 @@ impl Secants {
 /// Most of a step of [`Secants`] in steps before it.
 const LONGEST_STEP: f64 = 8.0;
 
-/// Where the bodies touch on the axis of a pressure: the gap is closed there.
-fn closed(pressure: &Pressure, contact: &ContactSolution) -> [f64; 2] {
+/// Where the bodies touch on the axis of a pressure, and the moment with which they do.
+fn touch(pressure: &Pressure, contact: &ContactSolution) -> Touch {
     let [from, to] = pressure.ends();
     let [first, last] = contact.ends.map(|end| end.clamp(from, to));
-    if first < last { [first, last] } else { [from, to] }
+    let ends = if first < last { [first, last] } else { [from, to] };
+    Touch { ends, moment: moment(pressure.axis(), contact) }
 }
 
 /// The moment about y = 0 of a contact's pressure.
@@ -637,8 +637,8 @@ impl Trial<'_> {
             off = (deep - wanted) * scene.half_length;
             // Solutions from different guesses differ by less than their error, and so do their tilts.
             let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
-            let narrow = secants.width() * scene.half_length <= error || trial >= PATIENCE;
-            if off.abs() <= error || narrow && off.abs() <= self.accuracy.tolerance {
+            let exhausted = secants.width() * scene.half_length <= error || trial >= PATIENCE;
+            if off.abs() <= error || exhausted && off.abs() <= self.accuracy.tolerance {
                 known.spring = Some(Spring { tilt, compliance });
                 return solved(rotation, known, &settings);
             }
@@ -671,8 +671,7 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        let touch = (closed(&pressure, contact), moment(&parts.axis, contact));
-        tilt::of_fields(scene, [&block, &roller], touch, scene.depth)
+        tilt::of_fields(scene, [&block, &roller], &touch(&pressure, contact), scene.depth)
     }
 }
 

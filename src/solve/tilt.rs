@@ -10,19 +10,22 @@ use std::f64::consts::PI;
 /// Stresses of a body below (0, y), at each of some depths.
 pub(super) type Below<'a> = dyn Fn(BodyKind, f64, &[f64]) -> Vec<StressTensor> + 'a;
 
+/// What a tilt needs to know of the contact.
+pub(super) struct Touch {
+    /// Ends along y (C) of the line on which the gap is closed.
+    pub ends: [f64; 2],
+    /// The load's moment about y = 0 (C^3 p0).
+    pub moment: f64,
+}
+
 /// [`tilt`] from the fields of the block and of the roller.
-pub(super) fn of_fields(
-    scene: &Scene,
-    fields: [&Field; 2],
-    (ends, moment): ([f64; 2], f64),
-    depth: f64,
-) -> f64 {
+pub(super) fn of_fields(scene: &Scene, fields: [&Field; 2], touch: &Touch, depth: f64) -> f64 {
     let below = |kind: BodyKind, y: f64, zs: &[f64]| {
         let [block, roller] = fields;
         let field = if kind == BodyKind::Block { block } else { roller };
         field.down(&[0.0], y, zs).iter().map(|row| row[0].pressure).collect()
     };
-    tilt(scene, &below, (ends, moment), depth)
+    tilt(scene, &below, touch, depth)
 }
 
 /// Places along the contact.
@@ -37,19 +40,15 @@ const ORDER: usize = 4;
 const AS_PLATE: f64 = 8.0;
 
 /// The tilt of the lines x = 0 at `depth` below both surfaces, in units of C / (2 R), by least squares over
-/// the contact from `ends` to end, from the stresses `below` the line.
+/// the line where they touch, from the stresses `below` it.
 ///
 /// Where the bodies touch they have closed the gap. What the line approaches beyond that is the
 /// shortening of both bodies above it, the integral of the strain (sigma_zz - nu (sigma_xx +
 /// sigma_yy)) / E. No reference far away is needed, on which the tilt would depend. Deep below, a body between two free faces
-/// is Kirchhoff's plate, loaded on its edge by the `moment` (about y = 0) less that of its own middle: between two depths its
+/// is Kirchhoff's plate, loaded on its edge by the moment about its own middle: between two depths its
 /// lines tilt by the logarithm of their ratio ([`Shape::turned`] over the wavenumbers across the contact).
-pub(super) fn tilt(
-    scene: &Scene,
-    below: &Below,
-    (ends, moment): ([f64; 2], f64),
-    depth: f64,
-) -> f64 {
+pub(super) fn tilt(scene: &Scene, below: &Below, touch: &Touch, depth: f64) -> f64 {
+    let Touch { ends, moment } = *touch;
     let gap = scene.gap();
     let along = Panels::new(ends.to_vec(), PLACES);
     let reach = |kind: BodyKind| match scene.model {
