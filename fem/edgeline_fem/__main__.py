@@ -36,8 +36,17 @@ def _deck(arguments):
          f"{3 * sum(len(body.points) for body in bodies.values())} unknowns")
 
 
+def _points(arguments):
+    from .points import write_points
+
+    path, count = write_points(read_request(arguments.request), arguments.folder, arguments.job)
+    _log(f"wrote {path}: {count} points")
+
+
 def _solve(arguments):
     request = read_request(arguments.request)
+    if request.large_displacements:
+        raise FemError(f"{arguments.request}: large displacements are for the deck alone: run its model.inp, then `points`")
     summary = _by_calculix(request, arguments) if request.engine == "calculix" else _by_fenicsx(request, arguments)
     if summary is not None:
         _log(f"done: {summary['unknowns']} unknowns, {summary['seconds']['total']:.1f} s, "
@@ -118,6 +127,11 @@ def main():
         command.add_argument("request", help="JSON file that describes the calculation")
         command.add_argument("folder", help="folder of the meshes and results")
         command.set_defaults(run=run)
+    command = commands.add_parser("points", help="write a CalculiX run's stresses at integration points as curves")
+    command.add_argument("request", help="request.json of the deck")
+    command.add_argument("folder", help="folder of the deck, where CalculiX has run")
+    command.add_argument("--job", default="model", help="the run, without .inp (default: model)")
+    command.set_defaults(run=_points)
     command = commands.add_parser("record", help="add meshes of cases to the recorded reference curves")
     command.add_argument("folder", type=Path, help="folder with cases.toml, one subfolder a case")
     command.add_argument("--cases", nargs="+", help="names of cases; all of cases.toml if left out")

@@ -135,6 +135,7 @@ def _model_text(request, bodies, stiffness):
     equations = [line for node in followers for line in ("*EQUATION", "2", f"{node}, 3, 1., {pushed}, 3, -1.")]
     slope = stiffness * scales.e_star * scales.p0_pa * 1e-6 / c_mm
     down = estimated_approach(case, request.mesh.block_depth) * c_mm
+    step = "*STEP, NLGEOM, INC=100" if request.large_displacements else "*STEP, INC=100"
     lines = [
         "*HEADING",
         f"{case.name or 'case'}: roller on a block, a quarter of both (x >= 0, y >= 0); mm, N, MPa",
@@ -152,12 +153,14 @@ def _model_text(request, bodies, stiffness):
         f"{slope:.10g}",
         "*CONTACT PAIR, INTERACTION=FRICTIONLESS, TYPE=SURFACE TO SURFACE",
         "ROLLER_CONTACT, BLOCK_CONTACT",
+        *(["** Large displacements: equilibrium where the bodies have moved to; stresses are Cauchy's in the fixed axes."]
+          if request.large_displacements else []),
         "** Step 1 brings the bodies together by a displacement, so that contact holds the roller.",
-        "*STEP, INC=100", "*STATIC, DIRECT", "1., 1.",
+        step, "*STATIC, DIRECT", "1., 1.",
         "*BOUNDARY", f"PUSHED, 3, 3, {down:.10g}",
         "*END STEP",
         "** Step 2 lets go of the displacement and applies a quarter of the load.",
-        "*STEP, INC=100", "*STATIC, DIRECT", "1., 1.",
+        step, "*STATIC, DIRECT", "1., 1.",
         "*BOUNDARY, OP=NEW", "BLOCK_SUPPORT, 3, 3", *_symmetry(),
         "*CLOAD", f"PUSHED, 3, {0.25 * case.force_n:.12g}",
         *_output(),

@@ -201,7 +201,10 @@ class Curve:
 
 @dataclasses.dataclass(frozen=True)
 class Request:
-    """All input of a calculation."""
+    """All input of a calculation.
+
+    ``large_displacements``: the deck's bodies are in equilibrium where they have moved to; nothing else takes that.
+    """
 
     case: Case
     mesh: MeshOptions
@@ -211,6 +214,7 @@ class Request:
     gmsh: str = "gmsh"
     engine: str = "fenicsx"
     ccx: str = "ccx"
+    large_displacements: bool = False
 
     def to_json(self):
         """The request as the JSON object that :func:`read_request` accepts."""
@@ -223,6 +227,7 @@ class Request:
             "pressure_points_m": self.pressure_points_m,
             "gmsh": self.gmsh,
             **({} if self.engine == "fenicsx" else {"engine": self.engine, "ccx": self.ccx}),
+            **({"large_displacements": True} if self.large_displacements else {}),
         }
 
 
@@ -357,7 +362,8 @@ def parse_request(data, where="request"):
     """
     if not isinstance(data, dict):
         raise FemError(f"{where}: must be a JSON object")
-    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx"}, where)
+    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx",
+                 "large_displacements"}, where)
     if data.get("schema") != SCHEMA:
         raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
 
@@ -395,9 +401,12 @@ def parse_request(data, where="request"):
     engine = data.get("engine", "fenicsx")
     if engine not in ENGINES:
         raise FemError(f"{where}: 'engine' must be one of {', '.join(ENGINES)}, not {engine!r}")
+    large = data.get("large_displacements", False)
+    if not isinstance(large, bool):
+        raise FemError(f"{where}: 'large_displacements' must be true or false, not {large!r}")
     mesh = _options(MeshOptions, _table(data, "mesh", where) if "mesh" in data else {},
                     f"{where}: mesh")
-    return Request(parsed, mesh, solver, curves, lines, engine=engine, **programs)
+    return Request(parsed, mesh, solver, curves, lines, engine=engine, large_displacements=large, **programs)
 
 
 def read_request(path):

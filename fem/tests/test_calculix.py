@@ -1,5 +1,6 @@
 """The deck, its bricks, and CalculiX: alone, against the other engine, and failing in every way there is."""
 
+import csv
 import dataclasses
 import json
 import re
@@ -14,6 +15,7 @@ from edgeline_fem.calculix import apply_forces, ending_surface, matching, read_d
 from edgeline_fem.contact import ContactGrid
 from edgeline_fem.deck import FILES, SLIP, check_scene, estimated_approach, write_deck
 from edgeline_fem.meshing import make_meshes
+from edgeline_fem.points import near_the_contact, write_points
 from edgeline_fem.record import standard_request
 from edgeline_fem.request import FemError, parse_request
 from edgeline_fem.scene import Scene
@@ -172,6 +174,41 @@ def pressed(deck):
     return deck, forces, stresses
 
 
+def test_large_displacements_are_those_of_the_deck_alone(deck, tmp_path):
+    request, meshes, _, _ = deck
+    shutil.copytree(meshes, tmp_path / "out")
+    large = dataclasses.replace(request, large_displacements=True)
+    (tmp_path / "request.json").write_text(json.dumps(large.to_json()))
+    done = run_stage("deck", tmp_path / "request.json", tmp_path / "out")
+    assert done.returncode == 0, done.stderr
+    model = (tmp_path / "out" / "model.inp").read_text()
+    assert model.count("*STEP, NLGEOM, INC=100") == model.count("*STEP") == 2
+    assert "NLGEOM" not in (meshes / "model.inp").read_text()
+    done = run_stage("solve", tmp_path / "request.json", tmp_path / "out")
+    assert done.returncode == 2 and "for the deck alone" in done.stderr, done.stderr
+
+
+@needs_ccx
+def test_points_are_those_of_the_elements_in_each_body(pressed):
+    """Under a Hertz pressure: its own values just below the surface, in both bodies' axes."""
+    (request, folder, _, _), _, _ = pressed
+    path, count = write_points(request, folder, "forces")
+    with open(path, newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == count > 200
+    scales, values = request.case.scales(), {}
+    for name in ("block", "roller"):
+        own = [row for row in rows if row["body"] == name]
+        x, y, z = (np.array([float(row[f"{axis}_m"]) for row in own]) / scales.c_m for axis in "xyz")
+        assert near_the_contact(name, np.stack([x, y, z], axis=1), Scene.of(request.case)).all()
+        stress = {key: np.array([float(row[f"sigma_{key}_pa"]) for row in own]) / scales.p0_pa for key in ("zz", "xz")}
+        shallow = (y < 2.0) & (z < 0.1) & (x < 0.8)
+        assert shallow.any() and np.abs(stress["zz"] + np.sqrt(1.0 - np.minimum(x, 1.0) ** 2))[shallow].max() < 0.06
+        values[name] = stress["xz"][(y < 2.0) & (np.abs(x - 0.7) < 0.3) & (z > 0.2) & (z < 1.2)].mean()
+    # The shear under one half of the contact has one sign in both, z into each body.
+    assert values["block"] < -0.1 and abs(values["block"] - values["roller"]) < 0.03
+
+
 @needs_ccx
 def test_its_results_survive_no_damage(pressed, tmp_path):
     """Real results, cut at many places and with single bytes changed: refused or read, never a crash."""
@@ -239,8 +276,6 @@ def _consistent(grid, pressure):
 @needs_ccx
 def test_a_whole_contact_is_that_of_the_other_engine(live, tmp_path):
     """The flush contact at size 2 by both engines: pressure within 0.008 p0, stresses within 0.010 p0 RMS."""
-    import csv
-
     case, request, folder = live
     asked = {**json.loads(request.read_text()), "engine": "calculix"}
     (tmp_path / "request.json").write_text(json.dumps(asked))

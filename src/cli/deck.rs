@@ -12,9 +12,9 @@ use std::path::PathBuf;
 /// Writes a case as an input deck for CalculiX and Abaqus.
 ///
 /// Writes model.inp with the files that it includes (mesh.inp, bodies.inp), the meshes as .msh and .vtu,
-/// and mesh.json into the output folder, in mm, N and MPa: 20-node bricks, node sets, contact pair, steps
-/// and output requests, with comments (docs/deck.md). `edgeline fem --engine calculix` runs the same deck.
-/// Takes a few seconds.
+/// mesh.json and request.json into the output folder, in mm, N and MPa: 20-node bricks, node sets, contact
+/// pair, steps and output requests, with comments (docs/deck.md). `edgeline fem --engine calculix` runs the
+/// same deck, but for large displacements. Takes a few seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -25,6 +25,9 @@ pub(super) struct Arguments {
     out: PathBuf,
     #[command(flatten)]
     size: Size,
+    /// Ask for large displacements: equilibrium where the bodies have moved to (NLGEOM)
+    #[arg(long)]
+    large_displacements: bool,
     /// Interpreter that imports numpy [default: $EDGELINE_PYTHON, /usr/bin/python3, python3]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::ExecutablePath)]
     python: Option<PathBuf>,
@@ -39,6 +42,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let driver = Driver::without_solver(FemSettings {
         code: Code::Calculix,
         size: arguments.size.size,
+        large_displacements: arguments.large_displacements,
         python: arguments.python,
         gmsh: arguments.gmsh,
         ..FemSettings::default()

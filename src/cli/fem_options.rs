@@ -83,6 +83,7 @@ impl FemOptions {
             solve_timeout: Duration::from_secs_f64(self.solve_timeout),
             max_bytes: u64::from(self.max_disk) << 30,
             keep: self.keep,
+            large_displacements: false,
         }
     }
 }

@@ -190,7 +190,8 @@ impl Driver {
 }
 
 /// The files of a deck, the one that includes others last.
-pub const DECK_FILES: [&str; 8] = [
+pub const DECK_FILES: [&str; 9] = [
+    "request.json",
     "block.msh",
     "roller.msh",
     "block.vtu",

@@ -47,6 +47,8 @@ pub(super) struct Request<'a> {
     engine: Option<&'static str>,
     #[serde(skip_serializing_if = "Option::is_none")]
     ccx: Option<&'a Path>,
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    large_displacements: bool,
     curves: Vec<WantedCurve>,
     /// In the order in which the results are to have them.
     pressure_points_m: Map<String, Value>,
@@ -111,6 +113,7 @@ impl<'a> Request<'a> {
             gmsh: &settings.gmsh,
             engine: other.then(|| settings.code.name()),
             ccx: other.then_some(settings.ccx.as_path()),
+            large_displacements: settings.large_displacements,
             curves: wanted_curves(case)
                 .into_iter()
                 .map(|(body, curve, points_m)| WantedCurve { body, curve, points_m })

@@ -43,6 +43,9 @@ pub struct FemSettings {
     pub code: Code,
     /// The CalculiX program, where that is the code.
     pub ccx: PathBuf,
+    /// Whether a deck's bodies are in equilibrium where they have moved to. Of a deck alone: runs take small
+    /// displacements.
+    pub large_displacements: bool,
     /// Relative element size, 1 is the production mesh; see [`FemSettings::SIZE_RANGE`].
     pub size: f64,
     /// The linear solver.
@@ -73,6 +76,7 @@ impl Default for FemSettings {
         Self {
             code: Code::Fenicsx,
             ccx: "ccx".into(),
+            large_displacements: false,
             size: 1.0,
             linear: LinearSolver::Direct,
             ranks: 1,

@@ -5,6 +5,7 @@ use crate::support::{Bench, edgeline, files, kill, refused, start, succeeded, wa
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::time::{Duration, Instant};
 
 /// A program in `folder` that knows CalculiX' version and then runs `script`.
@@ -98,6 +99,7 @@ fn a_deck_is_written_and_runs() {
         "mesh.json",
         "mesh.log",
         "model.inp",
+        "request.json",
         "roller.msh",
         "roller.vtu",
     ];
@@ -121,4 +123,20 @@ fn a_deck_is_written_and_runs() {
     let compare = ["compare", "flush-short", "run/curves.csv", "run/pressure.csv"];
     let done = edgeline(folder, &[&compare[..], &error].concat()).output().unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stdout));
+}
+
+#[test]
+#[ignore = "runs gmsh and CalculiX"]
+fn a_deck_for_large_displacements_runs_and_compares() {
+    let bench = Bench::new();
+    let folder = bench.folder.path();
+    let deck = ["deck", "flush-short", "--size", "5", "--large-displacements", "--out", "deck"];
+    succeeded(&mut edgeline(folder, &deck));
+    succeeded(Command::new("ccx").args(["-i", "model"]).current_dir(folder.join("deck")));
+    let points = ["-m", "edgeline_fem", "points", "deck/request.json", "deck"];
+    let python = Path::new(env!("CARGO_MANIFEST_DIR")).join("fem");
+    let mut reader = Command::new("/usr/bin/python3");
+    succeeded(reader.args(points).current_dir(folder).env("PYTHONPATH", python));
+    let compare = ["compare", "flush-short", "deck/model-points.csv", "--error-p0", "0.1"];
+    succeeded(&mut edgeline(folder, &compare));
 }
