@@ -271,7 +271,7 @@ impl FreeEnds {
         let add = |share: f64, wave: &[f64], into: &mut [f64]| {
             into.iter_mut().zip(wave).for_each(|(into, wave)| *into += share * wave);
         };
-        for (i, (k, weight)) in fine.nodes().iter().zip(fine.weights()).enumerate() {
+        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
             let width = 2.0 * (k * a).sin() / k;
             let mut wave: Vec<f64> = (0..=mx)
                 .map(|d| (k * 2.0 * a * d as f64).cos() * weight * width / (PI * PI))

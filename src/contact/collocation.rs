@@ -97,12 +97,14 @@ impl LinearProblem<'_> {
     /// Transforms of node `j`'s modes, the singular one last, times the quadrature's weights, in
     /// the form of [`LinearProblem::cosines`].
     fn transforms(&self, j: usize) -> Vec<Tile> {
-        let (all, fine) = (self.wavenumbers(), self.operator.compliance.wavenumbers.fine());
+        let (all, numbers) = (self.wavenumbers(), self.operator.compliance.wavenumbers);
         let count =
             (0..self.operator.axis.len()).map(|i| self.operator.count(i, j)).max().unwrap_or(0);
         let mut modes = vec![0.0; self.layout.counts[j]];
         let mut tiles = vec![[0.0; TILE]; (modes.len() + 1).div_ceil(TILE) * all];
-        for (at, (k, w)) in fine.nodes().iter().zip(fine.weights()).take(count).enumerate() {
+        for (at, (k, w)) in
+            numbers.fine().nodes().iter().zip(numbers.weights()).take(count).enumerate()
+        {
             let singular = strip::transforms(self.half_widths[j], *k, &mut modes);
             for (mode, transform) in modes.iter().chain([&singular]).enumerate() {
                 tiles[mode / TILE * all + at][mode % TILE] = w / (PI * PI) * transform;

@@ -96,7 +96,8 @@ impl Operator for LineOperator<'_> {
             }
             let c = &pressure.coefficients[i];
             for (row, &t) in rows.iter_mut().zip(places) {
-                let waves = fine.nodes().iter().zip(fine.weights()).zip(&amplitudes);
+                let waves =
+                    fine.nodes().iter().zip(self.compliance.wavenumbers.weights()).zip(&amplitudes);
                 let waves = waves.map(|((k, w), s)| w / (PI * PI) * s * (k * t * a).cos());
                 row[i] = waves.sum();
                 modes.resize(c.len(), 0.0);

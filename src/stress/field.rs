@@ -229,7 +229,7 @@ impl<'a> Field<'a> {
         let numbers = self.wavenumbers.resolving(2f64.powi(level));
         let k = numbers.fine().nodes().to_vec();
         let transforms = self.pressure.transforms(&k).transpose();
-        let weights = Some(numbers.fine().weights());
+        let weights = Some(numbers.weights());
         let shares = |i: usize| numbers.interpolation(i);
         let waves = Arc::new(Waves::new(self.stack, k, weights, transforms, shares));
         known.push((level, waves.clone()));

@@ -406,7 +406,7 @@ mod tests {
             (&resolution, numbers.coarse().nodes()),
         );
         let (body, layers) = &stack.parts()[0];
-        let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.fine().weights());
+        let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.weights());
         let loads = DMatrix::from_fn(k.len(), line.len(), |i, j| 1.0 + ((3 * i + j) % 5) as f64);
         let all = Waves::new(&stack, k.clone(), Some(weights), loads.clone(), |i| {
             numbers.interpolation(i)

