@@ -136,7 +136,7 @@ impl Remainders {
         let fine = numbers.fine();
         let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
         // The singular mode's transform, pi J0(k), decays most slowly.
-        let limits = fine.nodes().iter().zip(fine.weights());
+        let limits = fine.nodes().iter().zip(numbers.weights());
         let limits: Vec<f64> =
             limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
         let all = fine.len();
