@@ -51,6 +51,12 @@ def live(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
+def coarse(tmp_path_factory):
+    """The same on a mesh that other codes, which are slower, solve in half a minute."""
+    return _solved(tmp_path_factory.mktemp("coarse"), steel_case(5e-4, 5.0, 1.0), 2.8)
+
+
+@pytest.fixture(scope="session")
 def small(tmp_path_factory):
     """A contact too coarse to be right, for comparing programs with themselves."""
     return _solved(tmp_path_factory.mktemp("small"), steel_case(1e-3, 3.0, 0.75), 4.0)

@@ -274,9 +274,9 @@ def _consistent(grid, pressure):
 
 @pytest.mark.slow
 @needs_ccx
-def test_a_whole_contact_is_that_of_the_other_engine(live, tmp_path):
-    """The flush contact at size 2 by both engines: pressure within 0.008 p0, stresses within 0.010 p0 RMS."""
-    case, request, folder = live
+def test_a_whole_contact_is_that_of_the_other_engine(coarse, tmp_path):
+    """The flush contact at size 2.8 by both engines: pressure and stresses within 0.008 p0 RMS."""
+    case, request, folder = coarse
     asked = {**json.loads(request.read_text()), "engine": "calculix"}
     (tmp_path / "request.json").write_text(json.dumps(asked))
     for stage in ("mesh", "solve"):
@@ -298,4 +298,4 @@ def test_a_whole_contact_is_that_of_the_other_engine(live, tmp_path):
 
     assert rms("pressure.csv", ["p_pa"], away) < 0.008
     columns = [f"sigma_{c}_pa" for c in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    assert rms("curves.csv", columns, away) < 0.010
+    assert rms("curves.csv", columns, away) < 0.008
