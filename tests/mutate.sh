@@ -33,9 +33,9 @@ mutants=(
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )
 
-# Mutants are built with less optimisation, which costs less than it saves. Cargo names what it builds by its options,
-# too: without another one, a mutant would take the place of what is built of the project itself.
-mutated=(--config 'profile.fast.package.edgeline.opt-level=1')
+# Mutants are built with a little less optimisation. Cargo names what it builds by its options, too: with the same ones a
+# mutant would take the place of what is built of the project itself.
+mutated=(--config 'profile.fast.package.edgeline.opt-level=2')
 
 # Runs tests in a tree, quietly.
 run() {
