@@ -54,15 +54,18 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         // Half-spaces are judged under the same force.
         case = SolvedCase::new(&case, &Options::new(arguments.method))?.case().clone();
     }
-    let passages = |method: EdgeModel| -> Result<Passages> {
+    let passages = |method: EdgeModel, of: &dyn Fn(&SolvedCase) -> Vec<Passage>| {
         let solved = SolvedCase::new(&case, &Options::new(method))?;
-        let bodies = BodyKind::ALL.map(|body| Passage::new(&solved, body, counts)).to_vec();
-        Ok(Passages { method: method.name().into(), bodies })
+        Ok(Passages { method: method.name().into(), bodies: of(&solved) })
     };
-    let own = passages(arguments.method)?;
+    let own = passages(arguments.method, &|solved| {
+        BodyKind::ALL.map(|body| Passage::new(solved, body, counts)).to_vec()
+    })?;
+    let beside =
+        |solved: &SolvedCase| own.bodies.iter().map(|passage| passage.by(solved)).collect();
     let half_space = match arguments.method {
         EdgeModel::HalfSpace => None,
-        _ => Some(passages(EdgeModel::HalfSpace)?),
+        _ => Some(passages(EdgeModel::HalfSpace, &beside)?),
     };
     let hertz = case.hertz();
     let found = summary(&case, &hertz, &own, half_space.as_ref());

@@ -242,7 +242,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     bar.finish_and_clear();
     let (found, loads) = found?;
     let hertz = &found.solution.summary.hertz;
-    let mut more = cells::contents(&found.pressure, hertz);
+    let mut more = cells::contents(&found);
     if case.surface.is_some() {
         more.push(cells::histogram(&found.pressure, hertz));
     }
@@ -251,7 +251,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     }
     if !arguments.layers.is_empty() {
         let layers = layers_on_cells(case, options, &found.pressure, &arguments.layers)?;
-        more.extend(cells::layers(&found.pressure.grid, &layers, hertz));
+        more.extend(cells::layers(&found, &layers));
     }
     more.extend(pictures(case, &found.solution, arguments)?);
     solution::write(&found.solution, options, more, &arguments.out)?;
@@ -288,6 +288,13 @@ fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
 
 /// Prints what was found.
 fn tell<D: Serialize>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> Result<Exit> {
+    if !found.summary.converged {
+        say(&format!(
+            "warning: the contact changed by more than its tolerance until the last of its {} iterations \
+             (`converged` in summary.json); compare with a tighter --tolerance",
+            found.summary.iterations
+        ));
+    }
     if arguments.json {
         print_json(&found.summary)?;
     } else {

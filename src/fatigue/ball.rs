@@ -1,12 +1,10 @@
 //! The smallest ball around points.
 
-use nalgebra::{DMatrix, DVector};
+/// Part of a radius that is rounding.
+const ROUNDING: f64 = 1e-12;
 
-/// Parts of the points' extent that are zero.
-const NOTHING: f64 = 1e-10;
-
-/// Most steps; some ten are enough.
-const MOST_STEPS: usize = 1000;
+/// Part of a distance below which a point adds no direction to those of others.
+const DEPENDENT: f64 = 1e-10;
 
 /// A ball in space of N dimensions.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,76 +17,93 @@ pub struct Ball<const N: usize> {
 
 /// The smallest ball around `points`; one of radius zero at the origin if there are none.
 ///
-/// A ball around all points that touches some of them shrinks: its centre walks towards the nearest place
-/// at equal distances from those, until it touches one more, and lets go of one that pulls it back (Fischer,
-/// Gaertner and Kutz, Fast smallest-enclosing-ball computation in high dimensions, ESA 2003).
+/// At most N + 1 points hold it. While a point lies outside, the farthest one joins those that hold the ball, and the
+/// smallest ball around these few takes its place (Gaertner, Fast and robust smallest enclosing balls, ESA 1999). It is larger
+/// each time, so the search ends. Points along a smooth curve are nearly dependent, which no step here divides by.
 pub fn smallest_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
     let Some(first) = points.first() else { return Ball { centre: [0.0; N], radius: 0.0 } };
     let mut centre = *first;
-    let farthest = |centre: &[f64; N]| {
-        let distances = points.iter().map(|p| squared(&minus(p, centre))).enumerate();
-        distances.max_by(|a, b| a.1.total_cmp(&b.1)).expect("points")
-    };
-    let (start, extent) = farthest(&centre);
-    let nothing = NOTHING * extent.sqrt();
-    let mut touched = vec![start];
-    for _ in 0..MOST_STEPS {
-        let (shares, aim) = nearest_in_hull(points, &touched, &centre);
-        let way = minus(&aim, &centre);
-        if squared(&way).sqrt() <= nothing {
-            let (least, share) = shares
-                .iter()
-                .enumerate()
-                .min_by(|a, b| a.1.total_cmp(b.1))
-                .expect("one is touched");
-            if *share >= -NOTHING {
-                break;
-            }
-            touched.swap_remove(least);
-            continue;
+    let mut holding = vec![*first];
+    let mut reached = 0.0;
+    loop {
+        let farthest = farthest(points, &centre);
+        let radius = squared(&minus(farthest, &centre)).sqrt();
+        if radius <= reached * (1.0 + ROUNDING) {
+            return Ball { centre, radius };
         }
-        // The part of the way on which the ball touches no other point.
-        let reference = points[touched[0]];
-        let radius = squared(&minus(&reference, &centre));
-        let stop = |(i, p): (usize, &[f64; N])| {
-            let approach = dot(&way, &minus(&reference, p));
-            let free = !touched.contains(&i) && approach > nothing * nothing;
-            free.then(|| (0.5 * (radius - squared(&minus(p, &centre))) / approach, i))
-        };
-        let next = points.iter().enumerate().filter_map(stop).min_by(|a, b| a.0.total_cmp(&b.0));
-        let (part, met) = match next {
-            Some((part, i)) if part < 1.0 => (part.max(0.0), Some(i)),
-            _ => (1.0, None),
-        };
-        centre.iter_mut().zip(way).for_each(|(c, w)| *c += part * w);
-        touched.extend(met);
+        let next = around(&holding, farthest);
+        if next.ball.radius <= reached {
+            // Larger by less than rounding.
+            return Ball { centre, radius };
+        }
+        (centre, reached, holding) = (next.ball.centre, next.ball.radius, next.holding);
     }
-    Ball { centre, radius: farthest(&centre).1.sqrt() }
 }
 
-/// The place nearest to `centre` in the affine hull of the `touched` points, and the points' shares in it.
-fn nearest_in_hull<const N: usize>(
-    points: &[[f64; N]],
-    touched: &[usize],
-    centre: &[f64; N],
-) -> (Vec<f64>, [f64; N]) {
-    let base = points[touched[0]];
-    let edges: Vec<[f64; N]> = touched[1..].iter().map(|i| minus(&points[*i], &base)).collect();
-    let count = edges.len();
-    if count == 0 {
-        return (vec![1.0], base);
+/// The smallest ball around a few points, and those of them that hold it.
+struct Held<const N: usize> {
+    ball: Ball<N>,
+    holding: Vec<[f64; N]>,
+}
+
+/// The smallest ball around the points that are `holding` another one and a point outside that, which then holds it as well:
+/// of the balls that some of them hold, the one whose centre has the nearest farthest point.
+fn around<const N: usize>(holding: &[[f64; N]], outside: &[f64; N]) -> Held<N> {
+    let all: Vec<[f64; N]> = holding.iter().chain([outside]).copied().collect();
+    let mut best = (f64::INFINITY, *outside, 0);
+    for chosen in 0u32..1 << holding.len() {
+        let Some(centre) = circumcentre(outside, of(holding, chosen)) else { continue };
+        let radius = squared(&minus(farthest(&all, &centre), &centre)).sqrt();
+        if radius < best.0 {
+            best = (radius, centre, chosen);
+        }
     }
-    let products = DMatrix::from_fn(count, count, |i, j| dot(&edges[i], &edges[j]));
-    let offset = minus(centre, &base);
-    let right = DVector::from_fn(count, |i, _| dot(&edges[i], &offset));
-    let found = products.lu().solve(&right).unwrap_or_else(|| DVector::zeros(count));
-    let mut place = base;
-    for (edge, share) in edges.iter().zip(found.iter()) {
-        place.iter_mut().zip(edge).for_each(|(p, e)| *p += share * e);
+    let (radius, centre, chosen) = best;
+    let holding = of(holding, chosen).chain([outside]).copied().collect();
+    Held { ball: Ball { centre, radius }, holding }
+}
+
+/// The points that the bits of `chosen` name.
+fn of<const N: usize>(points: &[[f64; N]], chosen: u32) -> impl Iterator<Item = &[f64; N]> {
+    points.iter().enumerate().filter(move |(i, _)| chosen >> i & 1 == 1).map(|(_, point)| point)
+}
+
+/// The place at equal distances from `base` and `others` in their affine hull; none if one of them depends on those before it.
+///
+/// With an orthonormal basis of the edges from `base`, made one after the other, an edge of length l puts the centre at
+/// l^2 / 2 along itself, which gives its coordinates in turn.
+fn circumcentre<'a, const N: usize>(
+    base: &[f64; N],
+    others: impl Iterator<Item = &'a [f64; N]>,
+) -> Option<[f64; N]> {
+    let mut basis: Vec<[f64; N]> = Vec::with_capacity(N);
+    let mut way = [0.0; N];
+    for other in others {
+        let edge = minus(other, base);
+        let mut own = edge;
+        // Twice: what one pass leaves of the others is rounding of the edge, not of what is left of it.
+        for _ in 0..2 {
+            for direction in &basis {
+                let part = dot(&own, direction);
+                own.iter_mut().zip(direction).for_each(|(o, d)| *o -= part * d);
+            }
+        }
+        let length = squared(&own).sqrt();
+        if length <= DEPENDENT * squared(&edge).sqrt() {
+            return None;
+        }
+        let direction = own.map(|o| o / length);
+        let part = (0.5 * squared(&edge) - dot(&edge, &way)) / dot(&edge, &direction);
+        way.iter_mut().zip(&direction).for_each(|(w, d)| *w += part * d);
+        basis.push(direction);
     }
-    let mut shares = vec![1.0 - found.sum()];
-    shares.extend(found.iter());
-    (shares, place)
+    Some(std::array::from_fn(|i| base[i] + way[i]))
+}
+
+/// The point that is farthest from `centre`; there are points.
+fn farthest<'a, const N: usize>(points: &'a [[f64; N]], centre: &[f64; N]) -> &'a [f64; N] {
+    let distances = points.iter().map(|p| (squared(&minus(p, centre)), p));
+    distances.max_by(|a, b| a.0.total_cmp(&b.0)).expect("there are points").1
 }
 
 fn minus<const N: usize>(a: &[f64; N], b: &[f64; N]) -> [f64; N] {
@@ -106,6 +121,43 @@ fn squared<const N: usize>(a: &[f64; N]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use proptest::prelude::RngCore;
+    use proptest::test_runner::{RngAlgorithm, TestRng};
+
+    /// The stresses of a passage lie on a smooth curve, close to each other. The largest distance from a place is convex in
+    /// it: where no small step in any direction lessens it, it is the least.
+    #[test]
+    fn balls_of_smooth_curves_are_the_smallest() {
+        let mut source = TestRng::deterministic_rng(RngAlgorithm::ChaCha);
+        let mut number = || 2.0 * source.next_u64() as f64 / u64::MAX as f64 - 1.0;
+        for round in 0..200 {
+            // Waves that fade: as flat, in some directions, as the stresses far from the contact.
+            let scale: [f64; 5] = std::array::from_fn(|_| 10f64.powf(3.0 * number() - 3.0));
+            let [phase, speed]: [[f64; 5]; 2] =
+                std::array::from_fn(|_| std::array::from_fn(|_| 3.0 * number()));
+            let even = round % 2 == 0;
+            let curve: Vec<[f64; 5]> = (-80..=80)
+                .map(|i| f64::from(i) / 20.0)
+                .map(|x| {
+                    std::array::from_fn(|c| {
+                        let wave = if even && c < 3 { x.abs() } else { x };
+                        scale[c] * (speed[c] * wave + phase[c]).sin() / (1.0 + x * x)
+                    })
+                })
+                .collect();
+            let ball = smallest_ball(&curve);
+            let reach =
+                |centre: &[f64; 5]| squared(&minus(farthest(&curve, centre), centre)).sqrt();
+            assert!((reach(&ball.centre) / ball.radius - 1.0).abs() < 1e-14);
+            for _ in 0..500 {
+                let step: [f64; 5] = std::array::from_fn(|_| number());
+                let size = 10f64.powf(3.0 * number() - 4.0) * ball.radius / squared(&step).sqrt();
+                let aside = std::array::from_fn(|c| ball.centre[c] + size * step[c]);
+                let lessened = ball.radius - reach(&aside);
+                assert!(lessened < 1e-10 * ball.radius, "{round}: {ball:?} by {lessened:e}");
+            }
+        }
+    }
 
     #[test]
     fn balls_of_known_points() {

@@ -17,7 +17,7 @@ pub fn prepare_folder(path: &Path) -> Result<()> {
     let probe = path.join(".probe");
     // Not empty, because a full disk still accepts names.
     let written = std::fs::write(&probe, [0; 4096]);
-    let removed = remove(&probe);
+    let removed = remove_file(&probe);
     written.and(removed).map_err(io("write into the folder"))
 }
 
@@ -65,7 +65,7 @@ pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Resul
             let part = parts.join(i.to_string());
             write_through(&part, content).map_err(failed("write", &folder.join(name)))?;
         }
-        remove(&last).map_err(failed("replace", &last))?;
+        remove_file(&last).map_err(failed("replace", &last))?;
         for (i, (name, _)) in files.iter().enumerate() {
             let path = folder.join(name);
             std::fs::rename(parts.join(i.to_string()), &path).map_err(failed("write", &path))?;
@@ -104,6 +104,16 @@ fn remove(path: &Path) -> std::io::Result<()> {
     let is_folder = std::fs::symlink_metadata(path).is_ok_and(|m| m.is_dir());
     let removed =
         if is_folder { std::fs::remove_dir_all(path) } else { std::fs::remove_file(path) };
+    unless_missing(removed)
+}
+
+/// Removes a file if it exists. A folder of that name is somebody else's.
+fn remove_file(path: &Path) -> std::io::Result<()> {
+    unless_missing(std::fs::remove_file(path))
+}
+
+/// The outcome of a removal, for which it is no failure that there was nothing to remove.
+fn unless_missing(removed: std::io::Result<()>) -> std::io::Result<()> {
     match removed {
         Err(e) if e.kind() != std::io::ErrorKind::NotFound => Err(e),
         _ => Ok(()),

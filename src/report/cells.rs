@@ -4,21 +4,22 @@
 use super::columns::{Columns, Value};
 use crate::base::HertzScales;
 use crate::base::StressTensor;
-use crate::cells::{CellPressure, Grid};
-use crate::solve::{CellLayer, LoadStep};
+use crate::cells::CellPressure;
+use crate::solve::{CellLayer, CellSolution, LoadStep};
 use serde_json::json;
 
 /// Bins of the histogram of pressures.
 const BINS: usize = 50;
 
 /// Both files by their names, in SI units.
-pub fn contents(pressure: &CellPressure, hertz: &HertzScales) -> Vec<(String, Vec<u8>)> {
-    let grid = &pressure.grid;
-    let pascals = pressure.pressure.iter().map(|p| p * hertz.p0_pa);
-    let places = |count: usize, at: fn(&Grid, usize) -> f64| -> Vec<f64> {
-        (0..count).map(|i| at(grid, i) * hertz.c_m).collect()
+pub fn contents(found: &CellSolution) -> Vec<(String, Vec<u8>)> {
+    let (grid, hertz) = (&found.pressure.grid, &found.solution.summary.hertz);
+    let pascals = found.pressure.pressure.iter().map(|p| p * hertz.p0_pa);
+    let places = |count: usize, at: &dyn Fn(usize) -> f64| -> Vec<f64> {
+        (0..count).map(|i| at(i) * hertz.c_m).collect()
     };
-    let axes = json!({ "x_m": places(grid.nx, Grid::x), "y_m": places(grid.ny, Grid::y) });
+    let x_m = places(grid.nx, &|i| grid.x(i));
+    let axes = json!({ "x_m": x_m, "y_m": places(grid.ny, &|j| found.middle + grid.y(j)) });
     vec![
         ("pressure.npy".into(), npy(&[grid.nx, grid.ny], pascals)),
         ("axes.json".into(), format!("{axes}\n").into_bytes()),
@@ -58,7 +59,8 @@ fn csv(table: Columns) -> (String, Vec<u8>) {
 }
 
 /// `layer-BODY-NUMBER.npy` for each of `layers`, numbered by their depths, and `layers.json` with the most stressed place of all.
-pub fn layers(grid: &Grid, layers: &[CellLayer], hertz: &HertzScales) -> Vec<(String, Vec<u8>)> {
+pub fn layers(found: &CellSolution, layers: &[CellLayer]) -> Vec<(String, Vec<u8>)> {
+    let (grid, hertz) = (&found.pressure.grid, &found.solution.summary.hertz);
     let mut files = Vec::new();
     let mut listed = Vec::new();
     let mut critical = (0.0, json!(null));
@@ -70,7 +72,7 @@ pub fn layers(grid: &Grid, layers: &[CellLayer], hertz: &HertzScales) -> Vec<(St
             let components = layer.stress.each_ref().map(|field| field[cell]);
             let value = StressTensor::from_components(components).von_mises() * hertz.p0_pa;
             if value > critical.0 {
-                let [x, y] = [grid.x(cell % grid.nx), grid.y(cell / grid.nx)];
+                let [x, y] = [grid.x(cell % grid.nx), found.middle + grid.y(cell / grid.nx)];
                 let at = [x * hertz.c_m, y * hertz.c_m, layer.depth_m];
                 let place = json!({ "body": layer.body.name(), "measure": "von_mises",
                     "value_pa": value, "at_m": at });

@@ -65,6 +65,8 @@ pub struct CellSolution {
     pub solution: Solution<CellDetails>,
     /// The pressures (p0) with their grid (C).
     pub pressure: CellPressure,
+    /// y of the grid's middle, that of the overlap (C).
+    pub middle: f64,
 }
 
 /// How a case is solved on cells.
@@ -201,7 +203,7 @@ pub fn solve_on_cells(
     let found =
         Found { case, scene: &scene, problem: &problem, pressure: &pressure, tilt, mean_gap };
     let solution = found.solution(stressed, seconds);
-    Ok(CellSolution { solution, pressure })
+    Ok(CellSolution { solution, pressure, middle: scene.middle })
 }
 
 /// The pressures of `contact` and its tilt on cells of `region` that cover it.

@@ -41,18 +41,36 @@ impl Passage {
     /// The passage of `body` in a solved case, at `counts` places along y and down z, at least 2 each. Runs
     /// on all threads of the current pool.
     pub fn new(solved: &SolvedCase, body: BodyKind, counts: [usize; 2]) -> Self {
-        let (case, hertz) = (solved.case(), *solved.hertz());
         let scene = solved.scene();
         let lines = scene.pressure.line_loads();
         let width = lines.iter().map(|line| line.half_width).fold(0.0, f64::max);
         let ahead = positive_steps(width);
         let x: Vec<f64> =
             ahead[1..].iter().rev().map(|x| -x).chain(ahead.iter().copied()).collect();
-        let own = Extent::of(case, body).ends_m().map(|y| y / hertz.c_m);
-        let overlap = scene.scene.overlap();
-        let y = along(overlap, own, scene.pressure.is_symmetric(), DEPTH * width, counts[0]);
+        let own = Extent::of(solved.case(), body).ends_m().map(|y| y / solved.hertz().c_m);
+        let y = along(
+            scene.scene.overlap(),
+            own,
+            scene.pressure.is_symmetric(),
+            DEPTH * width,
+            counts[0],
+        );
         let share = |i: usize| i as f64 / (counts[1] - 1) as f64;
         let z: Vec<f64> = (0..counts[1]).map(|i| DEPTH * width * share(i).powi(2)).collect();
+        Self::at(solved, body, [x, y, z])
+    }
+
+    /// The passage of the same body at the same places of the same case, as another model has solved it.
+    #[must_use]
+    pub fn by(&self, solved: &SolvedCase) -> Self {
+        Self::at(solved, self.body, [&self.x, &self.y, &self.z].map(Clone::clone))
+    }
+
+    /// The passage of `body` at the places of a grid, and at x of both signs alike.
+    fn at(solved: &SolvedCase, body: BodyKind, [x, y, z]: [Vec<f64>; 3]) -> Self {
+        let (case, hertz) = (solved.case(), *solved.hertz());
+        let scene = solved.scene();
+        let ahead = x[x.len() / 2..].to_vec();
         let place = Place {
             field: scene.field(body),
             body,
@@ -64,7 +82,7 @@ impl Passage {
         let count = y.len() * z.len();
         let measures = (0..count).into_par_iter();
         let measures = measures.map(|i| place.measures(y[i % y.len()], z[i / y.len()])).collect();
-        Self { body, x, y, z, measures, ends: overlap }
+        Self { body, x, y, z, measures, ends: scene.scene.overlap() }
     }
 
     /// Whether a place counts: not within 0.1 C of the overlap's edges, where stresses may have no limit.
@@ -209,6 +227,28 @@ mod tests {
         // On the surface sigma_yy = 0 stands against the pressure.
         assert!((shear.value - 0.5).abs() < 5e-3, "{shear:?}");
         assert!(passage.x[passage.measures[shear.at].tau_max.at].abs() < 0.03);
+    }
+
+    #[test]
+    fn another_model_is_seen_at_the_same_places() {
+        // Half-spaces' contact is wider at its ends: places of its own would lie deeper.
+        let material = Material { young_pa: 210e9, poisson: 0.3 };
+        let factors = Factors { load: 3e-4, slenderness: 5.0, length_ratio: 0.8 };
+        let case = Case::from_factors("case", 0.01, material, material, factors);
+        let case = case.with_tolerance(1e-2);
+        let [own, other] = [EdgeModel::QuarterSpace, EdgeModel::HalfSpace]
+            .map(|model| SolvedCase::new(&case, &Options::new(model)).unwrap());
+        let passage = Passage::new(&own, BodyKind::Block, [4, 4]);
+        let beside = passage.by(&other);
+        assert_eq!((&passage.x, &passage.y, &passage.z), (&beside.x, &beside.y, &beside.z));
+        for place in [1, 6, 10] {
+            let [y, z] = passage.place(place);
+            let at: Vec<[f64; 3]> = passage.x.iter().map(|x| [*x, y, z]).collect();
+            let history = other.stress(BodyKind::Block, &at).unwrap();
+            let shear = crate::fatigue::shear_range(&history);
+            let found = beside.measures[place].shear_range;
+            assert!((found - shear).abs() < 2e-3, "at {y}, {z}: {found}, not {shear}");
+        }
     }
 
     #[test]

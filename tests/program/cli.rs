@@ -417,6 +417,21 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
         let said = refused(folder.path(), &all);
         assert!(said.contains(wanted), "{said}");
     }
+    // Beside the roller's middle, the cells' places are those of the pressures.
+    let offset = "name = 'offset'\nroller = { radius_m = 10e-3, young_pa = 210e9, poisson = 0.3, length_m = 2.5e-3 }\n\
+                  block = { young_pa = 210e9, poisson = 0.3, length_m = 2.5e-3 }\nload = { force_n = 1500.0 }\n\
+                  pose = { offset_m = 0.4e-3 }\n";
+    std::fs::write(folder.path().join("offset.toml"), offset).unwrap();
+    let solve = ["solve", "offset.toml", "--engine", "cells", "--cells", "16,24", "--out", "off"];
+    assert!(edgeline(folder.path(), &solve).output().unwrap().status.success());
+    let axes = std::fs::read_to_string(folder.path().join("off/axes.json")).unwrap();
+    let axes: Value = serde_json::from_str(&axes).unwrap();
+    for (i, row) in rows(&folder.path().join("off/pressure.csv")).iter().enumerate() {
+        for (axis, at) in [("x_m", i % 16), ("y_m", i / 16)] {
+            let [got, want] = [axes[axis][at].as_f64().unwrap(), number(row, axis)];
+            assert!((got - want).abs() < 1e-9, "{axis} of cell {i}: {got}, not {want}");
+        }
+    }
     let case = edgeline::case::builtin_case("flush-short").unwrap().unwrap().to_toml();
     let narrow = format!("{case}\n[cells]\nhalf_width_m = 1e-4\n");
     std::fs::write(folder.path().join("narrow.toml"), narrow).unwrap();

@@ -466,6 +466,19 @@ fn names_of_cases_cannot_leave_their_folder() {
 }
 
 #[test]
+fn a_folder_in_the_place_of_a_file_is_somebody_elses() {
+    let folder = tempfile::tempdir().unwrap();
+    let own = folder.path().join("o/summary.json");
+    fs::create_dir_all(&own).unwrap();
+    fs::write(own.join("kept"), "").unwrap();
+    let solve = ["solve", "flush-short", "--method", "half-space", "--tolerance", "1e-2"];
+    let said = refused(edgeline(folder.path(), &solve).args(["--out", "o"]));
+    assert!(said.contains("summary.json") && said.contains("not a folder"), "{said}");
+    assert!(own.join("kept").exists());
+    assert_eq!(fs::read_dir(folder.path().join("o")).unwrap().count(), 1);
+}
+
+#[test]
 fn folders_may_be_called_anything() {
     let bench = Bench::new();
     let folder = bench.folder.path();
