@@ -96,7 +96,7 @@ impl Solution {
         match &self.solved {
             Solved::Line(line) => write_locked(&line.1, &self.options, Vec::new(), folder),
             Solved::Cells(cells) => {
-                let more = contents(&cells.pressure, &cells.solution.summary.hertz);
+                let more = contents(cells);
                 write_locked(&cells.solution, &self.options, more, folder)
             }
         }

@@ -158,6 +158,8 @@ impl Draft {
         };
         check_name(&case.name)?;
         check_numbers(self)?;
+        // Of what follows from the factors, none has part in these.
+        case.check_fatigue()?;
         case.set_factors(factors);
         case.check().map(|()| case).map_err(|e| match e {
             Error::Value { key, value, reason, .. } => Error::Value {

@@ -296,8 +296,11 @@ impl Influence {
         let target = if depth > 0.0 {
             Position::Within(Places::new(offsets, depth, shears))
         } else {
-            let beyond = along > axis.end() * (1.0 + 1e-12);
-            let shares = if beyond { Vec::new() } else { axis.load_interpolation(along).collect() };
+            // Nothing acts beside the axis: polynomials would go on there.
+            let rounding = 1e-12 * axis.end();
+            let loaded = axis.breaks()[0] - rounding..=axis.end() + rounding;
+            let shares = loaded.contains(&along).then(|| axis.load_interpolation(along));
+            let shares = shares.into_iter().flatten().collect();
             Position::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
         };
         Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }

@@ -51,6 +51,24 @@ fn stress(solved: &SolvedScene, body: BodyKind, [x, y, z]: [f64; 3]) -> StressTe
     solved.field(body).at(y, z, &[x])[0]
 }
 
+/// Where the bodies have left each other the surface is free, and its stresses are those just below it.
+#[test]
+fn surfaces_beside_a_contact_on_one_side_of_the_middle_are_free() {
+    for model in EdgeModel::ALL {
+        let solved = eccentric(4.6, model, 1e-2);
+        assert_eq!(solved.pressure.at(0.0, 0.7), 0.0, "the contact ends beside the middle");
+        for body in BodyKind::ALL {
+            for (x, y) in [(0.0, 0.0), (0.3, 0.0), (0.0, 0.4), (0.6, -0.4), (0.2, -3.1), (1.2, 0.7)]
+            {
+                let [on, below] = [0.0, 2e-3].map(|z| stress(&solved, body, [x, y, z]));
+                let name = format!("{model}, {} at {x} {y}", body.name());
+                assert!(on.zz.abs() < 1e-12 && on.xz.abs() < 1e-12, "{name}: {on:?}");
+                small(&name, apart(&on, &below), 0.02);
+            }
+        }
+    }
+}
+
 #[test]
 fn loads_on_either_side_are_mirror_images() {
     for model in EdgeModel::ALL {
