@@ -41,6 +41,9 @@ pub struct Corner {
 /// The least distance from a corner, in the panel's lengths: loads are bounded there.
 const NEAREST: f64 = 1e-9;
 
+/// Distance beside an axis, as a part of its largest coordinate, that is rounding.
+const BESIDE: f64 = 1e-12;
+
 /// Nodes beyond a panel's own, and the power of the map that crowds them, for integrals at a corner.
 const MORE_NODES: usize = 6;
 const POWER: i32 = 4;
@@ -118,8 +121,12 @@ impl Panels {
     }
 
     /// The load at `x` from those at the nodes of its panel, with weights; see [`Panels::interpolation`].
-    /// Nearer to a corner than the nodes are, it is that of the outermost one.
+    /// Nearer to a corner than the nodes are, it is that of the outermost one. Beside the axis, but for rounding, there is
+    /// no load and no node.
     pub fn load_interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
+        let [first, end] = [self.breaks[0], self.end()];
+        let rounding = BESIDE * first.abs().max(end.abs());
+        let is_loaded = (first - rounding..=end + rounding).contains(&x);
         let panel = self.panel_of(x);
         let own = &self.nodes[panel * self.order..(panel + 1) * self.order];
         let bounded = match self.corner_of(panel) {
@@ -127,7 +134,8 @@ impl Panels {
             Some(_) => x.min(own[self.order - 1]),
             None => x,
         };
-        (panel * self.order..).zip(self.loads(panel, bounded))
+        let nodes = (panel * self.order..).zip(self.loads(panel, bounded));
+        nodes.take(if is_loaded { self.order } else { 0 })
     }
 
     /// The same axis in units of length that are 1 / `factor` of the present ones.
@@ -342,6 +350,9 @@ mod tests {
         // At the corner itself it is bounded.
         let end: f64 = axis.load_interpolation(3.0).map(|(node, w)| w * values[node]).sum();
         assert!((end - values[values.len() - 1]).abs() < 1e-10 * end, "{end}");
+        // Beside the axis nothing acts, but for rounding.
+        assert_eq!([-1.1, 3.1, 40.0].map(|x| axis.load_interpolation(x).count()), [0; 3]);
+        assert_eq!([-1.0 - 1e-13, 3.0 + 1e-13].map(|x| axis.load_interpolation(x).count()), [4; 2]);
         let fine = |from: f64, to: f64| {
             let (nodes, weights) = gauss_legendre(40);
             let own = nodes.iter().zip(&weights).map(|(t, w)| (0.5 * (1.0 + t), 0.5 * w));

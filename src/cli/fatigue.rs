@@ -50,26 +50,24 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let counts = places(&arguments)?;
     let _lock = Lock::claim(&arguments.out)?;
-    if case.load.approach_m.is_some() {
-        // Half-spaces are judged under the same force.
-        case = SolvedCase::new(&case, &Options::new(arguments.method))?.case().clone();
-    }
-    let passages = |method: EdgeModel, of: &dyn Fn(&SolvedCase) -> Vec<Passage>| {
-        let solved = SolvedCase::new(&case, &Options::new(method))?;
-        Ok(Passages { method: method.name().into(), bodies: of(&solved) })
-    };
-    let own = passages(arguments.method, &|solved| {
-        BodyKind::ALL.map(|body| Passage::new(solved, body, counts)).to_vec()
-    })?;
-    let beside =
-        |solved: &SolvedCase| own.bodies.iter().map(|passage| passage.by(solved)).collect();
+    let solved = SolvedCase::new(&case, &Options::new(arguments.method))?;
+    // Half-spaces are judged under the same force, where it is the approach that is given.
+    let case = solved.case();
+    let passages =
+        |method: EdgeModel, bodies: Vec<Passage>| Passages { method: method.name().into(), bodies };
+    let bodies = BodyKind::ALL.map(|body| Passage::new(&solved, body, counts));
     let half_space = match arguments.method {
         EdgeModel::HalfSpace => None,
-        _ => Some(passages(EdgeModel::HalfSpace, &beside)?),
+        _ => {
+            let other = SolvedCase::new(case, &Options::new(EdgeModel::HalfSpace))?;
+            let beside = bodies.iter().map(|passage| passage.by(&other)).collect();
+            Some(passages(EdgeModel::HalfSpace, beside))
+        }
     };
+    let own = passages(arguments.method, bodies.to_vec());
     let hertz = case.hertz();
-    let found = summary(&case, &hertz, &own, half_space.as_ref());
-    let mut files = contents(&case, &hertz, &own, half_space.as_ref());
+    let found = summary(case, &hertz, &own, half_space.as_ref());
+    let mut files = contents(case, &hertz, &own, half_space.as_ref());
     files.push(("summary.json".into(), pretty(&found).into_bytes()));
     write_set(&arguments.out, &files)?;
     if arguments.json {

@@ -31,24 +31,18 @@ pub fn smallest_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
         if radius <= reached * (1.0 + ROUNDING) {
             return Ball { centre, radius };
         }
-        let next = around(&holding, farthest);
-        if next.ball.radius <= reached {
+        let (larger, held_by) = around(&holding, farthest);
+        if larger.radius <= reached {
             // Larger by less than rounding.
             return Ball { centre, radius };
         }
-        (centre, reached, holding) = (next.ball.centre, next.ball.radius, next.holding);
+        (centre, reached, holding) = (larger.centre, larger.radius, held_by);
     }
 }
 
-/// The smallest ball around a few points, and those of them that hold it.
-struct Held<const N: usize> {
-    ball: Ball<N>,
-    holding: Vec<[f64; N]>,
-}
-
-/// The smallest ball around the points that are `holding` another one and a point outside that, which then holds it as well:
-/// of the balls that some of them hold, the one whose centre has the nearest farthest point.
-fn around<const N: usize>(holding: &[[f64; N]], outside: &[f64; N]) -> Held<N> {
+/// The smallest ball around the points that are `holding` another one and a point outside that, and those of them that hold
+/// it, the one outside among them: of the balls that some hold, the one whose centre has the nearest farthest point.
+fn around<const N: usize>(holding: &[[f64; N]], outside: &[f64; N]) -> (Ball<N>, Vec<[f64; N]>) {
     let all: Vec<[f64; N]> = holding.iter().chain([outside]).copied().collect();
     let mut best = (f64::INFINITY, *outside, 0);
     for chosen in 0u32..1 << holding.len() {
@@ -60,7 +54,7 @@ fn around<const N: usize>(holding: &[[f64; N]], outside: &[f64; N]) -> Held<N> {
     }
     let (radius, centre, chosen) = best;
     let holding = of(holding, chosen).chain([outside]).copied().collect();
-    Held { ball: Ball { centre, radius }, holding }
+    (Ball { centre, radius }, holding)
 }
 
 /// The points that the bits of `chosen` name.

@@ -80,13 +80,8 @@ fn own_loads(solved: &SolvedCase, edges: &[f64]) -> Vec<f64> {
         breaks.extend(axis.breaks().iter().map(|y| -y));
     }
     let nodal = pressure.line_loads();
-    let [first, last] = pressure.ends();
-    let load = |y: f64| {
-        if y < first || y > last {
-            return 0.0;
-        }
-        let at = if pressure.is_symmetric() { y.abs() } else { y };
-        axis.load_interpolation(at).map(|(j, weight)| weight * nodal[j].load).sum::<f64>()
+    let load = |y: f64| -> f64 {
+        pressure.neighbours(y).into_iter().map(|(j, weight)| weight * nodal[j].load).sum()
     };
     let of_slice = |e: &[f64]| {
         let mut own: Vec<f64> = breaks.iter().copied().filter(|b| *b > e[0] && *b < e[1]).collect();

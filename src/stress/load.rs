@@ -56,11 +56,6 @@ pub trait Load: Debug + Sync {
 
     /// The nodes whose values interpolate to `y`, with their weights; none outside the contact.
     fn neighbours(&self, y: f64) -> Vec<(usize, f64)> {
-        let [from, to] = self.ends();
-        let rounding = 0.5e-12 * (to - from);
-        if !(from - rounding..=to + rounding).contains(&y) {
-            return Vec::new();
-        }
         self.axis().load_interpolation(self.on_axis(y)).collect()
     }
 }

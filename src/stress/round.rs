@@ -208,6 +208,7 @@ fn summed(rule: &Rule, x: f64, z: f64, term: impl Fn(f64, f64, f64) -> [f64; 3])
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::kernels::strip;
 
     #[test]
     fn places_of_loads_lie_in_contacts_of_any_length() {
@@ -223,7 +224,6 @@ mod tests {
             }
         }
     }
-    use crate::kernels::strip;
 
     /// Places on the arc and forces of a semi-elliptic load of half-width 1.
     fn loads() -> Vec<(f64, f64)> {

@@ -296,11 +296,7 @@ impl Influence {
         let target = if depth > 0.0 {
             Position::Within(Places::new(offsets, depth, shears))
         } else {
-            // Nothing acts beside the axis: polynomials would go on there.
-            let rounding = 1e-12 * axis.end();
-            let loaded = axis.breaks()[0] - rounding..=axis.end() + rounding;
-            let shares = loaded.contains(&along).then(|| axis.load_interpolation(along));
-            let shares = shares.into_iter().flatten().collect();
+            let shares = axis.load_interpolation(along).collect();
             Position::Upon(offsets.iter().map(|u| *u as f32).collect(), shares)
         };
         Self { side, stencil, strips: strips.iter().map(|(_, w)| *w).collect(), target }
