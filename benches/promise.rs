@@ -135,9 +135,8 @@ impl Kind {
     }
 }
 
-/// Depth (C) from which the approach is counted, and what its relative error counts.
+/// Depth (C) of the points whose approach is compared.
 const DEEP: f64 = 30.0;
-const APPROACH: f64 = 2.0;
 
 /// Columns of points inside each body, off its planes of symmetry, up to this distance (C) beyond the contact's end.
 const COLUMNS: usize = 6;
@@ -289,8 +288,7 @@ impl Known {
 
     /// [`Known::errors`] of values that are known.
     fn errors_of(&self, found: &Values) -> (f64, f64, String) {
-        // The approach has less error than the pressure.
-        let mut pressure = APPROACH * (found.approach / self.limit.approach - 1.0).abs();
+        let mut pressure = (found.approach / self.limit.approach - 1.0).abs();
         let mut at_pressure = [f64::NAN; 2];
         for ((at, a), b) in self.places.line.iter().zip(&found.pressure).zip(&self.limit.pressure) {
             let off: f64 = (a - b).abs();

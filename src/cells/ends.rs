@@ -24,7 +24,6 @@ use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
 use crate::body::{End, Resolution, Shape, Stack};
-use crate::contact::{Compliance, LongWaves, Reference};
 use crate::stress::{Field, Load};
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
@@ -60,7 +59,6 @@ const NEGLIGIBLE: f64 = 1e-5;
 /// A body with free ends at the coarse wavenumbers, and the same as a mirrored half-space.
 #[derive(Debug)]
 struct Freed {
-    body: FreeBody,
     stack: Stack,
     mirrored: Stack,
     /// What [`FreeEnds::long`] has of it, times k e^(k H).
@@ -111,7 +109,7 @@ impl FreeEnds {
                 stack.add_compliance(i, own.share, sum);
                 mirrored.add_compliance(i, -own.share, sum);
             }
-            Freed { body: *own, stack, mirrored, long: long(own, symmetric) }
+            Freed { stack, mirrored, long: long(own, symmetric) }
         });
         let bodies = bodies.collect();
         let basis = rigid(&axis, symmetric);
@@ -220,40 +218,29 @@ impl FreeEnds {
             .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance))
     }
 
-    /// Mean displacement along the line (C^2 / (2 R)) that the free ends add at `depth` (C), as the approach of contacts on
-    /// `grid` has it; see [`Reference`].
-    pub(super) fn reference(&self, pressure: &dyn Load, grid: &Grid, depth: f64) -> f64 {
+    /// The displacement (C^2 / (2 R)) of the line x = 0 that the free ends add, at `y`, under a `pressure` on the axis; far points are those of
+    /// contacts on `grid`.
+    pub fn lift<'a>(&'a self, pressure: &dyn Load, grid: &Grid) -> impl Fn(f64) -> f64 + use<'a> {
         let wavenumbers = self.resolving(grid);
-        let transform = |k: f64| pressure.transforms(&[k]).column(0).into_owned();
-        let own = |stack: fn(&Freed) -> &Stack, long: Option<LongWaves>| {
-            let n = self.axis.len();
-            let mut matrices = vec![DMatrix::zeros(n, n); wavenumbers.coarse().len()];
-            for freed in &self.bodies {
-                for (i, matrix) in matrices.iter_mut().enumerate() {
-                    stack(freed).add_compliance(i, freed.body.share, matrix);
-                }
+        let fine = wavenumbers.fine();
+        let weighted = DMatrix::from_diagonal(&DVector::from_column_slice(self.axis.weights()));
+        let loads = self.basis.tr_mul(&weighted) * pressure.transforms(fine.nodes());
+        let rigid = self.bodies[0].long.nrows();
+        let mut moved = DVector::zeros(self.basis.ncols());
+        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
+            let load = loads.column(i) * (weight / (PI * PI));
+            let (first, interpolation) = wavenumbers.interpolation(i);
+            for (share, matrix) in interpolation.iter().zip(&self.matrices[first..]) {
+                moved += matrix * &load * *share;
             }
-            let compliance = Compliance { wavenumbers: &wavenumbers, matrices: &matrices };
-            Reference::new(&compliance, self.axis.weights(), long, transform).at(depth)
-        };
-        // The transform of a cell has no value at 0 itself.
-        let long = self.long_waves(&transform(1e-9));
-        own(|freed| &freed.stack, Some(long)) - own(|freed| &freed.mirrored, None)
-    }
-
-    /// What is known of the displacements by long waves under the loads per length `lines` at the nodes.
-    fn long_waves(&self, lines: &DVector<f64>) -> LongWaves {
-        let (axis, sides) = (&self.axis, if self.symmetric { 2.0 } else { 1.0 });
-        let centre = if self.symmetric { 0.0 } else { 0.5 * (axis.breaks()[0] + axis.end()) };
-        let nodes = || axis.nodes().iter().zip(axis.weights()).zip(lines);
-        let load = sides * nodes().map(|((_, weight), line)| weight * line).sum::<f64>();
-        let of_body = |freed: &Freed| {
-            let FreeBody { half, middle, nu, share } = freed.body;
-            let moment = |((y, weight), line): ((&f64, &f64), &f64)| (y - middle) * weight * line;
-            let moment = if self.symmetric { 0.0 } else { nodes().map(moment).sum() };
-            (share * Shape { half, nu }.as_plate(load, moment, centre - middle), half)
-        };
-        LongWaves::of(self.bodies.iter().map(of_body))
+            let mut long = moved.rows_mut(0, rigid);
+            long += self.long(*k) * load.rows(0, rigid);
+        }
+        let displaced = &self.basis * moved;
+        move |y| {
+            let y = if self.symmetric { y.abs() } else { y };
+            self.axis.interpolation(y).map(|(node, share)| share * displaced[node]).sum()
+        }
     }
 
     /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to

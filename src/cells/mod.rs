@@ -18,7 +18,6 @@
 mod columns;
 mod convolution;
 mod cosine;
-mod depth;
 mod end_stress;
 mod ends;
 mod field;

@@ -2,7 +2,6 @@
 
 use super::convolution::EvenConvolution;
 use super::cosine::good_length;
-use super::depth;
 use super::ends::FreeEnds;
 use super::grid::Grid;
 use super::influence::{Images, Table};
@@ -181,17 +180,6 @@ impl CellProblem {
         };
         let start = fold(&grid, symmetry, start);
         Ok(problem.solve(start, tolerance, self.most_iterations, level.progress))
-    }
-
-    /// Mean displacement along the line (C^2 / (2 R)) that `solution` and its images cause at `depth` (C): the approach
-    /// less this is that of points at the depth.
-    pub fn mean_displacement(&self, solution: &CellPressure, depth: f64) -> f64 {
-        let shifts: Vec<(f64, f64)> = self.images.iter().flat_map(Images::shifts).collect();
-        let ends = self
-            .free
-            .as_ref()
-            .map_or(0.0, |free| free.reference(&free.columns(solution), &self.grid, depth));
-        depth::mean(solution, &shifts, depth) + ends
     }
 
     /// The gaps (C^2 / (2 R)) over the cells under the pressures of `solution`, those of the problem's contact with this `gap`.

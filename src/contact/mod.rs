@@ -13,7 +13,6 @@
 //! half-space's f is 2 K0(k|y|), whose row sums are 2 pi / k) and p^ is the Fourier transform
 //! int p cos(k x) dx.
 
-mod approach;
 mod check;
 mod collocation;
 mod gap;
@@ -25,7 +24,6 @@ mod slices;
 mod solution;
 mod solver;
 
-pub use approach::{LongWaves, Reference};
 pub use check::gaps;
 pub use gap::{Gap, Shaped, Straight};
 pub use operator::{Compliance, LineOperator, Operator};

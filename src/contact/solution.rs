@@ -11,7 +11,7 @@ pub struct ContactSolution {
     /// Coefficients of the modes at each node.
     pub coefficients: Vec<Vec<f64>>,
     /// Approach in units of C^2 / (2 R), relative to points at a distance set by the smallest
-    /// wavenumber; subtract [`super::Reference`] for a given depth.
+    /// wavenumber: that of material points follows from the stresses.
     pub approach: f64,
     /// Tilt in units of C / (2 R): the growth of the approach per C along y.
     pub tilt: f64,

@@ -1,6 +1,7 @@
 //! A case solved on uniform cells of constant pressure.
 
 use super::cell_contact::CellContact;
+use super::cell_deep::DeepMotion;
 use super::cell_stress::Stressed;
 use super::cells::{PressureCell, contact_ends, largest, line_loads};
 use super::options::Options;
@@ -193,7 +194,7 @@ pub fn solve_on_cells(
     let region = Region::new(case, &scene, cells);
     let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
     let setup = start.elapsed().as_secs_f64();
-    let (pressure, tilt) = covering(&mut contact, &region)?;
+    let (pressure, motion) = covering(&mut contact, &region)?;
     let mean_gap = contact.mean_gap(&pressure);
     let problem = contact.problem;
     let solved = start.elapsed().as_secs_f64();
@@ -201,13 +202,13 @@ pub fn solve_on_cells(
     let total = start.elapsed().as_secs_f64();
     let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
     let found =
-        Found { case, scene: &scene, problem: &problem, pressure: &pressure, tilt, mean_gap };
+        Found { case, scene: &scene, problem: &problem, pressure: &pressure, motion, mean_gap };
     let solution = found.solution(stressed, seconds);
     Ok(CellSolution { solution, pressure, middle: scene.middle })
 }
 
-/// The pressures of `contact` and its tilt on cells of `region` that cover it.
-fn covering(contact: &mut CellContact, region: &Region) -> Result<(CellPressure, f64)> {
+/// The pressures of `contact` and its motion on cells of `region` that cover it.
+fn covering(contact: &mut CellContact, region: &Region) -> Result<(CellPressure, DeepMotion)> {
     let mut growths = MOST_GROWTHS;
     loop {
         match contact.solve() {
@@ -255,23 +256,16 @@ pub fn loads_on_cells(
     let unit_m = case.gap_unit_m();
     let step = |&force_n: &f64| {
         contact.problem.load = scene.load * force_n / case.load.force_n;
-        let (pressure, _) = covering(&mut contact, &region)?;
-        let depth = case.roller.radius_m / c_m;
-        let approach = approach(&scene, &contact.problem, &pressure, depth);
+        let (pressure, motion) = covering(&mut contact, &region)?;
         Ok(LoadStep {
             force_n,
-            approach_m: approach * unit_m,
+            approach_m: motion.approach * unit_m,
             mean_gap_m: contact.mean_gap(&pressure) * unit_m,
             contact_area_m2: pressure.contact_area() * c_m * c_m,
             p_max_pa: pressure.pressure.iter().fold(0.0, |m: f64, p| m.max(*p)) * p0_pa,
         })
     };
     forces.iter().map(step).collect()
-}
-
-/// The approach (C^2 / (2 R)) of points at `depth` (C), at the roller's middle, from which a tilt is counted.
-fn approach(scene: &Scene, problem: &CellProblem, pressure: &CellPressure, depth: f64) -> f64 {
-    pressure.approach - pressure.tilt * scene.middle - problem.mean_displacement(pressure, depth)
 }
 
 /// Stresses (p0) at the points of `options` under the `pressure` that [`solve_on_cells`] found for `case`.
@@ -295,8 +289,8 @@ struct Found<'a> {
     scene: &'a Scene,
     problem: &'a CellProblem,
     pressure: &'a CellPressure,
-    /// Tilt at the depth of the roller's radius (C / (2 R)).
-    tilt: f64,
+    /// The motion at the depth of the roller's radius.
+    motion: DeepMotion,
     /// Mean gap (C^2 / (2 R)).
     mean_gap: f64,
 }
@@ -342,15 +336,13 @@ impl Found<'_> {
         // Mirror images have the same pressure.
         let mirrored = |v: f64, even: bool| if even { v.abs() } else { v };
         let even = scene.span().symmetric;
-        let depth = case.roller.radius_m / c_m;
-        let approach = approach(scene, self.problem, pressure, depth);
         Summary {
             case: case.name.clone(),
             method: scene.model,
             hertz,
             load_n: case.load.force_n,
-            approach_m: approach * c_m * slope,
-            tilt_rad: self.tilt * slope,
+            approach_m: self.motion.approach * c_m * slope,
+            tilt_rad: self.motion.tilt * slope,
             p_centre_pa: pressure.at(0.0, scene.off_middle(scene.span().centre())) * p0_pa,
             p_max_pa: top.p * p0_pa,
             p_max_at_m: [mirrored(top.x, !scene.rough), mirrored(top.y, even)].map(|v| v * c_m),

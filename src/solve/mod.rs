@@ -4,9 +4,11 @@
 mod approached;
 mod cell_case;
 mod cell_contact;
+mod cell_deep;
 mod cell_layers;
 mod cell_stress;
 mod cells;
+mod deep;
 pub mod edge;
 mod extent;
 mod grid;
@@ -25,7 +27,6 @@ mod solved;
 mod solved_scene;
 mod stiffness;
 mod summary;
-mod tilt;
 
 #[cfg(test)]
 mod tests;

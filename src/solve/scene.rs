@@ -204,6 +204,12 @@ impl Scene {
         }
     }
 
+    /// Whether both bodies have the same ends and Poisson's ratio, and so the same stresses.
+    pub fn bodies_are_alike(&self) -> bool {
+        let PerBody { block, roller } = &self.bodies;
+        block.half == roller.half && block.middle == roller.middle && block.nu == roller.nu
+    }
+
     /// Whether bodies and gap are symmetric about y = 0.
     fn is_aligned(&self) -> bool {
         let even = |profile: &Profile| profile.is_even();

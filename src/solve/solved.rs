@@ -191,18 +191,8 @@ impl SolvedCase {
         let cells = pressure_cells(&self.scene);
         let critical = most_stressed(&curves.stress, &self.scene.scene.span());
         let summary = self.summary(stresses, critical, &cells);
-        let line_loads = self.line_loads();
+        let line_loads = self.scene.pressure.whole_line();
         Solution { summary, curves, cells, line_loads, points }
-    }
-
-    /// The load per length along the whole contact.
-    fn line_loads(&self) -> Vec<LineLoad> {
-        let half = self.scene.pressure.line_loads();
-        if !self.scene.pressure.is_symmetric() {
-            return half;
-        }
-        let mirrored = half.iter().rev().map(|line| LineLoad { y: -line.y, ..*line });
-        mirrored.chain(half.iter().copied()).collect()
     }
 
     /// C / R of a body, negative for a concave one.

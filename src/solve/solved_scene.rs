@@ -1,14 +1,13 @@
 //! A scene whose contact is solved.
 
+use super::deep::{self, Touch};
 use super::lines::{self, Stresses};
 use super::scene::{Scene, SceneBody, Tilt};
-use super::tilt::{self, Touch};
 use crate::base::stop::go_on;
 use crate::base::{Error, Panels, Result, Wavenumbers};
-use crate::body::{EdgeModel, Resolution, Shape, Stack};
+use crate::body::{Resolution, Shape, Stack};
 use crate::contact::{
-    self, Compliance, ContactSettings, ContactSolution, LongWaves, Problem, Reference, Rotation,
-    Shaped, Slices,
+    self, Compliance, ContactSettings, ContactSolution, Problem, Rotation, Shaped, Slices,
 };
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
@@ -247,20 +246,19 @@ impl SolvedScene {
         gaps
     }
 
-    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
+    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surfaces at y = 0.
     pub fn approach(&self, depth: f64) -> f64 {
         self.approaches().at(depth)
     }
 
     /// The approach of points at any depth.
     pub(super) fn approaches(&self) -> Approaches {
-        let own = &self.own.contact;
-        let axis = self.own.pressure.axis();
-        let centre = 0.5 * (axis.breaks()[0] + axis.end());
-        let long = self.own.scene.long_waves(centre, moment(axis, own));
-        let transform = |k| own.transform(k);
-        let reference = Reference::new(&self.compliance(), axis.weights(), long, transform);
-        Approaches { approach: own.approach, reference, unit: self.unit }
+        let own = &self.own;
+        let approach = |fields: [&Field; 2]| {
+            let below = deep::below_fields(fields);
+            deep::Approaches::new(&own.scene, &below, &touch(&own.pressure, &own.contact))
+        };
+        Approaches { own: self.with_fields(approach), unit: self.unit }
     }
 
     /// Tilt in units of C / (2 R) of lines `depth` (C) below the surface.
@@ -268,33 +266,39 @@ impl SolvedScene {
         if self.scene.is_symmetric() {
             return 0.0;
         }
+        let own = &self.own;
+        let tilt = |fields: [&Field; 2]| {
+            let below = deep::below_fields(fields);
+            deep::tilt(&own.scene, &below, &touch(&own.pressure, &own.contact), depth / self.unit)
+        };
+        self.with_fields(tilt) * self.unit
+    }
+
+    /// What `of` makes of the fields of the block and of the roller, without a stress correction.
+    fn with_fields<T>(&self, of: impl Fn([&Field; 2]) -> T) -> T {
         let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
         let [block, roller] = &fields;
-        let own = &self.own;
-        let touch = touch(&own.pressure, &own.contact);
-        tilt::of_fields(&own.scene, [block, roller], &touch, depth / self.unit) * self.unit
+        of([block, roller])
     }
 }
 
 /// The approach of the bodies at any depth, without the rest of a [`SolvedScene`].
 #[derive(Debug)]
 pub(super) struct Approaches {
-    /// The contact's, which lacks the reference.
-    approach: f64,
-    reference: Reference,
-    /// The unit of length, in C, of both.
+    own: deep::Approaches,
+    /// The unit of length, in C, of it.
     unit: f64,
 }
 
 impl Approaches {
-    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surface.
+    /// Approach in units of C^2 / (2 R) of points `depth` (C) below the surfaces at y = 0.
     pub fn at(&self, depth: f64) -> f64 {
-        (self.approach - self.reference.at(depth / self.unit)) * self.unit * self.unit
+        self.own.at(depth / self.unit) * self.unit * self.unit
     }
 
     /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
-        self.reference.bytes()
+        self.own.bytes()
     }
 }
 
@@ -325,21 +329,6 @@ impl Scene {
             gap.turns_within(end, -outward)
         });
         level.following(turns[0].min(turns[1]))
-    }
-
-    /// What is known of the displacements by long waves, along a line with the middle `centre`, under a load with the
-    /// `moment` about y = 0. Bodies between free faces are plates for them, loaded on their edge, which move as a whole and
-    /// turn, see [`Shape::as_plate`]. In symmetry none turns.
-    fn long_waves(&self, centre: f64, moment: f64) -> Option<LongWaves> {
-        if self.model != EdgeModel::QuarterSpace {
-            return None;
-        }
-        let of_body = |body: &SceneBody| {
-            let SceneBody { half, middle, nu, share, .. } = *body;
-            let moment = if self.is_symmetric() { 0.0 } else { moment - middle * self.load };
-            (share * Shape { half, nu }.as_plate(self.load, moment, centre - middle), half)
-        };
-        Some(LongWaves::of(self.bodies.iter().map(of_body)))
     }
 
     /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line
@@ -456,12 +445,13 @@ impl Secants {
 /// Most of a step of [`Secants`] in steps before it.
 const LONGEST_STEP: f64 = 8.0;
 
-/// Where the bodies touch on the axis of a pressure, and the moment with which they do.
+/// Where the bodies touch on the axis of a pressure, and their load.
 fn touch(pressure: &Pressure, contact: &ContactSolution) -> Touch {
     let [from, to] = pressure.ends();
     let [first, last] = contact.ends.map(|end| end.clamp(from, to));
+    let first = if pressure.is_symmetric() { -last } else { first };
     let ends = if first < last { [first, last] } else { [from, to] };
-    Touch { ends, moment: moment(pressure.axis(), contact) }
+    Touch::new(ends, &pressure.whole_line())
 }
 
 /// The moment about y = 0 of a contact's pressure.
@@ -575,9 +565,8 @@ impl Trial<'_> {
         let coarse = wavenumbers.coarse().nodes();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
         // Bodies with the same ends and Poisson's ratio share one computation.
-        let alike =
-            block.half == roller.half && block.middle == roller.middle && block.nu == roller.nu;
-        let distinct = if alike { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
+        let distinct =
+            if scene.bodies_are_alike() { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
         let stack = |&kind: &BodyKind| {
             let SceneBody { half, middle, nu, .. } = scene.bodies[kind];
             let place = (middle, Shape { half, nu });
@@ -671,7 +660,8 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        tilt::of_fields(scene, [&block, &roller], &touch(&pressure, contact), scene.depth)
+        let below = deep::below_fields([&block, &roller]);
+        deep::tilt(scene, &below, &touch(&pressure, contact), scene.depth)
     }
 }
 

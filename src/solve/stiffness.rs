@@ -131,5 +131,18 @@ mod tests {
         let wanted = force * (1.01 * 1.02e-4 - 1e-4);
         assert!((predicted / wanted - 1.0).abs() < 0.05, "{predicted} of {wanted}");
         assert!((solved.centre_of_pressure_m() - 1e-4).abs() < 1e-10);
+        let [one, other] = [stiffness.force_by_tilt_n_per_rad, stiffness.moment_by_approach_n];
+        assert!((one / other - 1.0).abs() < 0.04, "{one} {other}");
+    }
+
+    /// So it is where half of the line has lifted off.
+    #[test]
+    fn the_stiffness_of_a_contact_beside_the_middle_is_symmetric() {
+        let mut tilted = case(5.0);
+        tilted.pose.tilt_rad = Some(2e-2);
+        let (solved, stiffness) = found(&tilted);
+        assert!(solved.scene().ends()[0] > -1.0, "{:?}", solved.scene().ends());
+        let [one, other] = [stiffness.force_by_tilt_n_per_rad, stiffness.moment_by_approach_n];
+        assert!(one > 0.0 && (one / other - 1.0).abs() < 0.02, "{one} {other}");
     }
 }

@@ -157,6 +157,16 @@ impl Pressure {
         };
         nodes.map(at).collect()
     }
+
+    /// The load per length along the whole contact, in ascending order of y.
+    pub fn whole_line(&self) -> Vec<LineLoad> {
+        let half = self.line_loads();
+        if !self.symmetric {
+            return half;
+        }
+        let mirrored = half.iter().rev().map(|line| LineLoad { y: -line.y, ..*line });
+        mirrored.chain(half.iter().copied()).collect()
+    }
 }
 
 impl Load for Pressure {

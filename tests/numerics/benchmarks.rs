@@ -2,7 +2,7 @@
 
 use edgeline::body::EdgeModel;
 use edgeline::case::Case;
-use edgeline::solve::{Options, SolvedCase, solve};
+use edgeline::solve::{Options, Scene, SolvedCase, SolvedScene};
 use std::f64::consts::PI;
 
 /// NAFEMS, Advanced Finite Element Contact Benchmarks (2006), benchmark 1: a steel cylinder of 50 mm radius on an
@@ -48,37 +48,62 @@ force_n = 8.75e6
 /// 2004): 4219, 3939, 3678 and 3435 N for plates 0.5, 1, 2 and 4 D thick, by a fit within 1.5 % of finite
 /// elements.
 ///
-/// Here the plate is infinitely deep, so the approach is counted to the plate's depth: that of the model, to one roller
-/// radius, and from there on the displacement below a line of equal forces on a half-space (Boussinesq; Johnson, 1985,
-/// Eq. 3.18). The stiff base of the true plate is not there, so thin plates take less force. Poisson's ratio is taken as
-/// 0.3, and the plate as far longer than the roller.
+/// How long their plate is, is not known here: from 2 to 4 D it yields by 1.92e-10 m/N more, where one as long as the roller does by
+/// F ln 2 / (pi E H), 2.12e-10, and a far longer one by 0.58e-10. So their forces lie between those on both. Here plates are infinitely deep, and
+/// their approach is counted to their thickness, beyond one roller radius below a far longer one by the displacement below a line of
+/// equal forces on a half-space (Boussinesq; Johnson, 1985, Eq. 3.18). The roller is a disc squeezed across, which is softer than a
+/// deep body down to its centre by F / (pi E L) (2 ln 2 - 1 + nu) in plane stress and by
+/// F (1 - nu^2) / (pi E L) (2 ln 2 - 1 + nu / (1 - nu)) in plane strain (Eqs. 5.57 and 5.58): their mean is taken.
 #[test]
-fn the_roller_on_plates_of_teutsch_and_sauer_takes_their_forces_as_far_as_a_deep_body_can() {
+fn the_roller_on_plates_of_teutsch_and_sauer_takes_forces_between_those_on_short_and_long_plates() {
     const MODULUS: f64 = 208e9;
+    const POISSON: f64 = 0.3;
+    const RADIUS: f64 = 0.005;
     const LENGTH: f64 = 0.01;
-    let under_force = |approach: f64| {
+    let log = 2.0 * 2f64.ln() - 1.0;
+    let strain = (1.0 - POISSON * POISSON) * (log + POISSON / (1.0 - POISSON));
+    let disc = 0.5 * (log + POISSON + strain) / (PI * MODULUS * LENGTH);
+    // Displacement along z at a depth below the middle of the line on a half-space, for a force of one newton.
+    let below = |z: f64| {
+        let half = 0.5 * LENGTH;
+        let line = LENGTH / z.hypot(half) + 4.0 * (1.0 - POISSON) * (half / z).asinh();
+        (1.0 + POISSON) / (2.0 * PI * MODULUS * LENGTH) * line
+    };
+    let approach = |force: f64, plate_m: f64, depth: f64| {
+        let body = |length_m: f64| {
+            format!("length_m = {length_m}\nyoung_pa = {MODULUS}\npoisson = {POISSON}\n")
+        };
         let text = format!(
-            "name = \"plate\"\n[roller]\nradius_m = 0.005\nlength_m = {LENGTH}\nyoung_pa = {MODULUS}\npoisson = 0.3\n\
-             [block]\nlength_m = 0.1\nyoung_pa = {MODULUS}\npoisson = 0.3\n[load]\napproach_m = {approach}\n"
+            "name = \"plate\"\n[roller]\nradius_m = {RADIUS}\n{}[block]\n{}[load]\nforce_n = {force}\n",
+            body(LENGTH),
+            body(plate_m)
         );
         let case = Case::from_toml(&text).unwrap();
-        solve(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap().summary.load_n
+        let c_m = case.hertz().c_m;
+        let solved = SolvedScene::new(&Scene::new(&case, EdgeModel::QuarterSpace, None)).unwrap();
+        let at = |z: f64| solved.approach(z / c_m) * case.gap_unit_m();
+        // Like bodies have half of an approach each.
+        let deeper = match plate_m == LENGTH {
+            true => 0.5 * (at(depth) - at(RADIUS)),
+            false => force * (below(RADIUS) - below(depth)),
+        };
+        at(RADIUS) + deeper + force * disc
     };
-    // Displacement along z at a depth below the middle of the line, for a force of one newton.
-    let below = |z: f64| {
-        let line = LENGTH / z.hypot(0.5 * LENGTH) + 4.0 * (1.0 - 0.3) * (0.5 * LENGTH / z).asinh();
-        (1.0 + 0.3) / (2.0 * PI * MODULUS * LENGTH) * line
-    };
-    let mut ratios = Vec::new();
     for (depth, wanted) in [(0.005, 4219.0), (0.01, 3939.0), (0.02, 3678.0), (0.04, 3435.0)] {
-        let mut force = wanted;
-        for _ in 0..4 {
-            force = under_force(1e-5 - force * (below(0.005) - below(depth)));
-        }
-        let settled = under_force(1e-5 - force * (below(0.005) - below(depth)));
-        assert!((settled / force - 1.0).abs() < 1e-3, "{settled} {force}");
-        ratios.push(force / wanted);
+        let [short, long] = [LENGTH, 10.0 * LENGTH].map(|plate_m| {
+            let mut force: f64 = wanted;
+            for _ in 0..6 {
+                // The approach grows with about this power of the force.
+                force *= (1e-5 / approach(force, plate_m, depth)).powf(1.1);
+            }
+            let met = approach(force, plate_m, depth) / 1e-5 - 1.0;
+            assert!(met.abs() < 1e-4, "{force}: {met}");
+            force / wanted
+        });
+        println!("{depth}: {short} {long}");
+        assert!(
+            short > 0.92 && short < 1.0 && long > 1.0 && long < 1.10,
+            "{depth}: {short} {long}"
+        );
     }
-    assert!(ratios.iter().all(|r| (0.93..1.03).contains(r)), "{ratios:?}");
-    assert!((ratios[3] - 1.0).abs() < 0.03, "{ratios:?}");
 }
