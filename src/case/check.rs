@@ -15,6 +15,9 @@ const ROUNDING: f64 = 1.0 + 1e-9;
 /// Least overlap of the bodies, in lengths of the shorter one.
 const LEAST_OVERLAP: f64 = 1e-2;
 
+/// Largest range of heights, in roller radii.
+const HIGHEST: f64 = 0.1;
+
 /// The key at `path`.
 fn key(path: &str) -> &'static Key {
     Key::find(path).expect("a key of the list")
@@ -32,7 +35,23 @@ impl Case {
         self.check_factors()?;
         self.check_pose()?;
         self.check_fatigue()?;
+        self.check_heights()?;
         self.check_profiles()
+    }
+
+    /// Refuses heights that are no roughness, most likely of another unit.
+    fn check_heights(&self) -> Result<()> {
+        let Some(heights) = self.heights() else { return Ok(()) };
+        let (range, radius) = (heights.range_m(), self.roller.radius_m);
+        if range <= HIGHEST * radius {
+            return Ok(());
+        }
+        Err(Error::Value {
+            key: "surface.heights".into(),
+            value: format!("{range:e} m from the lowest to the highest"),
+            reason: format!("a roller of radius {radius:e} m has no slopes small enough for that"),
+            remedy: "give heights in metres; detrend = \"plane\" takes their mean plane off".into(),
+        })
     }
 
     /// Refuses numbers of a measure of fatigue that lack others of the same measure.

@@ -98,6 +98,13 @@ impl Heights {
         [0, 1].map(|i| 0.5 * (self.shape[i] - 1) as f64 * self.steps_m[i])
     }
 
+    /// The highest less the lowest height (m).
+    pub fn range_m(&self) -> f64 {
+        let ends = |[low, high]: [f64; 2], v: &f64| [low.min(*v), high.max(*v)];
+        let [low, high] = self.values_m.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
+        high - low
+    }
+
     /// The height (m) at (`x_m`, `y_m`), linear between samples; beyond the last ones theirs.
     pub fn at(&self, x_m: f64, y_m: f64) -> f64 {
         let half = self.half_spans_m();

@@ -13,17 +13,21 @@ use std::path::{Path, PathBuf};
 pub struct Lock {
     path: PathBuf,
     _file: File,
+    /// Whether the folder was made for it, and goes with it if it is empty then.
+    made_folder: bool,
 }
 
 impl Lock {
     /// Creates `folder`, checks that files can be written there, takes its lock, and removes the
-    /// unfinished files of a run that was killed.
+    /// unfinished files of a run that was killed. A folder that is made here and empty in the end is removed.
     ///
     /// # Errors
     /// As [`prepare_folder`] and [`Lock::take`].
     pub fn claim(folder: &Path) -> Result<Lock> {
+        let made_folder = !folder.exists();
         prepare_folder(folder)?;
-        let lock = Lock::take(folder)?;
+        let mut lock = Lock::take(folder)?;
+        lock.made_folder = made_folder;
         remove_parts(folder)?;
         Ok(lock)
     }
@@ -59,7 +63,7 @@ impl Lock {
             }
             file.set_len(0).map_err(io)?;
             writeln!(file, "{}", std::process::id()).map_err(io)?;
-            return Ok(Lock { path: path.clone(), _file: file });
+            return Ok(Lock { path: path.clone(), _file: file, made_folder: false });
         }
     }
 }
@@ -68,12 +72,32 @@ impl Drop for Lock {
     fn drop(&mut self) {
         // The file is removed while it is locked; if that fails, the next run takes it over.
         let _ = std::fs::remove_file(&self.path);
+        if self.made_folder
+            && let Some(folder) = self.path.parent()
+        {
+            // A run that failed leaves nothing; a folder with files stays.
+            let _ = std::fs::remove_dir(folder);
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_folder_that_is_made_and_stays_empty_goes_with_its_lock() {
+        let folder = tempfile::tempdir().unwrap();
+        let made = folder.path().join("made");
+        drop(Lock::claim(&made).unwrap());
+        assert!(!made.exists());
+        drop(Lock::claim(folder.path()).unwrap());
+        assert!(folder.path().exists());
+        let lock = Lock::claim(&made).unwrap();
+        std::fs::write(made.join("summary.json"), "{}").unwrap();
+        drop(lock);
+        assert!(made.join("summary.json").exists());
+    }
 
     #[test]
     fn a_folder_is_locked_until_the_lock_ends() {

@@ -6,12 +6,13 @@ use crate::stress::BodyKind;
 /// Relative tolerance of a coordinate, which may have lost digits in a file.
 const ROUNDING: f64 = 1e-9;
 
-/// The extent of a body (m): y from end to end, z from its surface down. Across the contact it has no
-/// end.
+/// The extent of a body (m): y from end to end, z from its surface down. Across the contact the block has no
+/// end, and the roller its radius on either side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     body: BodyKind,
     ends_m: [f64; 2],
+    half_width_m: f64,
     depth_m: f64,
 }
 
@@ -31,11 +32,11 @@ pub struct Outside {
 impl Extent {
     /// The extent of one of the bodies of `case`.
     pub fn of(case: &Case, body: BodyKind) -> Self {
-        let depth_m = match body {
+        let half_width_m = match body {
             BodyKind::Block => f64::INFINITY,
-            BodyKind::Roller => 2.0 * case.roller.radius_m,
+            BodyKind::Roller => case.roller.radius_m,
         };
-        Self { body, ends_m: case.ends_m(body), depth_m }
+        Self { body, ends_m: case.ends_m(body), half_width_m, depth_m: 2.0 * half_width_m }
     }
 
     /// The body's ends along y (m).
@@ -58,7 +59,7 @@ impl Extent {
     pub fn check_axis(&self, axis: usize, value_m: f64) -> Result<(), Outside> {
         let name = self.body.name();
         let inside = match axis {
-            0 => true,
+            0 => value_m.abs() <= self.half_width_m,
             1 => {
                 let [from, to] = self.ends_m;
                 let rounding = ROUNDING * (to - from);
@@ -70,6 +71,8 @@ impl Extent {
             ("is not a finite number".to_string(), "correct it".to_string())
         } else if inside {
             return Ok(());
+        } else if axis == 0 {
+            (format!("is beside the {name}"), format!("keep |x| <= {:e} m", self.half_width_m))
         } else if axis == 1 {
             let [from, to] = self.ends_m;
             let remedy = match from == -to {

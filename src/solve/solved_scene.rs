@@ -39,6 +39,14 @@ const CLOSEST: f64 = 0.1;
 /// How far beyond a first guess the axis reaches, in half-lengths of the contact.
 const MARGIN: f64 = 0.15;
 
+/// Largest width, in its lengths, of a contact that ends before its bodies do: a wider one asks for nodes across, not along. The same in a
+/// first guess, where no solution is found.
+const WIDEST: f64 = 3.0;
+const WIDEST_GUESS: f64 = 2.0;
+
+/// Tolerance of a second attempt, in that of the first.
+const FINER: f64 = 0.1;
+
 /// A half-width (C) from which a contact has a unit of its own.
 const WIDER: f64 = 1.4;
 
@@ -109,7 +117,24 @@ impl SolvedScene {
     /// [`Error::NotConverged`] if the contact does not converge, [`Error::Unsound`] if the solution
     /// violates a law of contact or the equations are ill-conditioned.
     pub fn new(scene: &Scene) -> Result<Self> {
-        Self::within(scene, None, soundness(scene))
+        let soundness = soundness(scene);
+        let first = Self::within(scene, None, soundness);
+        let failed = matches!(&first, Err(Error::Unsound { .. } | Error::NotConverged { .. }));
+        if !failed || !scene.may_end() {
+            return first;
+        }
+        // A contact that is hardly longer than wide may ask for closer nodes.
+        let finer = Scene { tolerance: FINER * scene.tolerance, ..scene.clone() };
+        if finer.tolerance >= Resolution::FINEST
+            && let Ok(found) = Self::within(&finer, None, soundness)
+        {
+            return Ok(Self { scene: scene.clone(), ..found });
+        }
+        let slices = scene.slices(&scene.gap());
+        if scene.ends_inside(&slices) {
+            check_length(slices.widest(), slices.ends[1] - slices.ends[0], WIDEST_GUESS)?;
+        }
+        first
     }
 
     /// Solves a scene at a given resolution.
@@ -154,6 +179,11 @@ impl SolvedScene {
         let Settled { line, parts, contact, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let open = left_open(scene, &line, &contact);
+        if soundness.is_finite() && open == [true; 2] {
+            let widest = contact.half_widths.iter().copied().fold(0.0, f64::max);
+            let [from, to] = contact.ends;
+            check_length(widest, to - if scene.is_symmetric() { -to } else { from }, WIDEST)?;
+        }
         let pressure = Pressure::new(
             axis,
             scene.is_symmetric(),
@@ -312,11 +342,7 @@ impl Scene {
     /// bodies do.
     pub(super) fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
         let overlap = self.overlap();
-        let least = MARGIN * self.half_length;
-        let ends_inside = |slices: &Slices| {
-            slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
-        };
-        if slices.is_some_and(ends_inside) {
+        if slices.is_some_and(|slices| self.ends_inside(slices)) {
             return Resolution::for_tips(tolerance);
         }
         let (end, corner) = (self.end(BodyKind::Block), self.corner_exponent());
@@ -331,13 +357,23 @@ impl Scene {
         level.following(turns[0].min(turns[1]))
     }
 
-    /// The unit of length, in C, in which the contact has a half-width of about 1. That of Hertz's line
-    /// contact is left as it is where the contact is not much wider.
+    /// Whether a contact of these `slices` ends well before its bodies do.
+    fn ends_inside(&self, slices: &Slices) -> bool {
+        let (overlap, least) = (self.overlap(), MARGIN * self.half_length);
+        slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
+    }
+
+    /// The unit of length, in C, in which the contact has a half-width of about 1, or a half-length where that is shorter. That of
+    /// Hertz's line contact is left as it is where the contact is not much wider.
     fn own_unit(&self) -> f64 {
         if !self.may_end() {
             return 1.0;
         }
-        let widest = self.slices(&self.gap()).widest();
+        let slices = self.slices(&self.gap());
+        let (widest, half) = (slices.widest(), 0.5 * (slices.ends[1] - slices.ends[0]));
+        if half < widest && self.ends_inside(&slices) {
+            return half;
+        }
         if widest > WIDER { widest } else { 1.0 }
     }
 
@@ -663,6 +699,21 @@ impl Trial<'_> {
         let below = deep::below_fields([&block, &roller]);
         deep::tilt(scene, &below, &touch(&pressure, contact), scene.depth)
     }
+}
+
+/// Refuses a contact of the largest half-width `widest` that is wider than `limit` times its `length`.
+fn check_length(widest: f64, length: f64, limit: f64) -> Result<()> {
+    let value = 2.0 * widest / length;
+    if value <= limit {
+        return Ok(());
+    }
+    Err(Error::Unsound {
+        law: "the contact's width over its length along y",
+        value,
+        limit,
+        remedy: "take the longer direction as y (exchange the radii of roller and profile), or --engine cells"
+            .into(),
+    })
 }
 
 /// The largest condition number of the bodies' equations, refused if rounding would not be

@@ -87,6 +87,47 @@ fn a_strong_crown_makes_an_elliptic_contact() {
     }
 }
 
+/// Crowns that curve more than the roller: contacts that are nearly as long as wide, or shorter, and one that is too short.
+#[test]
+fn a_contact_that_is_shorter_than_wide_is_hertzs_or_refused() {
+    let crowned = |axes: f64, tolerance: f64| {
+        let mut case = crowned(1.0 / radii_of(axes), 50.0, tolerance);
+        let radius_m = case.roller.profile.as_ref().unwrap().radius_m.unwrap();
+        (case.roller.length_m, case.block.length_m) = (0.8 * radius_m, 0.8 * radius_m);
+        case
+    };
+    for axes in [1.05, 1.5, 2.2] {
+        for (tolerance, limit) in [(1e-2, 1e-2), (1e-3, 1e-3)] {
+            let case = crowned(axes, tolerance);
+            let [p_max, long, short] = {
+                let [p, short, long] =
+                    ellipse(axes, case.roller.radius_m, case.contact_modulus(), 50.0);
+                [p, long, short]
+            };
+            let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+            let c_m = solved.hertz().c_m;
+            let lines = solved.solution().line_loads;
+            let widest = lines.iter().map(|l| l.half_width).fold(0.0, f64::max) * c_m;
+            for (x, y) in [(0.0, 0.0), (0.5, 0.3), (0.2, 0.7)] {
+                let want = (1.0f64 - x * x - y * y).sqrt();
+                let got = solved.pressure(x * long / c_m, y * short / c_m);
+                let got = got * solved.hertz().p0_pa / p_max;
+                small(
+                    &format!("{axes} at {tolerance}: pressure at {x}, {y}"),
+                    (got - want).abs(),
+                    limit,
+                );
+            }
+            small("half-width", (widest / long - 1.0).abs(), 3.0 * limit);
+            let [_, to] = solved.solution().summary.contact_y_m;
+            small("half-length", (to / short - 1.0).abs(), 5.0 * limit);
+        }
+    }
+    let said = SolvedCase::new(&crowned(5.0, 1e-3), &Options::new(EdgeModel::QuarterSpace));
+    let said = said.unwrap_err().to_string();
+    assert!(said.contains("width over its length") && said.contains("--engine cells"), "{said}");
+}
+
 /// A straight and a crowned roller, flush with a block, under loads in and beside the middle, for the
 /// program's whole way.
 fn case(profile: Option<ProfileSpec>, eccentricity_m: Option<f64>) -> Case {

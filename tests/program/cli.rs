@@ -466,6 +466,7 @@ fn a_measured_surface_is_pressed_on_cells() {
     // C is 0.252 mm, the contact 2.52 mm long.
     write("waves.npy", &npy([80, 90], |i, _| 2e-7 * (0.9 * i as f64).sin()));
     write("holes.npy", &npy([80, 90], |i, j| if (i, j) == (3, 7) { f64::NAN } else { 0.0 }));
+    write("metres.npy", &npy([80, 90], |i, _| if i == 0 { -1.0 } else { 1.0 }));
     std::fs::File::create(folder.path().join("huge.npy")).unwrap().set_len(10 << 30).unwrap();
     let steps = "dx_m = 1e-5\ndy_m = 3e-5\n";
     let case = |name: &str, surface: &str| write(name, rough_case(surface).as_bytes());
@@ -518,6 +519,11 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
         ("heights = \"none.npy\"", steps, "none.npy"),
+        (
+            "heights = \"metres.npy\"",
+            steps,
+            "surface.heights = 2e0 m from the lowest to the highest",
+        ),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
