@@ -1,5 +1,6 @@
 //! The case files that are built into the binary, so that it runs from any folder.
 
+use super::document::nearest;
 use super::model::Case;
 use crate::base::{Error, Result};
 use std::path::Path;
@@ -44,18 +45,25 @@ impl Case {
     /// file.
     ///
     /// # Errors
-    /// As [`Case::read`]; the error about a missing file names the built-in cases.
+    /// As [`Case::read`]; the error about a missing file names the built-in cases, the nearest first.
     pub fn find(path: &Path) -> Result<Case> {
         if path.exists() {
             return Case::read(path);
         }
         path.to_str().and_then(builtin_case).unwrap_or_else(|| {
             let names: Vec<&str> = BUILTIN_CASES.iter().map(|(name, _)| *name).collect();
+            // A path is not meant for one.
+            let word = path.to_str().filter(|word| !word.contains(['/', '.']));
+            let meant = word.map(|word| format!("did you mean {}? ", nearest(word, &names)));
+            let meant = meant.unwrap_or_default();
             Err(Error::File {
                 path: path.to_path_buf(),
                 line: None,
                 message: "no such file".into(),
-                remedy: format!("give a case file, or a built-in case: {}", names.join(", ")),
+                remedy: format!(
+                    "{meant}give a case file, or a built-in case: {}",
+                    names.join(", ")
+                ),
             })
         })
     }

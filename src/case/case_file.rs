@@ -109,9 +109,7 @@ pub(super) fn entries<'d>(
             None => root.table(name)?,
             Some(entry) => entry.table()?,
         };
-        let same = keys.iter().filter(|key| key.table() == name).map(|key| key.leaf());
-        let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
-        table.only(&known)?;
+        only_keys(&table, name, keys.iter().copied())?;
         check_one_of_several(&table, of_table)?;
         for &key in of_table {
             let leaf = key.leaf();
@@ -123,6 +121,17 @@ pub(super) fn entries<'d>(
         }
     }
     Ok(found)
+}
+
+/// Refuses a key of the table `name` that is neither among `keys` nor one of its words.
+pub(super) fn only_keys(
+    table: &Table,
+    name: &str,
+    keys: impl Iterator<Item = &'static Key>,
+) -> Result<()> {
+    let same = keys.filter(|key| key.table() == name).map(|key| key.leaf());
+    let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
+    table.only(&known)
 }
 
 /// Refuses a table with none of the keys of which it takes exactly one, and one with several.
@@ -149,6 +158,7 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
     for body in BodyKind::ALL {
         let Some(entry) = root.find(&format!("{}.profile", body.name())) else { continue };
         let table = entry.table()?;
+        only_keys(&table, &format!("{}.profile", body.name()), KEYS.iter())?;
         let entry = table.require("kind", "kind = \"crown\"")?;
         let name = entry.string()?;
         let Some(kind) = ProfileKind::ALL.into_iter().find(|kind| kind.name() == name) else {

@@ -48,8 +48,10 @@ impl Case {
         }
         Err(Error::Value {
             key: "surface.heights".into(),
-            value: format!("{range:e} m from the lowest to the highest"),
-            reason: format!("a roller of radius {radius:e} m has no slopes small enough for that"),
+            value: format!("{range:e} m in all"),
+            reason: format!(
+                "the heights range over {range:e} m, more than a tenth of the roller's radius, {radius:e} m"
+            ),
             remedy: "give heights in metres; detrend = \"plane\" takes their mean plane off".into(),
         })
     }

@@ -1,7 +1,9 @@
 //! The table `[surface]` of a case file.
 
+use super::case_file::only_keys;
 use super::document::{Table, nearest};
 use super::draft::Draft;
+use super::keys::KEYS;
 use super::surface::Surface;
 use crate::base::Result;
 use crate::cells::{Detrend, Heights};
@@ -12,6 +14,7 @@ use std::sync::Arc;
 pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
     let Some(entry) = root.find("surface") else { return Ok(()) };
     let table = entry.table()?;
+    only_keys(&table, "surface", KEYS.iter())?;
     let file = table.require("heights", "heights = \"rough.npy\"")?;
     let mut detrend = None;
     if let Some(entry) = table.get("detrend") {

@@ -18,7 +18,7 @@ use std::time::Instant;
 ///
 /// Varies the parameters of a profile within bounds (a TOML file, see cases/README.md) and solves every load for each
 /// trial: first a sample of the bounds, then descents by Nelder and Mead's simplex from its best points. The stress is the
-/// largest one of both bodies, more than exclude_c half-widths from the ends of their overlap. Writes case.toml (the case
+/// largest one of both bodies, more than exclude_c half-widths from the surface's edges at the ends of their overlap. Writes case.toml (the case
 /// with the profile, ready for `edgeline solve`), loads.csv (what each load sees, at the case's own tolerance),
 /// history.csv (all trials), scans.csv (lines through the optimum along each parameter), plot-parameters and plot-loads
 /// (.svg and .png) and summary.json into the output folder. Takes some seconds to half a minute: a few hundredths of a second
@@ -100,7 +100,7 @@ fn text(design: &Design, found: &Optimum, arguments: &Arguments, seconds: f64) -
     let mut lines = vec![
         format!("{}: {}", design.case.name, values.join(", ")),
         format!(
-            "  largest {} {:.1} MPa, more than {} C from the ends of the overlap (search: {:.1} MPa)",
+            "  largest {} {:.1} MPa, more than {} C from the edges of the overlap (search: {:.1} MPa)",
             design.objective.label(),
             found.confirmed_pa * 1e-6,
             design.exclude_c,

@@ -15,16 +15,17 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     let file = File::open(path).map_err(io)?;
     // A pipe, a device or a growing file can be longer than its stated length.
     file.take(most + 1).read_to_end(&mut bytes).map_err(io)?;
-    let refuse = |message: String| Error::File {
+    let refuse = |message: String, remedy: &str| Error::File {
         path: path.to_path_buf(),
         line: None,
         message,
         remedy: remedy.to_string(),
     };
     if bytes.len() as u64 > most {
-        return Err(refuse(format!("is larger than {} MiB", most >> 20)));
+        return Err(refuse(format!("is larger than {} MiB", most >> 20), remedy));
     }
-    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_string()))
+    let other = "give a text file, or save this one as UTF-8";
+    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_string(), other))
 }
 
 #[cfg(test)]

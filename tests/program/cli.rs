@@ -519,15 +519,12 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
         ("heights = \"none.npy\"", steps, "none.npy"),
-        (
-            "heights = \"metres.npy\"",
-            steps,
-            "surface.heights = 2e0 m from the lowest to the highest",
-        ),
+        ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
         ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
+        ("heigths = \"waves.npy\"", steps, "did you mean heights?"),
     ];
     for (heights, steps, wanted) in refusals {
         case("bad.toml", &format!("{heights}\n{steps}"));

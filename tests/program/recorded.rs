@@ -4,8 +4,9 @@
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
 use edgeline::fem::FemResults;
-use edgeline::solve::{Options, SolvedCase};
+use edgeline::solve::{Options, Scene, SolvedCase, SolvedScene};
 use edgeline::stress::{BodyKind, EDGE, away_from_edges};
+use std::f64::consts::PI;
 use std::path::Path;
 
 /// Distance (C) from where the contact ends by itself within which meshes differ among themselves.
@@ -132,5 +133,32 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
         within(case, [0.005, 0.01, 0.013], 0.04);
+    }
+}
+
+/// The approach of finite elements is that of the roller's mid-plane and the block's base, 640 C deep. The roller is a disc squeezed
+/// across, softer than a deep body down to its centre by F / (pi E L) (2 ln 2 - 1 + nu) in plane stress (Johnson, Contact Mechanics, 1985,
+/// Eqs. 5.57 and 5.58). So is the block, a box as wide to either side as deep, whose own constant is not known; a disc's is taken.
+#[test]
+fn the_approach_of_recorded_finite_elements_is_that_of_the_same_points() {
+    const BASE: f64 = 640.0;
+    for name in ["w1e-4_sl5_lr1", "w1e-3_sl5_lr1", "w1e-4_sl20_lr1", "w1e-3_sl20_lr1"] {
+        let fem = FemResults::embedded(name).unwrap().unwrap();
+        let all: Vec<f64> = fem.meshes.iter().map(|mesh| mesh.summary.approach_m).collect();
+        let [fine, middle, coarse] = all[..] else { panic!("{} meshes", all.len()) };
+        // Differences of meshes fall by nearly the same factor each time.
+        let factor = (fine - middle) / (middle - coarse);
+        let limit = fine + (fine - middle) * factor / (1.0 - factor);
+        let case = fem.case.clone().with_tolerance(1e-3);
+        let solved = SolvedScene::new(&Scene::new(&case, EdgeModel::QuarterSpace, None)).unwrap();
+        let roller = &case.roller;
+        let depths = [roller.radius_m / case.hertz().c_m, BASE];
+        // Like bodies have half of an approach each.
+        let deep: f64 = depths.map(|z| 0.5 * solved.approach(z) * case.gap_unit_m()).iter().sum();
+        let nu = roller.material.poisson;
+        let per_length = case.load.force_n / (PI * roller.material.young_pa * roller.length_m);
+        let own = deep + 2.0 * per_length * (2.0 * 2f64.ln() - 1.0 + nu);
+        println!("{name}: {own:e} m, finite elements {fine:e}, {limit:e} in the limit");
+        assert!((own / limit - 1.0).abs() < 4e-3, "{name}: {own:e} and {limit:e}");
     }
 }
