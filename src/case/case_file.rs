@@ -2,7 +2,7 @@
 
 use super::document::{Document, Entry, Table, nearest, read_text};
 use super::draft::{Draft, Form};
-use super::keys::{KEYS, Key, others_of};
+use super::keys::{KEYS, Key, only_keys};
 use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::profile_table::read_profile_table;
@@ -121,17 +121,6 @@ pub(super) fn entries<'d>(
         }
     }
     Ok(found)
-}
-
-/// Refuses a key of the table `name` that is neither among `keys` nor one of its words.
-pub(super) fn only_keys(
-    table: &Table,
-    name: &str,
-    keys: impl Iterator<Item = &'static Key>,
-) -> Result<()> {
-    let same = keys.filter(|key| key.table() == name).map(|key| key.leaf());
-    let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
-    table.only(&known)
 }
 
 /// Refuses a table with none of the keys of which it takes exactly one, and one with several.

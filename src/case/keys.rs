@@ -1,6 +1,7 @@
 //! The numbers of a case: their names in files, their meaning and their legal ranges. All readers,
 //! checks and tables of parameters use this list.
 
+use super::document::Table;
 use super::draft::{Draft, Form};
 use super::model::{Cells, Factors};
 use crate::base::{Error, Result};
@@ -48,13 +49,24 @@ pub struct Key {
 }
 
 /// What a table of a case file has besides its numbers: texts, and tables below it.
-pub(super) fn others_of(table: &str) -> &'static [&'static str] {
+fn others_of(table: &str) -> &'static [&'static str] {
     match table {
         "roller" | "block" => &["profile"],
         "roller.profile" | "block.profile" => &["kind", "file"],
         "surface" => &["heights", "detrend"],
         _ => &[],
     }
+}
+
+/// Refuses a key of the table `name` that is neither among `keys` nor one of its words.
+pub(super) fn only_keys(
+    table: &Table,
+    name: &str,
+    keys: impl Iterator<Item = &'static Key>,
+) -> Result<()> {
+    let same = keys.filter(|key| key.table() == name).map(|key| key.leaf());
+    let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
+    table.only(&known)
 }
 
 impl PartialEq for Key {

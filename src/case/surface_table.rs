@@ -1,9 +1,8 @@
 //! The table `[surface]` of a case file.
 
-use super::case_file::only_keys;
 use super::document::{Table, nearest};
 use super::draft::Draft;
-use super::keys::KEYS;
+use super::keys::{KEYS, only_keys};
 use super::surface::Surface;
 use crate::base::Result;
 use crate::cells::{Detrend, Heights};
