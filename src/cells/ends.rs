@@ -223,19 +223,21 @@ impl FreeEnds {
     pub fn lift<'a>(&'a self, pressure: &dyn Load, grid: &Grid) -> impl Fn(f64) -> f64 + use<'a> {
         let wavenumbers = self.resolving(grid);
         let fine = wavenumbers.fine();
-        let weighted = DMatrix::from_diagonal(&DVector::from_column_slice(self.axis.weights()));
-        let loads = self.basis.tr_mul(&weighted) * pressure.transforms(fine.nodes());
-        let rigid = self.bodies[0].long.nrows();
-        let mut moved = DVector::zeros(self.basis.ncols());
-        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
-            let load = loads.column(i) * (weight / (PI * PI));
-            let (first, interpolation) = wavenumbers.interpolation(i);
-            for (share, matrix) in interpolation.iter().zip(&self.matrices[first..]) {
-                moved += matrix * &load * *share;
-            }
-            let mut long = moved.rows_mut(0, rigid);
-            long += self.long(*k) * load.rows(0, rigid);
+        let weights = DVector::from_column_slice(self.axis.weights());
+        let shapes = scaled(self.basis.clone(), &weights, |value, weight| value * weight);
+        let loads = shapes.tr_mul(&pressure.transforms(fine.nodes()));
+        let rank = self.basis.ncols();
+        let moments = wavenumbers.moments(loads.as_slice(), rank);
+        let mut moved = DVector::zeros(rank);
+        for (matrix, load) in self.matrices.iter().zip(moments.chunks_exact(rank)) {
+            moved += matrix * DVector::from_column_slice(load);
         }
+        let rigid = self.bodies[0].long.nrows();
+        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
+            let mut long = moved.rows_mut(0, rigid);
+            long += self.long(*k) * loads.column(i).rows(0, rigid) * *weight;
+        }
+        moved /= PI * PI;
         let displaced = &self.basis * moved;
         move |y| {
             let y = if self.symmetric { y.abs() } else { y };

@@ -6,8 +6,8 @@
 use super::cells::{contact_ends, line_loads};
 use super::deep::{self, Force, Places, Plate, Sunk, images};
 use super::scene::Scene;
-use crate::base::BodyKind;
 use crate::cells::{CellPressure, CellProblem};
+use crate::stress::LineLoad;
 
 /// The approach and the tilt at one depth.
 #[derive(Debug, Clone, Copy)]
@@ -21,28 +21,29 @@ pub(super) struct DeepMotion {
 impl DeepMotion {
     /// That at `depth` (C) of the contact of `scene` with the `pressure` that solves the `problem`.
     pub fn new(scene: &Scene, problem: &CellProblem, pressure: &CellPressure, depth: f64) -> Self {
-        let places = Places::new(contact_ends(&line_loads(pressure, scene.middle)));
+        let lines = line_loads(pressure, scene.middle);
+        let places = Places::new(contact_ends(&lines));
         let nearest = places.nearest();
         let tilts = !scene.is_symmetric();
         let mut at = vec![nearest];
         at.extend(places.all().iter().filter(|_| tilts));
         let far = |y: f64| pressure.approach + pressure.tilt * scene.off_middle(y);
-        let moved = displaced(scene, problem, pressure, &at, depth);
+        let moved = displaced(scene, problem, pressure, &forces(&lines, pressure), (&at, depth));
         let closed: Vec<f64> = at.iter().zip(moved).map(|(y, moved)| far(*y) - moved).collect();
         let tilt = if tilts { places.slope(&closed[1..]) } else { 0.0 };
         Self { approach: closed[0] - nearest * tilt, tilt }
     }
 }
 
-/// The displacement (C^2 / (2 R)) of points of both bodies together at `depth` (C) below each of the places `at` along the line.
+/// The displacement (C^2 / (2 R)) of points of both bodies together at `depth` (C) below each of the places `at` along the line, where the
+/// `pressure` makes these `forces`.
 fn displaced(
     scene: &Scene,
     problem: &CellProblem,
     pressure: &CellPressure,
-    at: &[f64],
-    depth: f64,
+    forces: &[Force],
+    (at, depth): (&[f64], f64),
 ) -> Vec<f64> {
-    let forces = forces(scene, pressure);
     let mut all = vec![0.0; at.len()];
     let free = problem.free.as_ref().map(|free| {
         let columns = free.columns(pressure);
@@ -51,46 +52,43 @@ fn displaced(
         let moments = free.moments(&columns);
         (free, columns, moments)
     });
-    for kind in BodyKind::ALL {
-        let (body, end) = (&scene.bodies[kind], scene.end(kind));
+    for (kind, body) in &scene.distinct_bodies() {
+        let end = scene.end(*kind);
         let sunk = |y: f64| {
-            let mirrored = images(body, end.image_weight.unwrap_or(0.0), &forces);
+            let mirrored = images(body, end.image_weight.unwrap_or(0.0), forces);
             Sunk::new(body, y, forces.iter().copied().chain(mirrored))
         };
         let Some((free, columns, moments)) = free.as_ref().filter(|_| end.freed) else {
             all.iter_mut().zip(at).for_each(|(sum, y)| *sum += sunk(*y).at(depth));
             continue;
         };
-        let fields = free.fields(scene.free_body(kind), columns, moments, scene.tolerance);
+        let fields = free.fields(scene.free_body(*kind), columns, moments, scene.tolerance);
         let reach = deep::reach(body.half, depth);
         let rule = deep::depths(reach);
         for (sum, y) in all.iter_mut().zip(at) {
             let sunk = sunk(*y);
             let [freed, mirrored] = fields
                 .each_ref()
-                .map(|field| field.down(&[0.0], scene.off_middle(*y), rule.nodes()));
-            let added = freed.iter().zip(mirrored).map(|(freed, mirrored)| {
-                deep::strain(body, &(freed[0].pressure - mirrored[0].pressure))
-            });
-            let added: Vec<f64> = added.collect();
+                .map(|field| deep::strains(body, field, scene.off_middle(*y), &rule));
+            let added: Vec<f64> = freed.iter().zip(mirrored).map(|(own, all)| own - all).collect();
             let shortened: f64 = added.iter().zip(rule.weights()).map(|(s, w)| s * w).sum();
             *sum += sunk.at(reach) - shortened;
             if reach < depth {
                 let strains = added.iter().zip(rule.nodes()).map(|(s, z)| s + sunk.strain(*z));
                 let strains: Vec<f64> = strains.collect();
-                *sum -= Plate::new(body, *y, &forces, (&rule, &strains)).between(reach, depth);
+                *sum -= Plate::new(body, *y, forces, (&rule, &strains)).between(reach, depth);
             }
         }
     }
     all
 }
 
-/// What the rows of cells displace far from them.
-fn forces(scene: &Scene, pressure: &CellPressure) -> Vec<Force> {
+/// What the rows of cells, with the loads `lines`, displace far from them.
+fn forces(lines: &[LineLoad], pressure: &CellPressure) -> Vec<Force> {
     let grid = &pressure.grid;
     let (a, _) = grid.half_sides();
     let rows = pressure.pressure.chunks_exact(grid.nx);
-    let force = |(line, row): (crate::stress::LineLoad, &[f64])| {
+    let force = |(line, row): (&LineLoad, &[f64])| {
         let total: f64 = row.iter().sum();
         let squares = row.iter().enumerate().map(|(i, p)| p * grid.x(i).powi(2)).sum::<f64>();
         Force {
@@ -100,5 +98,5 @@ fn forces(scene: &Scene, pressure: &CellPressure) -> Vec<Force> {
             size: line.weight * line.load,
         }
     };
-    line_loads(pressure, scene.middle).into_iter().zip(rows).map(force).collect()
+    lines.iter().zip(rows).map(force).collect()
 }

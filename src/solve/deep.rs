@@ -12,13 +12,10 @@
 
 use super::scene::{Scene, SceneBody};
 use crate::base::{BodyKind, Panels, StressTensor};
-use crate::body::Shape;
+use crate::body::{End, Shape};
 use crate::contact::Gap;
 use crate::stress::{Field, LineLoad};
 use std::f64::consts::PI;
-
-/// Stresses of a body below (0, y), at each of some depths.
-pub(super) type Below<'a> = dyn Fn(BodyKind, f64, &[f64]) -> Vec<StressTensor> + 'a;
 
 /// What the motion of deep points needs to know of the contact.
 pub(super) struct Touch {
@@ -218,11 +215,12 @@ pub(super) fn images<'a>(
     forces.iter().flat_map(move |force| faces.map(|face| image(force, face)))
 }
 
-/// How much `body` shortens per length along z under a stress (C / (2 R)).
-pub(super) fn strain(body: &SceneBody, stress: &StressTensor) -> f64 {
+/// How much `body` shortens per length along z (C / (2 R)) at the nodes of the depths of a `rule`, below `y` in its `field`.
+pub(super) fn strains(body: &SceneBody, field: &Field, y: f64, rule: &Panels) -> Vec<f64> {
     // 1 / E in units of 1 / E*.
     let compliance = body.share / (1.0 - body.nu * body.nu);
-    compliance * (body.nu * (stress.xx + stress.yy) - stress.zz)
+    let strain = |s: &StressTensor| compliance * (body.nu * (s.xx + s.yy) - s.zz);
+    field.down(&[0.0], y, rule.nodes()).iter().map(|row| strain(&row[0].pressure)).collect()
 }
 
 /// The strain of one body below a place.
@@ -238,31 +236,29 @@ struct Column {
 }
 
 impl Column {
-    /// That of the body `kind` of `scene` with this `share` of the compliance below `y`, down to `deepest` (C) or to where
-    /// the displacement is known.
+    /// That of a `body` with this treatment of its `end` below `y`, from its `field`, down to `deepest` (C) or to where the displacement
+    /// is known.
     fn new(
-        scene: &Scene,
-        below: &Below,
-        (kind, share): (BodyKind, f64),
+        body: &SceneBody,
+        end: End,
+        field: &Field,
         touch: &Touch,
         (y, deepest): (f64, f64),
     ) -> Self {
-        let (body, end) = (SceneBody { share, ..scene.bodies[kind].clone() }, scene.end(kind));
         let rule = depths(reach(body.half, deepest));
-        let strains: Vec<f64> =
-            below(kind, y, rule.nodes()).iter().map(|s| strain(&body, s)).collect();
+        let strains = strains(body, field, y, &rule);
         let forces = &touch.forces;
         let weight = end.image_weight.unwrap_or(0.0);
         let far = match end.freed {
-            true => Far::Plate(Plate::new(&body, y, forces, (&rule, &strains))),
+            true => Far::Plate(Plate::new(body, y, forces, (&rule, &strains))),
             false => {
-                let all = forces.iter().copied().chain(images(&body, weight, forces));
-                Far::HalfSpace(Sunk::new(&body, y, all))
+                let all = forces.iter().copied().chain(images(body, weight, forces));
+                Far::HalfSpace(Sunk::new(body, y, all))
             }
         };
         // Images have their full weight in the stresses.
         let missing = end.image_weight.map(|weight| weight - 1.0).filter(|more| *more != 0.0);
-        let images = missing.map(|more| Sunk::new(&body, y, images(&body, more, forces)));
+        let images = missing.map(|more| Sunk::new(body, y, images(body, more, forces)));
         Self { rule, strains, far, images }
     }
 
@@ -327,16 +323,14 @@ struct Closed {
 }
 
 impl Closed {
-    fn new(scene: &Scene, below: &Below, touch: &Touch, (y, deepest): (f64, f64)) -> Self {
-        let [block, roller] = BodyKind::ALL.map(|kind| (kind, scene.bodies[kind].share));
-        // Like bodies shorten alike.
-        let bodies = match scene.bodies_are_alike() {
-            true => vec![(block.0, block.1 + roller.1)],
-            false => vec![block, roller],
+    fn new(scene: &Scene, fields: [&Field; 2], touch: &Touch, place: (f64, f64)) -> Self {
+        let [block, roller] = fields;
+        let column = |(kind, body): (BodyKind, SceneBody)| {
+            let field = if kind == BodyKind::Block { block } else { roller };
+            Column::new(&body, scene.end(kind), field, touch, place)
         };
-        let column = |body| Column::new(scene, below, body, touch, (y, deepest));
-        let columns = bodies.into_iter().map(column).collect();
-        Self { gap: scene.gap().at(0.0, y), columns }
+        let columns = scene.distinct_bodies().into_iter().map(column).collect();
+        Self { gap: scene.gap().at(0.0, place.0), columns }
     }
 
     /// At `depth` (C), in units of C^2 / (2 R).
@@ -346,10 +340,10 @@ impl Closed {
 }
 
 /// The tilt of the lines x = 0 at `depth` (C) below both surfaces, in units of C / (2 R), by least squares over the line where they touch, from the
-/// stresses `below` it.
-pub(super) fn tilt(scene: &Scene, below: &Below, touch: &Touch, depth: f64) -> f64 {
+/// `fields` of the block and of the roller.
+pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], touch: &Touch, depth: f64) -> f64 {
     let places = Places::new(touch.ends);
-    let closed = |y: &f64| Closed::new(scene, below, touch, (*y, depth)).at(depth);
+    let closed = |y: &f64| Closed::new(scene, fields, touch, (*y, depth)).at(depth);
     places.slope(&places.all().iter().map(closed).collect::<Vec<_>>())
 }
 
@@ -365,11 +359,11 @@ pub(super) struct Approaches {
 }
 
 impl Approaches {
-    /// That of a contact, from the stresses `below` it.
-    pub fn new(scene: &Scene, below: &Below, touch: &Touch) -> Self {
+    /// That of a contact, from the `fields` of the block and of the roller.
+    pub fn new(scene: &Scene, fields: [&Field; 2], touch: &Touch) -> Self {
         let places = Places::new(touch.ends);
         let nearest = places.nearest();
-        let closed = |y: f64| Closed::new(scene, below, touch, (y, f64::INFINITY));
+        let closed = |y: f64| Closed::new(scene, fields, touch, (y, f64::INFINITY));
         let tilting: &[f64] = if nearest == 0.0 { &[] } else { places.all() };
         let along = tilting.iter().map(|y| closed(*y)).collect();
         Self { nearest, there: closed(nearest), along, places }
@@ -390,17 +384,6 @@ impl Approaches {
         }
         let along: Vec<f64> = self.along.iter().map(|closed| closed.at(depth)).collect();
         there - self.nearest * self.places.slope(&along)
-    }
-}
-
-/// The stresses below places, from the fields of the block and of the roller.
-pub(super) fn below_fields<'a>(
-    fields: [&'a Field<'a>; 2],
-) -> impl Fn(BodyKind, f64, &[f64]) -> Vec<StressTensor> + 'a {
-    move |kind, y, zs| {
-        let [block, roller] = fields;
-        let field = if kind == BodyKind::Block { block } else { roller };
-        field.down(&[0.0], y, zs).iter().map(|row| row[0].pressure).collect()
     }
 }
 

@@ -210,6 +210,16 @@ impl Scene {
         block.half == roller.half && block.middle == roller.middle && block.nu == roller.nu
     }
 
+    /// The bodies whose stresses differ: like ones are one, with the shares of both.
+    pub fn distinct_bodies(&self) -> Vec<(BodyKind, SceneBody)> {
+        let [block, roller] = BodyKind::ALL.map(|kind| (kind, self.bodies[kind].clone()));
+        if self.bodies_are_alike() {
+            let share = block.1.share + roller.1.share;
+            return vec![(block.0, SceneBody { share, ..block.1 })];
+        }
+        vec![block, roller]
+    }
+
     /// Whether bodies and gap are symmetric about y = 0.
     fn is_aligned(&self) -> bool {
         let even = |profile: &Profile| profile.is_even();

@@ -285,8 +285,7 @@ impl SolvedScene {
     pub(super) fn approaches(&self) -> Approaches {
         let own = &self.own;
         let approach = |fields: [&Field; 2]| {
-            let below = deep::below_fields(fields);
-            deep::Approaches::new(&own.scene, &below, &touch(&own.pressure, &own.contact))
+            deep::Approaches::new(&own.scene, fields, &touch(&own.pressure, &own.contact))
         };
         Approaches { own: self.with_fields(approach), unit: self.unit }
     }
@@ -298,8 +297,7 @@ impl SolvedScene {
         }
         let own = &self.own;
         let tilt = |fields: [&Field; 2]| {
-            let below = deep::below_fields(fields);
-            deep::tilt(&own.scene, &below, &touch(&own.pressure, &own.contact), depth / self.unit)
+            deep::tilt(&own.scene, fields, &touch(&own.pressure, &own.contact), depth / self.unit)
         };
         self.with_fields(tilt) * self.unit
     }
@@ -696,8 +694,7 @@ impl Trial<'_> {
             [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
                 Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
             });
-        let below = deep::below_fields([&block, &roller]);
-        deep::tilt(scene, &below, &touch(&pressure, contact), scene.depth)
+        deep::tilt(scene, [&block, &roller], &touch(&pressure, contact), scene.depth)
     }
 }
 
