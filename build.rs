@@ -68,7 +68,8 @@ fn tabulate(out: &Path) {
     }
 }
 
-/// The stresses of a line load of a wavenumber, in a material of some Poisson's ratio, at an offset and a depth.
+/// The stresses of a line load of a wavenumber, in a material of some Poisson's ratio, at an offset
+/// and a depth.
 type Load = fn(f64, f64, f64, f64) -> WaveStress;
 
 /// Writes the tables of the stresses of a `load`.

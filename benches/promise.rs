@@ -1,15 +1,15 @@
-//! Whether the tolerance keeps its promise, and at what price: the largest error of the pressure and of every
-//! stress on the standard curves, against a resolution far finer, in tolerances.
+//! Whether the tolerance keeps its promise, and at what price: the largest error of the pressure
+//! and of every stress on the standard curves, against a resolution far finer, in tolerances.
 //!
-//! `cargo bench --bench promise -- hold SCENES` measures scenes that no search has seen, at every decade, and
-//! `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes KIND TOLERANCE SCENE` tells the errors
-//! of one scene when one part of its resolution after the other is the limit's;
-//! `-- search KIND TOLERANCE [STEPS]` looks for the cheapest resolution (KIND: endless, finite, singular) that
-//! keeps the promise on scenes of its own, by small random steps from the present one. The table in
-//! `src/body/axes.rs` is made from what it prints.
+//! `cargo bench --bench promise -- hold SCENES` measures scenes that no search has seen, at every
+//! decade, and `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes
+//! KIND TOLERANCE SCENE` tells the errors of one scene when one part of its resolution after the
+//! other is the limit's; `-- search KIND TOLERANCE [STEPS]` looks for the cheapest resolution
+//! (KIND: endless, finite, singular) that keeps the promise on scenes of its own, by small random
+//! steps from the present one. The table in `src/body/axes.rs` is made from what it prints.
 //!
-//! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where the tangent
-//! of the pressure is vertical, and the same around a flush end.
+//! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where
+//! the tangent of the pressure is vertical, and the same around a flush end.
 
 use edgeline::base::{BodyKind, Material, PerBody, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
@@ -41,7 +41,8 @@ const LIMIT: Resolution = Resolution {
     reach: 20.0,
 };
 
-/// The same of half-spaces: smaller panels at their ends, where the pressure is known but for a polynomial, add noise.
+/// The same of half-spaces: smaller panels at their ends, where the pressure is known but for a
+/// polynomial, add noise.
 const ENDLESS_LIMIT: Resolution = Resolution { corner: 5e-3, ..LIMIT };
 
 /// The tolerances that are held.
@@ -56,7 +57,8 @@ enum Kind {
     Endless,
     Finite,
     Singular,
-    /// With a profile, a load or a body beside the middle, or all of them: the contact may end before its bodies.
+    /// With a profile, a load or a body beside the middle, or all of them: the contact may end
+    /// before its bodies.
     Real,
 }
 
@@ -68,8 +70,9 @@ fn log(u: f64, low: f64, high: f64) -> f64 {
     low * (high / low).powf(u)
 }
 
-/// The `index`-th real roller: straight, crowned, relieved or logarithmic with a drop of 0.1 to 5 C^2/(2R) at its ends, S_l 3 to 50,
-/// L_r 1 or 0.3 to 3, a load up to a tenth of the line off its middle, every other block offset by up to a tenth.
+/// The `index`-th real roller: straight, crowned, relieved or logarithmic with a drop of 0.1 to 5
+/// C^2/(2R) at its ends, S_l 3 to 50, L_r 1 or 0.3 to 3, a load up to a tenth of the line off its
+/// middle, every other block offset by up to a tenth.
 fn real_scene(index: usize) -> Scene {
     let u: [f64; 10] = kronecker(index);
     let young_pa = 210e9;
@@ -107,8 +110,8 @@ fn real_scene(index: usize) -> Scene {
     Scene::new(&case, EdgeModel::QuarterSpace, None)
 }
 
-/// The `index`-th scene of Kronecker's sequence over the box of the promise: S_l 2 to 100, L_r 1 or 0.1 to 0.98,
-/// Poisson's ratios up to 0.45, moduli that differ by up to 3.
+/// The `index`-th scene of Kronecker's sequence over the box of the promise: S_l 2 to 100, L_r 1 or
+/// 0.1 to 0.98, Poisson's ratios up to 0.45, moduli that differ by up to 3.
 fn scene(kind: Kind, index: usize) -> Scene {
     if kind == Kind::Real {
         return real_scene(index);
@@ -138,7 +141,8 @@ impl Kind {
 /// Depth (C) of the points whose approach is compared.
 const DEEP: f64 = 30.0;
 
-/// Columns of points inside each body, off its planes of symmetry, up to this distance (C) beyond the contact's end.
+/// Columns of points inside each body, off its planes of symmetry, up to this distance (C) beyond
+/// the contact's end.
 const COLUMNS: usize = 6;
 const DEPTHS: usize = 5;
 const BEYOND: f64 = 3.0;
@@ -152,7 +156,8 @@ fn kronecker<const N: usize>(index: usize) -> [f64; N] {
     std::array::from_fn(|d| (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract())
 }
 
-/// A scene's values: the pressure on its three lines, the approach, and the stresses on both bodies' curves and inside them.
+/// A scene's values: the pressure on its three lines, the approach, and the stresses on both
+/// bodies' curves and inside them.
 struct Values {
     pressure: Vec<f64>,
     approach: f64,
@@ -337,8 +342,8 @@ fn cost((worst, time): (f64, f64)) -> f64 {
     time * (worst / RESERVE).max(1.0).powi(3)
 }
 
-/// The largest error of any of the `scenes`, in tolerances, and the processor time; none if one fails or the cost
-/// exceeds `most`.
+/// The largest error of any of the `scenes`, in tolerances, and the processor time; none if one
+/// fails or the cost exceeds `most`.
 fn price(
     scenes: &[Known],
     resolution: &Resolution,

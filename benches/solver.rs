@@ -1,8 +1,8 @@
 //! Where the time goes: kernels, compliance, contact, stresses and the complete solve, on one
 //! thread.
 //!
-//! `cargo bench --bench solver`; a part by its name: `cargo bench --bench solver -- complete`. Sizes
-//! stand on a logarithmic scale. `docs/performance.md` has the tables.
+//! `cargo bench --bench solver`; a part by its name: `cargo bench --bench solver -- complete`.
+//! Sizes stand on a logarithmic scale. `docs/performance.md` has the tables.
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use edgeline::base::{Material, Parity};

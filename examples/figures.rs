@@ -1,5 +1,5 @@
-//! Draws the figures of docs/theory.md from the built-in case `flush-short`, and that of the README from the
-//! recorded finite-element curves and the recorded run times:
+//! Draws the figures of docs/theory.md from the built-in case `flush-short`, and that of the README
+//! from the recorded finite-element curves and the recorded run times:
 //!
 //! ```text
 //! cargo run --release --example figures
@@ -80,7 +80,8 @@ const RECORDED: &str = "w1e-3_sl5_lr1";
 /// How far from the roller's end the README's figure goes (C).
 const REACH: f64 = 3.0;
 
-/// The README's figure: pressure and a stress near an end beside finite elements, and run time against error.
+/// The README's figure: pressure and a stress near an end beside finite elements, and run time
+/// against error.
 fn overview() -> Result<Figure> {
     let record = FemResults::embedded(RECORDED)?.expect("a record of that name");
     let panel = |title: &str, y_label: &str| Panel {
@@ -131,8 +132,8 @@ fn overview() -> Result<Figure> {
     })
 }
 
-/// Run time against error of one recorded case, each model at several tolerances and finite elements on several
-/// meshes.
+/// Run time against error of one recorded case, each model at several tolerances and finite
+/// elements on several meshes.
 fn times(record: &FemResults) -> Result<Panel> {
     let bench = Bench::recorded()?;
     let own = bench.cases.iter().find(|case| case.case.is_same_problem(&record.case));

@@ -34,7 +34,8 @@
 //! # Conventions
 //!
 //! - Axes: `x` across the contact, `y` along the contact line, `z` into the body at hand; the
-//!   origin is the centre of the contact. `s` is the distance from an end face, into the body.
+//!   origin is on the surface, in the middle of the roller's length. `s` is the distance from an
+//!   end face, into the body.
 //! - Stress is positive in tension, pressure is positive in compression.
 //! - Inside the solver lengths are in units of the Hertz half-width `C` and stresses in units of
 //!   the Hertz maximum pressure `p0` (see [`base::HertzScales`]); names that end in `_m`, `_pa` or

@@ -124,7 +124,7 @@ step "accuracy gates"
 target/fast/edgeline gate --out target/gate
 
 step "a changed sign of a kernel, which the gates should notice"
-bash tests/mutate.sh gates
+EDGELINE_PASSED=gates bash tests/mutate.sh gates
 
 step "tests of the finite-element side, begun beside the builds"
 status=0
@@ -132,11 +132,21 @@ wait "$fem_tests" || status=$?
 cat "$fem_log"
 ((status == 0)) || exit "$status"
 
-step "tests, those with live finite elements included"
-cargo test --profile fast -- --include-ignored
+step "tests"
+cargo test --profile fast --lib --bins --test numerics --test program -- --include-ignored
+cargo test --profile fast --doc
 
-step "the Python package"
+# Both of these wait for other programs most of the time: they run side by side.
+step "the Python package, beside the tests with live finite elements, a browser and VTK"
+outside_log=target/outside-tests.log
+cargo test --profile fast --test outside -- --include-ignored >"$outside_log" 2>&1 &
+outside_tests=$!
+trap 'kill "$fem_tests" "$outside_tests" 2>/dev/null || true' EXIT
 bash tests/python.sh
+status=0
+wait "$outside_tests" || status=$?
+cat "$outside_log"
+((status == 0)) || exit "$status"
 
 step "the site of the documentation"
 bash tests/site.sh

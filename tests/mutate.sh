@@ -5,7 +5,7 @@
 #   bash tests/mutate.sh [WORD]
 #
 # With a word, only the mutants whose line below contains it: `gates` for the one that the accuracy
-# gates should detect. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if one
+# gates should detect. EDGELINE_PASSED=TESTS says that these have just passed without a mutant. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if one
 # survived, 2 if a mutant no longer fits its file or does not build, or if the tests fail without any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -27,7 +27,7 @@ mutants=(
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0 * i.weight, ..*i }) @@ .map(|i| Image { weight: i.weight, ..*i }) @@ $solver"
     "src/contact/solver.rs @@ None => (problem.load / load, 0.0), @@ None => (0.8 * problem.load / load, 0.0), @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
-    "src/kernels/strip.rs @@ [f + g, f - g, -h] @@ [f + g, f + g, -h] @@ --test program -- gates_hold @@ quarter-space .* depth-.* sigma_zz"
+    "src/kernels/strip.rs @@ [f + g, f - g, -h] @@ [f + g, f + g, -h] @@ gates @@ quarter-space .* NO .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
     "src/stress/round.rs @@ along * (1.0 - 2.0 * along) @@ along * (1.0 + 2.0 * along) @@ --lib stress::round"
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
@@ -37,13 +37,29 @@ mutants=(
 # mutant would take the place of what is built of the project itself.
 mutated=(--config 'profile.fast.package.edgeline.opt-level=2')
 
-# Runs tests in a tree, quietly.
-run() {
-    local options=()
-    if [[ $1 != "$PWD" ]]; then
+# Builds the tests of a tree, quietly.
+build() {
+    local options=() tree=$1 wanted=(test --no-run "${@:2}")
+    if [[ $tree != "$PWD" ]]; then
         options=("${mutated[@]}")
     fi
-    (cd "$1" && shift && cargo "${options[@]}" test --quiet --profile fast "$@") >"$copy/log" 2>&1
+    if [[ $2 == gates ]]; then
+        wanted=(build)
+    fi
+    (cd "$tree" && cargo "${options[@]}" "${wanted[@]}" --quiet --profile fast) >"$copy/log" 2>&1
+}
+
+# Builds and runs tests in a tree, quietly: those that cargo finds by these words, or the accuracy gates.
+run() {
+    local options=() tree=$1
+    if [[ $2 == gates ]]; then
+        build "$tree" gates && "$CARGO_TARGET_DIR/fast/edgeline" gate --out "$copy/gate" >"$copy/log" 2>&1
+        return
+    fi
+    if [[ $tree != "$PWD" ]]; then
+        options=("${mutated[@]}")
+    fi
+    (cd "$tree" && cargo "${options[@]}" test --quiet --profile fast "${@:2}") >"$copy/log" 2>&1
 }
 
 refuse() {
@@ -58,6 +74,10 @@ mkdir "$copy/tree"
 git ls-files -z --deduplicate | xargs -0 cp --parents --preserve=timestamps --target-directory="$copy/tree"
 
 declare -A known=()
+if [[ -n ${EDGELINE_PASSED:-} ]]; then
+    known[$EDGELINE_PASSED]=1
+fi
+checked=0
 survived=0
 for mutant in "${mutants[@]}"; do
     [[ $mutant == *"${1:-}"* ]] || continue
@@ -73,15 +93,16 @@ for mutant in "${mutants[@]}"; do
     count=$(grep -cF -- "$from" "$file" || true)
     [[ $count == 1 ]] || refuse "$file has $count lines with \"$from\": bring tests/mutate.sh up to date"
     FROM=$from TO=$to perl -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$copy/tree/$file"
-    read -ra build <<<"${tests%% -- *}"
-    run "$copy/tree" "${build[@]}" --no-run || refuse "$file does not build with \"$to\""
+    read -ra built <<<"${tests%% -- *}"
+    build "$copy/tree" "${built[@]}" || refuse "$file does not build with \"$to\""
     if run "$copy/tree" "${arguments[@]}" || ! grep -qE -- "${words# @@ }" "$copy/log"; then
         echo "SURVIVED  $file: $from -> $to"
         survived=1
     else
-        echo "caught    $file: $from -> $to ($(grep -c 'panicked at' "$copy/log") tests fail)"
+        echo "caught    $file: $from -> $to ($(grep -cE 'panicked at|  NO  ' "$copy/log") fail)"
     fi
     cp "$file" "$copy/tree/$file"
+    checked=1
 done
-((${#known[@]})) || refuse "no mutant has \"${1:-}\""
+((checked)) || refuse "no mutant has \"${1:-}\""
 exit "$survived"

@@ -28,6 +28,9 @@ cp -r docs/*.md docs/figures docs/site.css $docs
 cp cases/README.md $docs/cases.md
 "$program" extras --out target/site/extras >/dev/null
 cp target/site/extras/reference.md $docs
+# Links of the sources lead to the pages; the reference is there as one.
+sed -i -e 's|](\.\./cases/README\.md|](cases.md|g' -e 's|](\.\./docs/|](|g' \
+    -e 's|reference (`edgeline extras`)|[reference](reference.md)|g' $docs/*.md
 # The pictures of the gallery, by the commands that it names; its own case stands in the first steps.
 /usr/bin/python3 - >target/site/docs/my-case.toml <<'PYTHON'
 import re

@@ -72,6 +72,11 @@ def standard_request(case, size, **overrides):
     return Request(case, MeshOptions(size=size, **overrides), SolverOptions(), curves, lines)
 
 
+def _written(size):
+    """``size`` as a record writes it: 1.4 * 1.4 = 1.9599999999999997 is the mesh 1.96."""
+    return float(f"{size:g}")
+
+
 def _rows(path):
     """Header and rows of a CSV file; ``(None, [])`` if there is none."""
     try:
@@ -86,7 +91,7 @@ def _merge(path, size, new, merged):
     """Put the rows of ``new`` into those of the CSV file at ``path`` as the mesh of ``size``: ``merged``."""
     _, old = _rows(path)
     header, rows = _rows(new)
-    kept = [row for row in old if float(row[0]) != size]
+    kept = [row for row in old if float(row[0]) != _written(size)]
     stresses = next(i for i, name in enumerate(header) if name.endswith("_pa"))
     kept += [
         [f"{size:g}", *row[:stresses], *(f"{float(value):.6g}" for value in row[stresses:])] for row in rows
@@ -293,7 +298,7 @@ def record(case, size, folder, log, run=Run(), **overrides):
 
     ``run`` is the :class:`Run`, ``overrides`` are further mesh options. Returns False if the record holds
     that mesh already. Other meshes of the record are kept; after a kill at any moment the next call takes up
-    where this one was. Raises :class:`FemError` if the record there is damaged.
+    where this one was. Raises :class:`FemError` if the record there is damaged, or of another code.
     """
     target = Path(folder) / case.name
     target.mkdir(parents=True, exist_ok=True)
@@ -301,8 +306,12 @@ def record(case, size, folder, log, run=Run(), **overrides):
         return _record(case, size, target, log, run, overrides)
 
 
-def _known(target, form):
-    """What the record in ``target`` holds, ``None`` if there is none; raise if it is damaged or not of the case ``form``."""
+def _known(target, form, engine, added):
+    """What the record in ``target`` holds, ``None`` if there is none.
+
+    Raises :class:`FemError` if it is damaged, or not of the case ``form`` by the code ``engine``.
+    ``added``: what is to be added, for the message.
+    """
     _commit(target)
     path = target / "record.json"
     if not path.exists():
@@ -311,18 +320,28 @@ def _known(target, form):
     data = json.loads(path.read_text(encoding="utf-8"))
     if data["case"] != form:
         raise FemError(f"{path}: holds another case of that name; remove the folder to record anew")
+    # Errors are estimated between meshes of one code. Where none is named it is as in requests.
+    others = {mesh.get("engine", Request.engine) for mesh in data["meshes"].values()} - {engine}
+    if others:
+        raise FemError(f"{path}: holds meshes by {', '.join(sorted(others))}, but {added} is by {engine}; "
+                       "give another folder, because each code has its own records")
     return data
 
 
 def _record(case, size, target, log, run, overrides):
-    data = _known(target, case.to_json())
+    # The mesh is of the size that the record says.
+    size = _written(size)
+    data = _known(target, case.to_json(), run.engine, f"size {size:g}")
     request = standard_request(case, size, **overrides)
     request = dataclasses.replace(request, solver=SolverOptions(linear=run.linear), engine=run.engine)
     if data is not None:
         known = data["meshes"].get(f"{size:g}")
-        # Options that are newer than the record had their defaults then.
-        if known is not None and MeshOptions(**known["mesh"]["options"]) == request.mesh:
-            return False
+        if known is not None:
+            # Options that are newer than the record had their defaults then.
+            options = MeshOptions(**known["mesh"]["options"])
+            # The size of a run that was kept is as it was asked for.
+            if dataclasses.replace(options, size=_written(options.size)) == request.mesh:
+                return False
     work = target / f".work-{size:g}"
     shutil.rmtree(work, ignore_errors=True)
     work.mkdir()
@@ -341,27 +360,40 @@ def _record(case, size, target, log, run, overrides):
     return True
 
 
+def _finished(work):
+    """The run in ``work``: folder, request, and case as a record has it; raise if it cannot be kept."""
+    path = work / "request.json"
+    request = read_request(path)
+    if not (work / "fem.json").exists():
+        raise FemError(f"{work}: has no fem.json: the run is not finished; run it again")
+    case = json.loads(path.read_text(encoding="utf-8"))["case"]
+    for body in ("roller", "block"):
+        # A record names a profile as the case does; its points follow from that, but not from a table's file.
+        points = case[body].pop("profile_m", None)
+        kind = (case[body].get("profile") or {}).get("kind")
+        if kind == "table" or (kind is None and points is not None):
+            raise FemError(f"{path}: the {body}'s profile is a table, whose points no record holds; give the "
+                           "profile as a formula (cases/README.md), run the case again and keep that run")
+    return work, request, case
+
+
 def keep(runs, folder, log, study=None):
     """Add finished runs of ``edgeline fem``, the folders ``runs``, to the records in ``folder``, one a case.
 
-    ``study``: the built-in study that the cases belong to, for the command in the record. Each run holds its request, and so its case: any that the model takes, of several sizes. What a record holds of
-    that size is replaced. Raises :class:`FemError` where a run is not finished, or is of another case than
-    its record.
+    ``study``: the built-in study that the cases belong to, for the command in the record. Each run holds
+    its request, and so its case: any that the model takes, of several sizes, but for profiles that are
+    tables. What a record holds of that size is replaced. Raises :class:`FemError` where a run is not
+    finished or has such a profile, before anything is written, and where it is of another case or code
+    than its record.
     """
-    for work in map(Path, runs):
-        request = read_request(work / "request.json")
-        if not (work / "fem.json").exists():
-            raise FemError(f"{work}: has no fem.json: the run is not finished; run it again")
-        asked = json.loads((work / "request.json").read_text(encoding="utf-8"))["case"]
-        # A record names a profile as the case does; its points follow from that.
-        for body in ("roller", "block"):
-            asked[body].pop("profile_m", None)
+    # All are read before the first is added, so that a run that cannot be kept leaves all records alone.
+    for work, request, asked in [_finished(Path(work)) for work in runs]:
         target = Path(folder) / request.case.name
         target.mkdir(parents=True, exist_ok=True)
         with _locked(target):
-            data = _known(target, asked)
+            data = _known(target, asked, request.engine, f"the run {work}")
             began = datetime.datetime.fromtimestamp((work / "request.json").stat().st_mtime, datetime.timezone.utc)
-            size = request.mesh.size
+            size = _written(request.mesh.size)
             command = f"edgeline fem cases/{request.case.name}.toml --size {size:g}"
             if study is not None:
                 command = f"edgeline study {study} --fem live --size {size:g}"

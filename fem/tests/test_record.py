@@ -4,6 +4,7 @@ import dataclasses
 import fcntl
 import json
 import os
+import re
 import subprocess
 import sys
 
@@ -11,7 +12,8 @@ import pytest
 
 from conftest import FEM, STEEL, steel_case
 from edgeline_fem.record import (
-    COMPONENTS, check_record, keep, observed_orders, order_and_factor, read_cases, record, standard_request,
+    COMPONENTS, Run, check_record, keep, observed_orders, order_and_factor, read_cases, record,
+    standard_request,
 )
 from edgeline_fem.request import FemError
 
@@ -64,30 +66,47 @@ def test_a_record_grows_and_is_not_made_twice(tmp_path):
         record(other, 3.0, tmp_path, lines.append)
 
 
+def made_up_run(folder, case, size, engine="fenicsx", profile=None):
+    """A folder as a run leaves it, without fem.json; every stress and pressure is the same."""
+    folder.mkdir()
+    asked = standard_request(case, size).to_json()
+    if engine != "fenicsx":
+        asked["engine"] = engine
+    if profile is not None:
+        half = 0.5 * case.roller_length_m
+        points = [[-half, 1e-7], [0.0, 0.0], [half, 1e-7]]
+        asked["case"]["roller"].update(profile=profile, profile_m=points)
+    (folder / "request.json").write_text(json.dumps(asked))
+    rows = [f"{curve['body']},{curve['curve']},{point[0]},{point[1]},{point[2]}," + ",".join(["1e9"] * 8)
+            for curve in asked["curves"] for point in curve["points_m"]]
+    names = ",".join(f"{name}_pa" for name in COMPONENTS)
+    (folder / "curves.csv").write_text("\n".join([f"body,curve,x_m,y_m,z_m,{names}", *rows]) + "\n")
+    rows = [f"{line},{point[0]},{point[1]},1e9,1e9,1e9"
+            for line, points in asked["pressure_points_m"].items() for point in points]
+    head = "line,x_m,y_m,p_pa,p_lumped_pa,p_stress_pa"
+    (folder / "pressure.csv").write_text("\n".join([head, *rows]) + "\n")
+    return folder
+
+
+def finish(run):
+    """Let the made-up run end; its fem.json names the code as that of a real one does."""
+    asked = json.loads((run / "request.json").read_text())
+    named = {"engine": asked["engine"]} if "engine" in asked else {}
+    mesh = {"options": asked["mesh"]}
+    summary = {"schema": 1, **named, "case": "test", "hertz": {}, "mesh": mesh, "unknowns": 7}
+    (run / "fem.json").write_text(json.dumps(summary))
+    return run
+
+
 def test_finished_runs_become_a_record(tmp_path):
     case = dataclasses.replace(steel_case(5e-4, 5.0, 1.0), eccentricity_m=1e-4)
-    half = 0.5 * case.roller_length_m
-    runs = []
-    for size in (4.0, 3.0):
-        run = tmp_path / f"run-{size:g}"
-        run.mkdir()
-        asked = standard_request(case, size).to_json()
-        # A profile's own form stands beside its points, and alone in the record.
-        asked["case"]["roller"].update(profile={"kind": "crown"}, profile_m=[[-half, 1e-7], [0.0, 0.0], [half, 1e-7]])
-        (run / "request.json").write_text(json.dumps(asked))
-        rows = [f"{curve['body']},{curve['curve']},{point[0]},{point[1]},{point[2]}," + ",".join(["1e9"] * 8)
-                for curve in asked["curves"] for point in curve["points_m"]]
-        names = ",".join(f"{name}_pa" for name in COMPONENTS)
-        (run / "curves.csv").write_text("\n".join([f"body,curve,x_m,y_m,z_m,{names}", *rows]) + "\n")
-        rows = [f"{line},{point[0]},{point[1]},1e9,1e9,1e9"
-                for line, points in asked["pressure_points_m"].items() for point in points]
-        head = "line,x_m,y_m,p_pa,p_lumped_pa,p_stress_pa"
-        (run / "pressure.csv").write_text("\n".join([head, *rows]) + "\n")
-        runs.append(run)
+    # A profile's own form stands beside its points, and alone in the record.
+    runs = [made_up_run(tmp_path / f"run-{size:g}", case, size, profile={"kind": "crown"})
+            for size in (4.0, 3.0)]
     with pytest.raises(FemError, match="not finished"):
         keep(runs, tmp_path / "kept", print)
     for run in runs:
-        (run / "fem.json").write_text(json.dumps({"schema": 1, "case": "test", "hertz": {}, "unknowns": 7}))
+        finish(run)
     keep(runs, tmp_path / "kept", print)
     kept = tmp_path / "kept" / "test"
     check_record(kept)
@@ -106,6 +125,50 @@ def test_finished_runs_become_a_record(tmp_path):
     (runs[0] / "request.json").write_text(json.dumps(other))
     with pytest.raises(FemError, match="holds another case"):
         keep(runs[:1], tmp_path / "kept", print)
+
+
+@pytest.mark.parametrize("engines", [("fenicsx", "calculix"), ("calculix", "fenicsx")])
+def test_a_record_is_of_one_code(tmp_path, engines):
+    case = steel_case(5e-4, 5.0, 1.0)
+    first, second = (finish(made_up_run(tmp_path / engine, case, 3.0 - number, engine))
+                     for number, engine in enumerate(engines))
+    kept = tmp_path / "kept" / "test"
+    keep([first], tmp_path / "kept", print)
+    before = {path.name: path.read_bytes() for path in kept.iterdir()}
+    message = f"{kept}/record.json: holds meshes by {engines[0]}, but the run {second} is by {engines[1]}; "
+    with pytest.raises(FemError, match=re.escape(message)):
+        keep([second], tmp_path / "kept", print)
+    # Nor does the recorder take a mesh of that size for its own.
+    with pytest.raises(FemError, match=f"but size 3 is by {engines[1]}"):
+        record(case, 3.0, tmp_path / "kept", print, Run(engine=engines[1]))
+    assert {path.name: path.read_bytes() for path in kept.iterdir()} == before
+    keep([second], tmp_path / "other", print)
+
+
+@pytest.mark.parametrize("profile", [{"kind": "table", "file": "drop.csv"}, {}])
+def test_a_table_as_profile_is_not_kept(tmp_path, profile):
+    case = steel_case(5e-4, 5.0, 1.0)
+    runs = [finish(made_up_run(tmp_path / "straight", case, 3.0)),
+            finish(made_up_run(tmp_path / "measured", case, 2.0, profile=profile))]
+    message = "measured/request.json: the roller's profile is a table, .* give the profile as a formula"
+    with pytest.raises(FemError, match=message):
+        keep(runs, tmp_path / "kept", print)
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_size_is_what_is_written_of_it(tmp_path):
+    case = steel_case(5e-4, 5.0, 1.0)
+    unround = 1.4 * 1.4
+    assert unround != 1.96
+    run = finish(made_up_run(tmp_path / "run", case, unround))
+    keep([run], tmp_path / "kept", print)
+    kept = tmp_path / "kept" / "test"
+    before = {name: (kept / name).read_bytes() for name in ("curves.csv", "pressure.csv")}
+    keep([run], tmp_path / "kept", print)
+    assert {name: (kept / name).read_bytes() for name in before} == before
+    # It has that mesh, and does not solve it.
+    assert not record(case, 1.96, tmp_path / "kept", print)
+    assert not record(case, unround, tmp_path / "kept", print)
 
 
 def test_every_case_on_record_converges_to_what_is_promised():

@@ -1,7 +1,8 @@
-//! What every reader of outside files has to do with any bytes: return, with a value that holds what it
-//! promises or an error that names the file. `tests/program/corpora.rs` runs the same on a stable compiler.
+//! What every reader of outside files has to do with any bytes: return, with a value that holds
+//! what it promises or an error that names the file. `tests/program/corpora.rs` runs the same on a
+//! stable compiler.
 
-use edgeline::case::{Case, Design, Study, Sweep, builtin_case};
+use edgeline::case::{Case, Design, Draft, Form, Study, Sweep, builtin_case};
 use edgeline::cells::Heights;
 use edgeline::fem::{FemResults, MeshResult, MeshSummary, ResultTexts};
 use edgeline::study::brought::{BroughtFile, Statements};
@@ -97,7 +98,8 @@ pub fn sweep(data: &[u8]) {
 /// The table of a sweep, alone and with a base.
 pub fn table(data: &[u8]) {
     let Some(text) = text(data) else { return };
-    for base in [None, Some(&*HALF)] {
+    let half = Draft::of(&HALF, Form::Factors);
+    for base in [None, Some(&half)] {
         match Sweep::parse_csv(text, Path::new("f.csv"), base) {
             Ok(sweep) => rows(&sweep),
             Err(e) => refusal(&e, "f.csv"),

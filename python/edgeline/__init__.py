@@ -22,7 +22,8 @@ Conventions
 -----------
 - All numbers are in SI units: metres, newtons, pascals.
 - x runs across the contact, y along the contact line, z into the body at hand
-  from its own surface. The origin is the centre of the contact.
+  from its own surface. The origin is on the surface, in the middle of the
+  roller's length.
 - Stress is positive in tension, pressure in compression. The six components
   stand in the order xx, yy, zz, xy, xz, yz.
 - Coordinates are scalars or arrays and broadcast as numpy's functions do.

@@ -90,7 +90,10 @@ class Case:
 
     @property
     def factors(self) -> dict[str, float]:
-        """The factors `W` = w / (E* R L1), `S_l` = L1 / (2 C) and `L_r` = L1 / L2."""
+        """The factors `W` = w / (E* R L), `S_l` = L / (2 C) and `L_r` = L1 / L2.
+
+        L is the length of the shorter body, R the equivalent radius.
+        """
         return dict(zip(("W", "S_l", "L_r"), self._native.factors(), strict=True))
 
     def to_toml(self) -> str:

@@ -1,8 +1,8 @@
-//! The native part of the Python package: cases, solutions and sweeps, as thin as it can be. What users
-//! see, with its documentation, is the Python code in `edgeline/`.
+//! The native part of the Python package: cases, solutions and sweeps, as thin as it can be. What
+//! users see, with its documentation, is the Python code in `edgeline/`.
 //!
-//! Everything that takes time runs within [`work::work`], which releases the interpreter's lock and lets
-//! no panic out.
+//! Everything that takes time runs within [`work::work`], which releases the interpreter's lock and
+//! lets no panic out.
 
 #![forbid(unsafe_code)]
 

@@ -10,7 +10,8 @@ use edgeline::report::cells::contents;
 use edgeline::report::columns::Columns;
 use edgeline::report::solution::{tables, write_locked};
 use edgeline::solve::{
-    CellOptions, CellSolution, Options, Point, SolvedCase, solve_on_cells, stress_on_cells,
+    CellOptions, CellSolution, Options, Point, SolvedCase, check_grid, solve_on_cells,
+    stress_on_cells,
 };
 use edgeline::stress::Grid;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray4, PyArrayMethods, PyReadonlyArray1};
@@ -129,12 +130,13 @@ impl Solution {
     /// Stresses (Pa) on a grid (m), component by component.
     fn on_grid(&self, body: BodyKind, grid: Grid) -> Result<Vec<f64>> {
         let HertzScales { c_m, p0_pa, .. } = self.case.hertz();
+        let scaled = |axis: &[f64]| axis.iter().map(|v| v / c_m).collect();
+        let in_c = Grid { x: scaled(&grid.x), y: scaled(&grid.y), z: scaled(&grid.z) };
         if let Solved::Line(line) = &self.solved {
-            let scaled = |axis: Vec<f64>| axis.into_iter().map(|v| v / c_m).collect();
-            let grid = Grid { x: scaled(grid.x), y: scaled(grid.y), z: scaled(grid.z) };
-            let found = line.0.on_grid(body, &grid)?;
+            let found = line.0.on_grid(body, &in_c)?;
             return Ok(found.values().iter().map(|v| v * p0_pa).collect());
         }
+        check_grid(&self.case, body, &in_c)?;
         let Grid { x, y, z } = &grid;
         let line = |z: f64, y: f64| x.iter().map(move |x| [*x, y, z]);
         let plane = |z: f64| y.iter().flat_map(move |y| line(z, *y));
@@ -146,8 +148,7 @@ impl Solution {
 
 /// A body by its name.
 fn body(name: &str) -> Result<BodyKind> {
-    let named = |body: &BodyKind| body.name() == name;
-    BodyKind::ALL.into_iter().find(named).ok_or_else(|| Error::Value {
+    BodyKind::find(name).ok_or_else(|| Error::Value {
         key: "body".into(),
         value: format!("{name:?}"),
         reason: "there is no body of this name".into(),

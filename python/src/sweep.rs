@@ -22,8 +22,8 @@ const PATIENCE: Duration = Duration::from_millis(100);
 /// A row and what became of it.
 type Row = (usize, Outcome);
 
-/// Solves cases and returns which rows were solved, and their table; `progress` gets the number of rows
-/// that are done, and of all.
+/// Solves cases and returns which rows were solved, and their table; `progress` gets the number of
+/// rows that are done, and of all.
 #[pyfunction]
 #[pyo3(signature = (cases, method, tolerance, jobs, shard, progress))]
 pub fn sweep<'py>(

@@ -41,8 +41,8 @@ pub fn guarded<T: Send>(py: Python<'_>, work: impl FnOnce(bool) -> T + Send) -> 
     .map_err(|_| panicked())
 }
 
-/// As [`guarded`]. One call has all processors; a call beside another one has a thread of its own, so
-/// that calls of several Python threads do not wait for each other's parts.
+/// As [`guarded`]. One call has all processors; a call beside another one has a thread of its own,
+/// so that calls of several Python threads do not wait for each other's parts.
 ///
 /// # Errors
 /// As [`guarded`].

@@ -25,6 +25,11 @@ impl BodyKind {
             BodyKind::Roller => "roller",
         }
     }
+
+    /// The body called `name` in files.
+    pub fn find(name: &str) -> Option<BodyKind> {
+        BodyKind::ALL.into_iter().find(|body| body.name() == name)
+    }
 }
 
 /// A pair of values, one for each body.

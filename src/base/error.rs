@@ -56,7 +56,8 @@ pub enum Error {
     NotConverged {
         /// Iterations done.
         iterations: usize,
-        /// The remaining residual: on the line of the pressure at its edges (p0), on cells the relative one.
+        /// The remaining residual: on the line of the pressure at its edges (p0), on cells the
+        /// relative one.
         residual: f64,
         /// What to do.
         remedy: String,

@@ -1,5 +1,5 @@
-//! Materials, Hertz scales, profiles, the stress tensor, graded axes, wavenumbers, quadrature, the error
-//! type, and numbers as text.
+//! Materials, Hertz scales, profiles, the stress tensor, graded axes, wavenumbers, quadrature, the
+//! error type, and numbers as text.
 
 mod bodies;
 mod error;

@@ -6,8 +6,8 @@ use super::quadrature::{crowded_legendre, gauss_legendre, legendre};
 ///
 /// A function on the axis is given by its values at the nodes. On each panel it is the
 /// interpolating polynomial, without continuity between panels: a pressure may jump at the roller's
-/// end, and a steep end needs small panels only there. A load that grows without bound towards a [`Corner`]
-/// is a polynomial times its power there.
+/// end, and a steep end needs small panels only there. A load that grows without bound towards a
+/// [`Corner`] is a polynomial times its power there.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panels {
     breaks: Vec<f64>,
@@ -44,7 +44,8 @@ const NEAREST: f64 = 1e-9;
 /// Distance beside an axis, as a part of its largest coordinate, that is rounding.
 const BESIDE: f64 = 1e-12;
 
-/// Nodes beyond a panel's own, and the power of the map that crowds them, for integrals at a corner.
+/// Nodes beyond a panel's own, and the power of the map that crowds them, for integrals at a
+/// corner.
 const MORE_NODES: usize = 6;
 const POWER: i32 = 4;
 
@@ -64,7 +65,8 @@ impl Corner {
 }
 
 impl Panels {
-    /// The same panels with loads that grow towards `corners`, at which panels end. The weights integrate these loads.
+    /// The same panels with loads that grow towards `corners`, at which panels end. The weights
+    /// integrate these loads.
     #[must_use]
     pub fn with_corners(mut self, corners: &[Corner]) -> Self {
         self.corners = corners.to_vec();
@@ -111,8 +113,8 @@ impl Panels {
         }
     }
 
-    /// Values at `x` of the loads of panel `i` that are 1 at one of its nodes and 0 at the others: its polynomials,
-    /// times the power of a corner.
+    /// Values at `x` of the loads of panel `i` that are 1 at one of its nodes and 0 at the others:
+    /// its polynomials, times the power of a corner.
     pub fn loads(&self, i: usize, x: f64) -> impl Iterator<Item = f64> {
         let [a, b] = self.panel(i);
         let power = self.laws[i].map_or(1.0, |law| law.power(x, b - a));
@@ -120,9 +122,9 @@ impl Panels {
         self.polynomials(i, x).zip(leveled).map(move |(value, leveled)| value * leveled * power)
     }
 
-    /// The load at `x` from those at the nodes of its panel, with weights; see [`Panels::interpolation`].
-    /// Nearer to a corner than the nodes are, it is that of the outermost one. Beside the axis, but for rounding, there is
-    /// no load and no node.
+    /// The load at `x` from those at the nodes of its panel, with weights; see
+    /// [`Panels::interpolation`]. Nearer to a corner than the nodes are, it is that of the
+    /// outermost one. Beside the axis, but for rounding, there is no load and no node.
     pub fn load_interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
         let [first, end] = [self.breaks[0], self.end()];
         let rounding = BESIDE * first.abs().max(end.abs());
@@ -251,9 +253,9 @@ impl Panels {
         })
     }
 
-    /// Integrals of each of the [`Panels::loads`] of panel `i` times cos(`wavenumber` x) over the panel,
-    /// into `out` (length `order`); exact for any wavenumber where they are polynomials, and for waves longer than
-    /// the panel where they are not.
+    /// Integrals of each of the [`Panels::loads`] of panel `i` times cos(`wavenumber` x) over the
+    /// panel, into `out` (length `order`); exact for any wavenumber where they are polynomials, and
+    /// for waves longer than the panel where they are not.
     ///
     /// From the Legendre expansion of the Lagrange polynomials and
     /// int P_n(t) e^(i w t) dt = 2 i^n j_n(w) (Abramowitz and Stegun 1964, 10.1.14).

@@ -5,19 +5,20 @@
 
 use std::sync::Arc;
 
-/// The shape of a profile. Its places along y and its drops scale together, see [`Profile::scaled`].
+/// The shape of a profile. Its places along y and its drops scale together, see
+/// [`Profile::scaled`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum Profile {
-    /// Straight for |y| <= `straight`, then an arc of `radius` that is tangent to it. Without a straight
-    /// part a crown.
+    /// Straight for |y| <= `straight`, then an arc of `radius` that is tangent to it. Without a
+    /// straight part a crown.
     Arc {
         /// Half of the straight part's length.
         straight: f64,
         /// Radius of the arc.
         radius: f64,
     },
-    /// A ln(1 / (1 - k t^2)) with t = (|y| - start) / span beyond `start`, else zero. With k = 1 it has
-    /// no limit at t = 1.
+    /// A ln(1 / (1 - k t^2)) with t = (|y| - start) / span beyond `start`, else zero. With k = 1 it
+    /// has no limit at t = 1.
     Logarithm {
         /// A, of the sign of the drop.
         amplitude: f64,
@@ -88,7 +89,8 @@ impl Profile {
         }
     }
 
-    /// Where the curvature jumps: the ends of a straight part. The many small jumps of a table are none.
+    /// Where the curvature jumps: the ends of a straight part. The many small jumps of a table are
+    /// none.
     pub fn kinks(&self) -> Option<[f64; 2]> {
         let at = match self {
             Self::Arc { straight, .. } => *straight,
@@ -138,9 +140,10 @@ impl Profile {
     }
 }
 
-/// Measured drops, with a monotone cubic between them (Fritsch and Carlson, SIAM Journal on Numerical
-/// Analysis 17, 1980, with the three-point slopes of Fritsch and Butland, SIAM Journal on Scientific
-/// and Statistical Computing 5, 1984): it does not overshoot. Beyond the outer points it is straight.
+/// Measured drops, with a monotone cubic between them (Fritsch and Carlson, SIAM Journal on
+/// Numerical Analysis 17, 1980, with the three-point slopes of Fritsch and Butland, SIAM Journal on
+/// Scientific and Statistical Computing 5, 1984): it does not overshoot. Beyond the outer points it
+/// is straight.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Table {
     y: Vec<f64>,

@@ -29,8 +29,8 @@ pub fn gauss_legendre(n: usize) -> (Vec<f64>, Vec<f64>) {
     (nodes, weights)
 }
 
-/// Nodes (in (0, 1)) and weights of a rule with `n` points for functions that are steep at 0: those of Gauss, crowded there
-/// by the map t^`power`.
+/// Nodes (in (0, 1)) and weights of a rule with `n` points for functions that are steep at 0: those
+/// of Gauss, crowded there by the map t^`power`.
 pub fn crowded_legendre(n: usize, power: i32) -> Vec<(f64, f64)> {
     let (nodes, weights) = gauss_legendre(n);
     let crowded = |(t, w): (&f64, &f64)| {

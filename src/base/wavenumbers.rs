@@ -7,9 +7,10 @@ use std::ops::Range;
 /// Number of coarse nodes in the interpolation to a fine node, from its panel and its neighbours.
 const WIDTH: usize = 5;
 
-/// Part of the largest wavenumber from which on waves fade, by a squared cosine, to nothing at the largest one. What an
-/// abrupt end leaves out oscillates across the whole contact and has either sign: next to the line's end, where nodes are
-/// closer together than the shortest waves are long, it would be as large as all that tells them apart.
+/// Part of the largest wavenumber from which on waves fade, by a squared cosine, to nothing at the
+/// largest one. What an abrupt end leaves out oscillates across the whole contact and has either
+/// sign: next to the line's end, where nodes are closer together than the shortest waves are long,
+/// it would be as large as all that tells them apart.
 const FADES: f64 = 0.7;
 
 /// The part of a wave that counts, by its wavenumber as a part of the largest one.
@@ -18,9 +19,10 @@ fn part(share: f64) -> f64 {
     (0.5 * PI * faded).cos().powi(2)
 }
 
-/// Quadrature of a product over all wavenumbers; beyond the largest one it is negligible. One factor varies slowly and
-/// is costly; it is computed at the coarse nodes. The other, the transform of the contact pressure, oscillates with
-/// the contact's width and is cheap; it is evaluated at the fine nodes.
+/// Quadrature of a product over all wavenumbers; beyond the largest one it is negligible. One
+/// factor varies slowly and is costly; it is computed at the coarse nodes. The other, the transform
+/// of the contact pressure, oscillates with the contact's width and is cheap; it is evaluated at
+/// the fine nodes.
 ///
 /// Between the coarse nodes the slow factor is a polynomial in ln k: the effect of a load at a
 /// distance d depends on k d, so it varies at the same rate in every decade, for every d.

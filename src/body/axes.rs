@@ -17,23 +17,26 @@ pub(super) const PLATE_FADES: f64 = 8.0;
 /// Wavenumber times half-length up to which one panel holds the waves of a plate in bending.
 const BENDS: f64 = 0.25;
 
-/// Largest growth of the panels of depths and wavenumbers along an end face of a plate in bending, whose loads
-/// reach as deep as the wave is long.
+/// Largest growth of the panels of depths and wavenumbers along an end face of a plate in bending,
+/// whose loads reach as deep as the wave is long.
 const BENDING_RATIO: f64 = 2.0;
 
-/// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest one.
+/// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest
+/// one.
 const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 
 /// Distance (C) from a corner within which panels grow by a ratio of their own.
 const STEEP: f64 = 0.02;
 
-/// Size of the panels beside a kink of the gap, in those at a corner: the pressure is smooth there but for s ln s.
+/// Size of the panels beside a kink of the gap, in those at a corner: the pressure is smooth there
+/// but for s ln s.
 const KINK: f64 = 40.0;
 
 /// The narrowest panel between two features, as a part of those at a corner.
 const SLIVER: f64 = 0.5;
 
-/// Distance (C) from the contact's end within which the loads have the power of a singular pressure.
+/// Distance (C) from the contact's end within which the loads have the power of a singular
+/// pressure.
 const LAW: f64 = 1.0;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
@@ -50,8 +53,8 @@ pub struct Resolution {
     pub order: usize,
     /// Panel next to a loaded corner.
     pub corner: f64,
-    /// Growth of panels within 0.02 C of a corner: the nearer, the less a load weighs in what is computed
-    /// farther away.
+    /// Growth of panels within 0.02 C of a corner: the nearer, the less a load weighs in what is
+    /// computed farther away.
     pub corner_ratio: f64,
     /// Growth of panels away from a corner.
     pub ratio: f64,
@@ -85,8 +88,8 @@ const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 /// Lengths that differ by less than this part of a body's are the same.
 const SAME: f64 = 1e-10;
 
-/// Largest distance between half-widths that follow a gap, in the length within which it turns, and the least one (C):
-/// nearer to each other than the shortest waves are long they would be noise.
+/// Largest distance between half-widths that follow a gap, in the length within which it turns, and
+/// the least one (C): nearer to each other than the shortest waves are long they would be noise.
 const TURN: f64 = 0.2;
 const NARROWEST: f64 = 0.02;
 
@@ -95,9 +98,9 @@ const ROUNDING: f64 = 1e-12;
 
 /// The levels where the pressure at the contact's end has a limit, at each of [`TOLERANCES`].
 ///
-/// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of some scenes within
-/// the tolerance; `-- hold` measures others. These and the next ones lie between what it proposed and finer ones, where the
-/// tests of fields, approaches and ends asked for them.
+/// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of
+/// some scenes within the tolerance; `-- hold` measures others. These and the next ones lie between
+/// what it proposed and finer ones, where the tests of fields, approaches and ends asked for them.
 const FINITE: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -181,8 +184,8 @@ const FINITE: [Resolution; 5] = [
     },
 ];
 
-/// The same where the pressure grows without bound at a free end: the loads on the end face do so too, and carry
-/// much from next to the corner. Its panels are many times smaller, and grow fast.
+/// The same where the pressure grows without bound at a free end: the loads on the end face do so
+/// too, and carry much from next to the corner. Its panels are many times smaller, and grow fast.
 const SINGULAR: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -266,8 +269,8 @@ const SINGULAR: [Resolution; 5] = [
     },
 ];
 
-/// Those of contacts that end before their bodies do at both ends: the pressure falls to zero there, and only its length
-/// has to be found.
+/// Those of contacts that end before their bodies do at both ends: the pressure falls to zero
+/// there, and only its length has to be found.
 const TIPS: [Resolution; 5] = [
     FINITE[0],
     FINITE[0],
@@ -321,8 +324,8 @@ const TIPS: [Resolution; 5] = [
     },
 ];
 
-/// The same for half-spaces: their pressure is the steepest at its end, and nodes and wavenumbers cost little
-/// without end faces.
+/// The same for half-spaces: their pressure is the steepest at its end, and nodes and wavenumbers
+/// cost little without end faces.
 const ENDLESS: [Resolution; 5] = [
     Resolution {
         order: 5,
@@ -424,8 +427,8 @@ impl Resolution {
         Self::between(levels, tolerance)
     }
 
-    /// The resolution for errors of about `tolerance` (a fraction of p0) where the pressure has a limit at the
-    /// contact's end. Between the levels it is interpolated, so that no error jumps.
+    /// The resolution for errors of about `tolerance` (a fraction of p0) where the pressure has a
+    /// limit at the contact's end. Between the levels it is interpolated, so that no error jumps.
     pub fn for_tolerance(tolerance: f64) -> Self {
         Self::between(&FINITE, tolerance)
     }
@@ -435,7 +438,8 @@ impl Resolution {
         Self::between(&TIPS, tolerance)
     }
 
-    /// The same with half-widths near the contact's ends that follow a gap which turns there within a `length` (C).
+    /// The same with half-widths near the contact's ends that follow a gap which turns there within
+    /// a `length` (C).
     #[must_use]
     pub fn following(self, length: f64) -> Self {
         Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
@@ -514,16 +518,17 @@ impl Resolution {
 
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
     /// needs the finest panels; at a corner farther from the load the fields vary over that
-    /// distance. Beside a ledge narrower than C they are large, and vanish at the corner itself, like the 1.7th power
-    /// of the distance from it: the loads that cancel them there need smaller panels.
+    /// distance. Beside a ledge narrower than C they are large, and vanish at the corner itself,
+    /// like the 1.7th power of the distance from it: the loads that cancel them there need smaller
+    /// panels.
     fn end_panel(&self, ledge: f64) -> f64 {
         let smallest = self.corner / 16.0;
         if ledge > 0.0 { (ledge * ledge.min(1.0) / 16.0).max(smallest) } else { self.corner }
     }
 
-    /// The contact line between its `ends`, or one half of it if all is `symmetric`, with panels graded towards the
-    /// ends and the `kinks` of the gap; and the parity that its wavenumbers have to serve. Loads grow with the
-    /// `exponents`, if any, towards the ends.
+    /// The contact line between its `ends`, or one half of it if all is `symmetric`, with panels
+    /// graded towards the ends and the `kinks` of the gap; and the parity that its wavenumbers have
+    /// to serve. Loads grow with the `exponents`, if any, towards the ends.
     pub fn contact_line(
         &self,
         ends: [f64; 2],
@@ -552,8 +557,8 @@ impl Resolution {
         (self.between_features(&features, parity).with_corners(&corners), parity)
     }
 
-    /// Panels from the first of the ascending `features` to the last, graded towards all of them, but not towards
-    /// the first one of an even half.
+    /// Panels from the first of the ascending `features` to the last, graded towards all of them,
+    /// but not towards the first one of an even half.
     fn between_features(&self, features: &[f64], parity: Parity) -> Panels {
         let last = features.len() - 1;
         let smallest =
@@ -573,8 +578,8 @@ impl Resolution {
         Panels::new(breaks, self.order)
     }
 
-    /// The `contact` on one side of a body's middle, continued by panels to the middle and to the end
-    /// face at `half`, graded towards the contact and the face.
+    /// The `contact` on one side of a body's middle, continued by panels to the middle and to the
+    /// end face at `half`, graded towards the contact and the face.
     pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
@@ -620,9 +625,9 @@ impl Resolution {
         Panels::new(s, self.order).with_corners(exponent.map(corner).as_slice())
     }
 
-    /// Wavenumbers across the contact, for bodies of half-length up to `half` under loads that are even about
-    /// their middle, or not: coarse panels that grow from the smallest one to `k_max`, cut where they are wider
-    /// than `k_step` for the pressure's transform.
+    /// Wavenumbers across the contact, for bodies of half-length up to `half` under loads that are
+    /// even about their middle, or not: coarse panels that grow from the smallest one to `k_max`,
+    /// cut where they are wider than `k_step` for the pressure's transform.
     pub fn wavenumbers(&self, half: f64, parity: Parity) -> Wavenumbers {
         let smallest = self.smallest_wavenumber(half, parity);
         let mut breaks = vec![0.0, smallest];
@@ -641,8 +646,9 @@ impl Resolution {
     /// End of the first panel of wavenumbers: waves longer than the body and the contact's width
     /// depend on little more than the total load.
     ///
-    /// Under odd loads the answer grows as 1 / k, and below k `half` = 0.01 the equations are close to singular:
-    /// the panel is wide enough for its nodes to stay above, and gives the tilt of narrower ones within 0.3 %.
+    /// Under odd loads the answer grows as 1 / k, and below k `half` = 0.01 the equations are close
+    /// to singular: the panel is wide enough for its nodes to stay above, and gives the tilt of
+    /// narrower ones within 0.3 %.
     fn smallest_wavenumber(&self, half: f64, parity: Parity) -> f64 {
         let of_body = match parity {
             Parity::Even => self.k_min.min(1.0 / half),
@@ -656,8 +662,9 @@ impl Resolution {
     /// is negligible beyond `PLATE_FADES` / `half` and varies on the scale of the wavenumber
     /// across the contact, hence panels that grow from `k_min`.
     ///
-    /// A plate in bending, under the odd part of a load, answers most to waves of the same length along
-    /// and across: its remainder varies on the scale of the smallest wavenumber across the contact.
+    /// A plate in bending, under the odd part of a load, answers most to waves of the same length
+    /// along and across: its remainder varies on the scale of the smallest wavenumber across the
+    /// contact.
     pub fn face_wavenumbers(&self, half: f64, parity: Parity) -> Panels {
         let top = PLATE_FADES / half;
         let mut breaks = vec![0.0];

@@ -1,9 +1,10 @@
 //! A body that ends at y = -H and y = +H, as a set of layers, one per wavenumber across the
 //! contact.
 //!
-//! Symmetry: pressures are even in x, and even or odd in y about the body's middle, so only y >= 0 is
-//! stored; the loads q on the two end faces are equal or opposite, and even in z. Lengths are in units of C. A layer's displacement is f p with
-//! u = (1 - nu^2)/(pi E) f p, so a half-space's f is 2 K0(k |y|).
+//! Symmetry: pressures are even in x, and even or odd in y about the body's middle, so only y >= 0
+//! is stored; the loads q on the two end faces are equal or opposite, and even in z. Lengths are in
+//! units of C. A layer's displacement is f p with u = (1 - nu^2)/(pi E) f p, so a half-space's f is
+//! 2 K0(k |y|).
 
 use super::axes::{PLATE_FADES, Resolution};
 use super::end::End;
@@ -71,20 +72,20 @@ pub struct Layer {
     pub surface: Option<DMatrix<f64>>,
     /// q at the face nodes per contact pressure; none if the effect of the end is negligible.
     pub face: Option<DMatrix<f64>>,
-    /// The same two under a traction along x at the contact nodes instead of the pressure; none without
-    /// such a traction, and without an effect of the end.
+    /// The same two under a traction along x at the contact nodes instead of the pressure; none
+    /// without such a traction, and without an effect of the end.
     pub traction: Option<TractionLayer>,
     /// Condition number of the system solved for `surface`, in the column-sum norm over the
     /// contact's columns; 1 without a system, infinite if it could not be solved.
     pub condition: f64,
 }
 
-/// The loads of a body at one wavenumber under a traction along x, in the phase in which the stress across
-/// the contact varies: sin(k x) where the traction is cos(k x).
+/// The loads of a body at one wavenumber under a traction along x, in the phase in which the stress
+/// across the contact varies: sin(k x) where the traction is cos(k x).
 ///
-/// The half-space under the traction S and its images leaves T_sy S on the end faces, compressive as all
-/// here. With P on z = 0 and q on the faces, P + T_yz q = 0 and T_zy P + T_sy S + q = 0: the system of the
-/// pressure under T_yz T_sy S.
+/// The half-space under the traction S and its images leaves T_sy S on the end faces, compressive
+/// as all here. With P on z = 0 and q on the faces, P + T_yz q = 0 and T_zy P + T_sy S + q = 0: the
+/// system of the pressure under T_yz T_sy S.
 #[derive(Debug, Clone)]
 pub struct TractionLayer {
     /// P at the surface nodes.
@@ -103,39 +104,40 @@ pub struct Shape {
 }
 
 impl Shape {
-    /// The wavenumber k times the turn of the body by a unit moment under waves far longer than it is, in the compliance's unit:
-    /// Kirchhoff's plate between two free faces, loaded on its edge.
+    /// The wavenumber k times the turn of the body by a unit moment under waves far longer than it
+    /// is, in the compliance's unit: Kirchhoff's plate between two free faces, loaded on its edge.
     pub fn turned(&self) -> f64 {
         3.0 * PI / (self.half.powi(3) * (1.0 - self.nu) * (3.0 + self.nu))
     }
 
-    /// The wavenumber k times the body's displacement by a unit load under waves far longer than it is, in the compliance's
-    /// unit: plane stress.
+    /// The wavenumber k times the body's displacement by a unit load under waves far longer than it
+    /// is, in the compliance's unit: plane stress.
     pub fn moved(&self) -> f64 {
         PI / (self.half * (1.0 - self.nu * self.nu))
     }
 
-    /// The wavenumber k times the displacement of free ends' long waves, at `y` from the body's middle, under a `load` and its
-    /// `moment` about the middle.
+    /// The wavenumber k times the displacement of free ends' long waves, at `y` from the body's
+    /// middle, under a `load` and its `moment` about the middle.
     pub fn as_plate(&self, load: f64, moment: f64, y: f64) -> f64 {
         self.moved() * load + self.turned() * moment * y
     }
 }
 
-/// Shares of the last images of an alternating series, which close it (Euler's transformation of fifth
-/// order).
+/// Shares of the last images of an alternating series, which close it (Euler's transformation of
+/// fifth order).
 const CLOSING: [f64; 5] = [31.0 / 32.0, 26.0 / 32.0, 16.0 / 32.0, 6.0 / 32.0, 1.0 / 32.0];
 
-/// Longest waves of the odd part (half-lengths of the body, divided by 2 pi). Such a load bends the body as a
-/// plate, the less stiff the longer the wave: the equations become singular, and errors of the axes decide. The
-/// waves of an axis for odd loads are shorter, but for a body that is many times shorter than the other.
+/// Longest waves of the odd part (half-lengths of the body, divided by 2 pi). Such a load bends the
+/// body as a plate, the less stiff the longer the wave: the equations become singular, and errors
+/// of the axes decide. The waves of an axis for odd loads are shorter, but for a body that is many
+/// times shorter than the other.
 const LONGEST: f64 = 250.0;
 
 /// A load at s >= 0 and its other half at -s, and their images in the end faces of a body.
 ///
 /// Even loads have the period 2 H of the body's length, and strips replace the images beyond the
-/// last. Odd loads change sign from one length to the next; [`CLOSING`] shares of five more images close
-/// their series.
+/// last. Odd loads change sign from one length to the next; [`CLOSING`] shares of five more images
+/// close their series.
 fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<Image> {
     let image = |lengths: i32, weight: f64| {
         let shift = 2.0 * half * f64::from(lengths);
@@ -158,8 +160,9 @@ fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<
 }
 
 impl Body {
-    /// A body of this `shape` with end faces `end`, under loads of one `parity` on `contact`, an axis
-    /// on one side of the body's middle; where it `slides`, the contact may carry a traction along x.
+    /// A body of this `shape` with end faces `end`, under loads of one `parity` on `contact`, an
+    /// axis on one side of the body's middle; where it `slides`, the contact may carry a traction
+    /// along x.
     pub fn new(
         contact: &Panels,
         shape: Shape,
@@ -430,15 +433,15 @@ impl Body {
         }
     }
 
-    /// Compressive stress across the loaded line of a unit load of `kernel` at each of `places`, into
-    /// `values`.
+    /// Compressive stress across the loaded line of a unit load of `kernel` at each of `places`,
+    /// into `values`.
     fn press(&self, kernel: &WaveTable, k: f64, places: &WwPlaces, values: &mut Vec<f64>) {
         kernel.ww(k, places, self.reach(k), values);
         values.iter_mut().for_each(|v| *v = -*v);
     }
 
-    /// Compressive stress yy on the end face per load of `kernel` on the surface: T_zy per P, T_sy per
-    /// traction along x.
+    /// Compressive stress yy on the end face per load of `kernel` on the surface: T_zy per P, T_sy
+    /// per traction along x.
     fn surface_matrix(&self, k: f64, kernel: &WaveTable) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
         let mut values = Vec::new();

@@ -8,9 +8,9 @@ const SAME: f64 = 1e-9;
 
 /// The contact line as a body sees it, y being the distance from the body's middle.
 ///
-/// A pressure p(y) has an even and an odd part, (p(|y|) +- p(-|y|)) / 2, on an axis of |y| whose panels
-/// end at all breaks of the line on either side. So the parts are polynomials on the axis's panels, and
-/// their sum is again p, exactly.
+/// A pressure p(y) has an even and an odd part, (p(|y|) +- p(-|y|)) / 2, on an axis of |y| whose
+/// panels end at all breaks of the line on either side. So the parts are polynomials on the axis's
+/// panels, and their sum is again p, exactly.
 #[derive(Debug, Clone)]
 pub struct Fold {
     axis: Panels,
@@ -18,14 +18,14 @@ pub struct Fold {
     symmetric: bool,
     /// For each node of the axis the values at +y and at -y: nodes of the line, with weights.
     sides: Vec<[Vec<(usize, f64)>; 2]>,
-    /// For each node of the line whether it lies at y < 0, and the value there: nodes of the axis, with
-    /// weights.
+    /// For each node of the line whether it lies at y < 0, and the value there: nodes of the axis,
+    /// with weights.
     places: Vec<(bool, Vec<(usize, f64)>)>,
 }
 
 impl Fold {
-    /// Folds the contact `line` of a body whose middle is at `middle`. A `symmetric` line begins at the
-    /// middle and is one half of the contact; it has no odd part.
+    /// Folds the contact `line` of a body whose middle is at `middle`. A `symmetric` line begins at
+    /// the middle and is one half of the contact; it has no odd part.
     pub fn new(line: &Panels, middle: f64, symmetric: bool) -> Self {
         let local: Vec<f64> = line.breaks().iter().map(|y| y - middle).collect();
         let [from, to] = [local[0], local[local.len() - 1]];
@@ -83,8 +83,8 @@ impl Fold {
         own.chain(other.iter().map(move |(j, w)| (*j, 0.5 * sign * w)))
     }
 
-    /// Adds `factor` times the response of one part to `total`, a matrix over the nodes of the line:
-    /// `response` is the same over the nodes of the axis.
+    /// Adds `factor` times the response of one part to `total`, a matrix over the nodes of the
+    /// line: `response` is the same over the nodes of the axis.
     pub fn add(
         &self,
         parity: Parity,

@@ -8,8 +8,9 @@ use crate::base::{Panels, Parity};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
-/// A body under loads on a contact line that may lie beside its middle: the body at all wavenumbers,
-/// for the even part of the load and, unless line and body are symmetric, for the odd one.
+/// A body under loads on a contact line that may lie beside its middle: the body at all
+/// wavenumbers, for the even part of the load and, unless line and body are symmetric, for the odd
+/// one.
 #[derive(Debug)]
 pub struct Stack {
     /// Place of the body's middle (C).
@@ -20,9 +21,9 @@ pub struct Stack {
 }
 
 impl Stack {
-    /// A body of this `shape` whose middle is at `middle`, with end faces `end`, under loads on `line`;
-    /// a `symmetric` line begins at the middle and is one half of the contact; where it `slides`, the line
-    /// may carry a traction along x.
+    /// A body of this `shape` whose middle is at `middle`, with end faces `end`, under loads on
+    /// `line`; a `symmetric` line begins at the middle and is one half of the contact; where it
+    /// `slides`, the line may carry a traction along x.
     pub fn new(
         line: &Panels,
         (symmetric, slides): (bool, bool),
@@ -50,7 +51,8 @@ impl Stack {
         &self.parts[0].0
     }
 
-    /// Adds `factor` times the compliance at wavenumber number `i` to `total`, over the line's nodes.
+    /// Adds `factor` times the compliance at wavenumber number `i` to `total`, over the line's
+    /// nodes.
     pub fn add_compliance(&self, i: usize, factor: f64, total: &mut DMatrix<f64>) {
         for (body, layers) in &self.parts {
             self.fold.add(body.parity, &layers[i].compliance, factor, total);

@@ -28,7 +28,8 @@ pub struct Sources {
     clusters: Vec<Cluster>,
     /// Positions of the charges, `order` per cluster.
     places: Vec<f64>,
-    /// Charges (columns) per value at the axis's nodes (rows): quadrature weights times the clusters' polynomials.
+    /// Charges (columns) per value at the axis's nodes (rows): quadrature weights times the
+    /// clusters' polynomials.
     charges: DMatrix<f64>,
     /// Gauss's rules for a piece of a panel, and for one with a logarithm at its end.
     piece_rule: (Vec<f64>, Vec<f64>),

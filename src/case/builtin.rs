@@ -1,6 +1,7 @@
 //! The case files that are built into the binary, so that it runs from any folder.
 
 use super::document::nearest;
+use super::draft::Draft;
 use super::model::Case;
 use crate::base::{Error, Result};
 use std::path::Path;
@@ -34,10 +35,21 @@ pub const BUILTIN_STUDIES: [(&str, &str); 3] = [
     ("scenes", include_str!("../../cases/scenes.toml")),
 ];
 
+/// Whether there is a file, or a pipe, at `path`; a folder does not hide what is built in under its
+/// name.
+pub(super) fn is_given(path: &Path) -> bool {
+    path.exists() && !path.is_dir()
+}
+
 /// The built-in case called `name`, if there is one.
 pub fn builtin_case(name: &str) -> Option<Result<Case>> {
+    Some(builtin_draft(name)?.and_then(|draft| draft.case()))
+}
+
+/// [`builtin_case`] in its own form.
+fn builtin_draft(name: &str) -> Option<Result<Draft>> {
     let (name, text) = BUILTIN_CASES.iter().find(|(known, _)| *known == name)?;
-    Some(Case::parse(text, Path::new(name)))
+    Some(Draft::parse(text, Path::new(name)))
 }
 
 impl Case {
@@ -45,12 +57,23 @@ impl Case {
     /// file.
     ///
     /// # Errors
-    /// As [`Case::read`]; the error about a missing file names the built-in cases, the nearest first.
+    /// As [`Case::read`]; the error about a missing file names the built-in cases, the nearest
+    /// first.
     pub fn find(path: &Path) -> Result<Case> {
-        if path.exists() {
-            return Case::read(path);
+        Draft::find(path)?.case()
+    }
+}
+
+impl Draft {
+    /// [`Case::find`] in the form of its file.
+    ///
+    /// # Errors
+    /// As [`Case::find`].
+    pub fn find(path: &Path) -> Result<Draft> {
+        if is_given(path) {
+            return Draft::read(path);
         }
-        path.to_str().and_then(builtin_case).unwrap_or_else(|| {
+        path.to_str().and_then(builtin_draft).unwrap_or_else(|| {
             let names: Vec<&str> = BUILTIN_CASES.iter().map(|(name, _)| *name).collect();
             // A path is not meant for one.
             let word = path.to_str().filter(|word| !word.contains(['/', '.']));

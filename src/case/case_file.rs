@@ -34,6 +34,24 @@ impl Case {
     /// # Errors
     /// As [`Case::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Case> {
+        Draft::parse(text, path)?.case()
+    }
+}
+
+impl Draft {
+    /// Reads a case file, whose numbers are those of a case, in its own form.
+    ///
+    /// # Errors
+    /// As [`Case::read`].
+    pub(super) fn read(path: &Path) -> Result<Draft> {
+        Draft::parse(&read_text(path)?, path)
+    }
+
+    /// Parses the text of a case file.
+    ///
+    /// # Errors
+    /// As [`Case::read`].
+    pub(super) fn parse(text: &str, path: &Path) -> Result<Draft> {
         let document = Document::parse(path, text)?;
         let root = document.root();
         if root.get("factors").is_some() || root.get("cases").is_some() {
@@ -49,7 +67,8 @@ impl Case {
         for (key, entry) in entries(&root, &keys_of(form))? {
             key.set(&mut draft, entry.number()?);
         }
-        draft.case().map_err(|e| load.place(e))
+        draft.case().map_err(|e| load.place(e))?;
+        Ok(draft)
     }
 }
 
@@ -141,8 +160,8 @@ fn check_one_of_several(table: &Table, keys: &[&'static Key]) -> Result<()> {
     }
 }
 
-/// Takes the kinds and the files of the bodies' profiles; files are looked for beside the case file,
-/// which stands at `path`.
+/// Takes the kinds and the files of the bodies' profiles; files are looked for beside the case
+/// file, which stands at `path`.
 pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
     for body in BodyKind::ALL {
         let Some(entry) = root.find(&format!("{}.profile", body.name())) else { continue };
@@ -162,11 +181,11 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
                 let reason = format!("a {name} profile has no file");
                 return Err(file.refuse(reason, "remove it, or write kind = \"table\""));
             }
-            let place = path.parent().unwrap_or(Path::new("")).join(file.string()?);
+            let place = file.beside(path)?;
             spec.table = Some(Arc::new(read_profile_table(&place)?));
             spec.file = Some(place);
         }
-        *draft.profile_mut(body) = Some(spec);
+        *draft.case.profile_mut(body) = Some(spec);
     }
     Ok(())
 }

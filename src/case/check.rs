@@ -126,6 +126,20 @@ impl Case {
         Err(key("load.approach_m").refuse(approach, reason.into(), remedy))
     }
 
+    /// Refuses a rough surface, where only smooth ones are taken.
+    ///
+    /// # Errors
+    /// [`Error::Value`] with `reason` and `remedy`.
+    pub fn check_smooth(&self, reason: &str, remedy: &str) -> Result<()> {
+        let Some(surface) = &self.surface else { return Ok(()) };
+        Err(Error::Value {
+            key: "surface.heights".into(),
+            value: format!("{:?}", surface.heights.display()),
+            reason: reason.into(),
+            remedy: remedy.into(),
+        })
+    }
+
     /// The forces (N) between which all factors are legal.
     pub fn legal_forces_n(&self) -> [f64; 2] {
         let (radius, shorter) = (self.equivalent_radius_m(), self.shorter_m());
@@ -141,7 +155,8 @@ impl Case {
         ]
     }
 
-    /// Checks the factors that follow from the load and the lengths; without a force, the lengths alone.
+    /// Checks the factors that follow from the load and the lengths; without a force, the lengths
+    /// alone.
     fn check_factors(&self) -> Result<()> {
         let factors = self.factors();
         let (block, roller) = (self.block.length_m, self.roller.length_m);

@@ -1,5 +1,5 @@
-//! The design file: which parameters of a profile may vary between which bounds, and the loads that the
-//! roller has to carry.
+//! The design file: which parameters of a profile may vary between which bounds, and the loads that
+//! the roller has to carry.
 
 use super::document::{Document, Entry, Table, nearest, read_text};
 use super::keys::Key;
@@ -82,8 +82,8 @@ impl Design {
     /// Reads a design file. Its case is relative to its folder, or a built-in one.
     ///
     /// # Errors
-    /// [`Error::Io`] when a file cannot be read; [`Error::File`] with the line when it is not TOML, has an unknown
-    /// or missing key, or a value that is not legal.
+    /// [`Error::Io`] when a file cannot be read; [`Error::File`] with the line when it is not TOML,
+    /// has an unknown or missing key, or a value that is not legal.
     pub fn read(path: &Path) -> Result<Self> {
         Self::parse(&read_text(path)?, path)
     }
@@ -97,7 +97,7 @@ impl Design {
         let root = document.root();
         root.only(&["case", "objective", "exclude_c", "profile", "bounds", "loads"])?;
         let entry = root.require("case", "case = \"my-case.toml\"")?;
-        let case = listed_case(&entry, path.parent().unwrap_or(Path::new("")))?;
+        let case = listed_case(&entry, path.parent().unwrap_or(Path::new("")), "design")?;
         if case.sliding.friction != 0.0 {
             let remedy = "remove [sliding] from it: the profile does not depend on it";
             return Err(entry.refuse("a profile is designed without friction", remedy));
@@ -153,10 +153,7 @@ impl Design {
             *profile.number_mut(parameter.name).expect("a number of profiles") = Some(*value);
         }
         let mut case = self.case.clone();
-        match self.body {
-            BodyKind::Block => case.block.profile = Some(profile),
-            BodyKind::Roller => case.roller.profile = Some(profile),
-        }
+        *case.profile_mut(self.body) = Some(profile);
         case
     }
 }
@@ -186,8 +183,7 @@ fn read_profile(root: &Table) -> Result<(BodyKind, ProfileSpec, Vec<Parameter>)>
         None => BodyKind::Roller,
         Some(entry) => {
             let name = entry.string()?;
-            let found = BodyKind::ALL.into_iter().find(|body| body.name() == name);
-            found.ok_or_else(|| {
+            BodyKind::find(name).ok_or_else(|| {
                 entry.refuse("there is no such body", "write \"roller\" or \"block\"")
             })?
         }

@@ -7,7 +7,7 @@ use super::model::Case;
 use crate::base::{Error, Result};
 use crate::host;
 use std::ops::Range;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -237,6 +237,25 @@ impl<'d> Entry<'d> {
             Some(v) if f64::is_finite(v) => Ok(v),
             _ => Err(self.refuse("a finite number belongs here", "write for example 1.5 or 2e-4")),
         }
+    }
+
+    /// The file whose path this is, beside the file at `path`: its whole path, so that what is
+    /// written of the case may stand anywhere.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it is no string, or if a folder has a name that no case file can have.
+    pub fn beside(&self, path: &Path) -> Result<PathBuf> {
+        let place = path.parent().unwrap_or(Path::new("")).join(self.string()?);
+        let place = std::path::absolute(&place).map_err(|source| Error::Io {
+            action: "find",
+            path: place,
+            source,
+        })?;
+        if place.to_str().is_none() {
+            let reason = format!("{} is not UTF-8, and a case file is", place.display());
+            return Err(self.refuse(reason, "give the folders names in UTF-8"));
+        }
+        Ok(place)
     }
 
     /// The value as a string.

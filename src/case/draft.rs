@@ -1,8 +1,7 @@
 //! A case as given in a file, before its numbers are checked.
 
 use super::model::{Case, Factors};
-use super::profile::ProfileSpec;
-use crate::base::{BodyKind, Material};
+use crate::base::Material;
 
 /// The two ways to give the load and the lengths.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,14 +40,6 @@ impl Draft {
     /// The form in which the load is given.
     pub fn form(&self) -> Form {
         if self.factors.is_some() { Form::Factors } else { Form::Load }
-    }
-
-    /// The profile of a body.
-    pub(super) fn profile_mut(&mut self, body: BodyKind) -> &mut Option<ProfileSpec> {
-        match body {
-            BodyKind::Block => &mut self.case.block.profile,
-            BodyKind::Roller => &mut self.case.roller.profile,
-        }
     }
 
     /// The same under another name.

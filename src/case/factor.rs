@@ -11,9 +11,9 @@ use crate::base::{BodyKind, Error, Result};
 pub enum FactorKey {
     /// A number of the case.
     Number(&'static Key),
-    /// The drop of a body's profile at the body's ends in C^2 / (2 R), which is the drop of the round
-    /// bodies from one another at x = C. R is the equivalent radius. It sets the one number of the
-    /// profile that scales the drop.
+    /// The drop of a body's profile at the body's ends in C^2 / (2 R), which is the drop of the
+    /// round bodies from one another at x = C. R is the equivalent radius. It sets the one number
+    /// of the profile that scales the drop.
     EndDrop(BodyKind),
     /// The load's eccentricity in lengths of the shorter body.
     Eccentricity,
@@ -91,8 +91,8 @@ impl FactorKey {
         }
     }
 
-    /// The number of the case that it sets, and that a file then must not contain. An end drop needs
-    /// the profile.
+    /// The number of the case that it sets, and that a file then must not contain. An end drop
+    /// needs the profile.
     ///
     /// # Errors
     /// [`Error::Value`] where the draft has no place for it.
@@ -152,8 +152,8 @@ impl FactorKey {
         }
     }
 
-    /// Whether the middle of its levels is their geometric mean, else it is the arithmetic one. Lengths,
-    /// moduli, forces, W, S_l and end drops are compared by ratios; so is the tolerance.
+    /// Whether the middle of its levels is their geometric mean, else it is the arithmetic one.
+    /// Lengths, moduli, forces, W, S_l and end drops are compared by ratios; so is the tolerance.
     pub fn is_by_ratio(self) -> bool {
         match self {
             Self::Number(key) => {
@@ -195,7 +195,7 @@ impl FactorKey {
             Self::EndDrop(body) => {
                 let drop_m = level * sized.gap_unit_m();
                 let half_m = 0.5 * sized.length_m(body);
-                let Some(spec) = draft.profile_mut(body) else { return };
+                let Some(spec) = draft.case.profile_mut(body) else { return };
                 match spec.kind {
                     ProfileKind::Crown | ProfileKind::Relief => {
                         let arc_m = half_m - 0.5 * spec.straight_m.unwrap_or(0.0);

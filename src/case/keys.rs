@@ -19,7 +19,8 @@ pub enum Presence {
     Optional,
     /// Never; where the load and the lengths are given in the other form it must not stand.
     OptionalWith(Form),
-    /// By its table, which need not be there: a number of a profile by its kind, which may be without it.
+    /// By its table, which need not be there: a number of a profile by its kind, which may be
+    /// without it.
     Table,
 }
 

@@ -45,12 +45,12 @@ pub struct Load {
     /// Force (N), of the whole roller; not a number where `approach_m` gives the load.
     #[serde(default = "unknown", skip_serializing_if = "is_unknown")]
     pub force_n: f64,
-    /// Approach (m) of points one roller radius below the surfaces at the roller's middle, in place of
-    /// the force.
+    /// Approach (m) of points one roller radius below the surfaces at the roller's middle, in place
+    /// of the force.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub approach_m: Option<f64>,
-    /// y of the force's line of action from the roller's middle (m). The roller is then free to tilt;
-    /// without it the tilt is held.
+    /// y of the force's line of action from the roller's middle (m). The roller is then free to
+    /// tilt; without it the tilt is held.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub eccentricity_m: Option<f64>,
 }
@@ -75,9 +75,9 @@ impl PartialEq for Load {
 /// How the bodies stand to each other.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Pose {
-    /// The tilt that is held (rad); positive where the side of larger y is pressed deeper. It is that of
-    /// the lines x = 0 at the depth of one roller radius in both bodies, by least squares over the
-    /// contact.
+    /// The tilt that is held (rad); positive where the side of larger y is pressed deeper. It is
+    /// that of the lines x = 0 at the depth of one roller radius in both bodies, by least squares
+    /// over the contact.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub tilt_rad: Option<f64>,
     /// y of the block's middle from the roller's (m).
@@ -111,7 +111,8 @@ impl Sliding {
     }
 }
 
-/// What measures of fatigue need to know; no part of the contact. A measure without its numbers is not computed.
+/// What measures of fatigue need to know; no part of the contact. A measure without its numbers is
+/// not computed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
 pub struct Fatigue {
     /// Dang Van's factor of the hydrostatic stress.
@@ -292,8 +293,8 @@ impl Case {
         self.block.radius_m.map_or(roller_m, |block_m| 1.0 / (1.0 / roller_m + 1.0 / block_m))
     }
 
-    /// C^2 / (2 R) (m), R the equivalent radius: the gap between the round bodies at x = C. Gaps, drops and
-    /// displacements are in this unit.
+    /// C^2 / (2 R) (m), R the equivalent radius: the gap between the round bodies at x = C. Gaps,
+    /// drops and displacements are in this unit.
     pub fn gap_unit_m(&self) -> f64 {
         self.hertz().c_m.powi(2) / (2.0 * self.equivalent_radius_m())
     }
@@ -301,6 +302,14 @@ impl Case {
     /// Length of the shorter body (m), on which W, S_l, C and p0 rest.
     pub fn shorter_m(&self) -> f64 {
         self.roller.length_m.min(self.block.length_m)
+    }
+
+    /// The material of a body.
+    pub fn material(&self, body: BodyKind) -> &Material {
+        match body {
+            BodyKind::Block => &self.block.material,
+            BodyKind::Roller => &self.roller.material,
+        }
     }
 
     /// Length of a body (m).
@@ -351,7 +360,8 @@ impl Case {
         alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
     }
 
-    /// The case file but for the name, for what is made of the stresses, and for how the case is to be solved.
+    /// The case file but for the name, for what is made of the stresses, and for how the case is to
+    /// be solved.
     fn problem(&self) -> Table {
         let mut table = Table::try_from(self).expect(PLAIN);
         table.retain(|key, _| !["name", "fatigue", "accuracy", "cells"].contains(&key));

@@ -13,8 +13,8 @@ pub enum ProfileKind {
     Crown,
     /// `amplitude_m` ln(1 / (1 - k (2 y / L)^2)).
     Logarithmic,
-    /// Lundberg's: logarithmic, for constant pressure under `design_force_n`; without a limit at the
-    /// ends.
+    /// Lundberg's: logarithmic, for constant pressure under `design_force_n`; without a limit at
+    /// the ends.
     Lundberg,
     /// Johns and Gohar's: as Lundberg's, with a limit at the ends.
     JohnsGohar,

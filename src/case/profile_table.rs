@@ -11,7 +11,8 @@ const MAX_BYTES: u64 = 1 << 20;
 /// The header of a file.
 const HEADER: &str = "y_m,drop_m";
 
-/// Reads a table of drops: places y in metres from the body's middle, ascending, and drops in metres.
+/// Reads a table of drops: places y in metres from the body's middle, ascending, and drops in
+/// metres.
 ///
 /// # Errors
 /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line that is wrong.

@@ -14,13 +14,13 @@ const DEEPEST: f64 = 0.5;
 impl Case {
     /// The profile of a body (m), if it has one.
     ///
-    /// With the body's length L = 2 a, the roller's diameter D, the contact modulus E* and the design
-    /// force Q: Lundberg (1939) Q / (pi L E*) ln(1 / (1 - (2 y / L)^2)), the drop of both bodies
-    /// together; Johns and Gohar (Tribology International 14, 1981) with 1 - (1 - 0.3033 b / a) (2 y /
-    /// L)^2, b the Hertz half-width under Q; ISO/TS 16281:2008 0.00035 D ln(1 / (1 - (2 y / L)^2)) up to
-    /// L = 2.5 D, and 0.0005 D with the outer 1.25 D on either side curved beyond it; Fujiwara and
-    /// Kawase (NTN Technical Review 75, 2007) K1 A ln(1 / (1 - (1 - e^(-zm / (K1 A))) t^2)) on the outer
-    /// part K2 a of each half, with A = 2 Q / (pi L E'), E' = 2 E*.
+    /// With the body's length L = 2 a, the roller's diameter D, the contact modulus E* and the
+    /// design force Q: Lundberg (1939) Q / (pi L E*) ln(1 / (1 - (2 y / L)^2)), the drop of both
+    /// bodies together; Johns and Gohar (Tribology International 14, 1981) with 1 - (1 - 0.3033 b /
+    /// a) (2 y / L)^2, b the Hertz half-width under Q; ISO/TS 16281:2008 0.00035 D ln(1 / (1 - (2 y
+    /// / L)^2)) up to L = 2.5 D, and 0.0005 D with the outer 1.25 D on either side curved beyond
+    /// it; Fujiwara and Kawase (NTN Technical Review 75, 2007) K1 A ln(1 / (1 - (1 - e^(-zm / (K1
+    /// A))) t^2)) on the outer part K2 a of each half, with A = 2 Q / (pi L E'), E' = 2 E*.
     pub fn profile(&self, body: BodyKind) -> Option<Profile> {
         let spec = self.profile_spec(body)?;
         let length = self.length_m(body);
@@ -67,6 +67,14 @@ impl Case {
         match body {
             BodyKind::Block => self.block.profile.as_ref(),
             BodyKind::Roller => self.roller.profile.as_ref(),
+        }
+    }
+
+    /// The same to be changed.
+    pub(super) fn profile_mut(&mut self, body: BodyKind) -> &mut Option<ProfileSpec> {
+        match body {
+            BodyKind::Block => &mut self.block.profile,
+            BodyKind::Roller => &mut self.roller.profile,
         }
     }
 

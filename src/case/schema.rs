@@ -8,8 +8,8 @@ use crate::base::BodyKind;
 use crate::cells::Detrend;
 use serde_json::{Map, Value, json};
 
-/// The schema of a case file, JSON Schema of 2020-12. It does not say what several numbers have to meet
-/// together, such as the lengths of both bodies.
+/// The schema of a case file, JSON Schema of 2020-12. It does not say what several numbers have to
+/// meet together, such as the lengths of both bodies.
 pub fn case_schema() -> Value {
     let mut tables = Map::new();
     for key in &KEYS {

@@ -1,6 +1,6 @@
 //! The study file: a factorial design around one pair of bodies, and further cases, or these alone.
 
-use super::builtin::{BUILTIN_STUDIES, builtin_case};
+use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given};
 use super::case_file::{entries, keys_of, name, only_tables, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, nearest, read_text};
@@ -46,14 +46,14 @@ pub struct Study {
     pub name: String,
     /// The factors, in the order of the file; none where the file only lists cases.
     pub factors: Vec<Varied>,
-    /// The cases of the design: all combinations of the levels, or of those of the basic factors. The
-    /// first factor varies slowest. Empty without factors.
+    /// The cases of the design: all combinations of the levels, or of those of the basic factors.
+    /// The first factor varies slowest. Empty without factors.
     pub corners: Vec<Case>,
-    /// The two-level design of the factors that have two levels; `None` if there is none of them or a
-    /// factor has more.
+    /// The two-level design of the factors that have two levels; `None` if there is none of them or
+    /// a factor has more.
     pub design: Option<TwoLevel>,
-    /// The centre point, called `centre`, if the file has `centre = true`: at [`FactorKey::middle`] of
-    /// each factor's levels.
+    /// The centre point, called `centre`, if the file has `centre = true`: at [`FactorKey::middle`]
+    /// of each factor's levels.
     pub centre: Option<Case>,
     /// Further cases that are not part of the design.
     pub extra: Vec<Case>,
@@ -79,7 +79,7 @@ impl Study {
     /// # Errors
     /// As [`Study::read`]; the error about a missing file names the built-in studies.
     pub fn find(path: &Path) -> Result<Study> {
-        if path.exists() {
+        if is_given(path) {
             return Study::read(path);
         }
         Study::all_built_in().find(|study| path.as_os_str() == study.name.as_str()).ok_or_else(
@@ -140,9 +140,14 @@ impl Study {
         Study { name: name.to_string(), factors, corners, design: None, centre: None, extra }
     }
 
-    /// The study with the design that the factors of the file at `path` make, without further cases.
+    /// The study with the design that the factors of the file at `path` make, without further
+    /// cases.
     fn designed(name: &str, root: &Table, path: &Path) -> Result<Study> {
         only_tables(root, &["name", "centre", "cases", "factors", "generators"])?;
+        if let Some(surface) = root.get("surface") {
+            let remedy = "remove it, and solve rough cases by `edgeline solve`";
+            return Err(surface.refuse("a study is one of smooth contacts", remedy));
+        }
         let table = root.table("factors")?;
         let factors = read_factors(&table)?;
         let base = read_base(root, path, &table, &factors)?;
@@ -181,7 +186,7 @@ impl Study {
     fn list(&mut self, files: &[Entry], folder: &Path) -> Result<()> {
         let mut names: BTreeSet<String> = self.cases().map(|c| c.name.clone()).collect();
         for entry in files {
-            let case = listed_case(entry, folder)?;
+            let case = listed_case(entry, folder, "study")?;
             entry.placed(case.check_force(OTHER_FORCES))?;
             if !names.insert(case.name.clone()) {
                 let reason = format!("the study has another case called {}", case.name);
@@ -217,7 +222,8 @@ fn read_factors<'d>(table: &Table<'d>) -> Result<Vec<Factor<'d>>> {
     }
 }
 
-/// Adds the factors of a table and of those below it. `path` is that of the table among the factors.
+/// Adds the factors of a table and of those below it. `path` is that of the table among the
+/// factors.
 fn collect_factors<'d>(table: &Table<'d>, path: &str, into: &mut Vec<Factor<'d>>) -> Result<()> {
     for (key, entry) in table.all() {
         let own = if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
@@ -275,7 +281,6 @@ fn read_base(root: &Table, path: &Path, table: &Table, factors: &[Factor]) -> Re
     let keys: Vec<&'static Key> = keys_of(form)
         .into_iter()
         .filter(|key| !varied.contains(key) && key.path != "load.approach_m")
-        .filter(|key| key.table() != "surface")
         .collect();
     for (key, entry) in entries(root, &keys)? {
         key.set(&mut draft, read_number(key, &entry)?);
@@ -444,20 +449,21 @@ fn design_case(
     Ok(case)
 }
 
-/// A case that the study lists by file or by built-in name.
-pub(super) fn listed_case(entry: &Entry, folder: &Path) -> Result<Case> {
+/// A case that a file lists by its own file or by built-in name; the file is that of `what`, a
+/// study for example.
+pub(super) fn listed_case(entry: &Entry, folder: &Path, what: &str) -> Result<Case> {
     let listed = entry.string()?;
     let path: PathBuf = folder.join(listed);
     if path.is_file() {
         let case = Case::read(&path)?;
         if case.surface.is_some() {
-            let reason = "it has a [surface], and a study compares smooth contacts";
+            let reason = format!("it has a [surface], and a {what} is one of smooth contacts");
             return Err(entry.refuse(reason, "remove it, and solve it by `edgeline solve`"));
         }
         return Ok(case);
     }
     builtin_case(listed).unwrap_or_else(|| {
         let reason = format!("there is no file {}", path.display());
-        Err(entry.refuse(reason, "paths are relative to the study file"))
+        Err(entry.refuse(reason, format!("paths are relative to the file of the {what}")))
     })
 }

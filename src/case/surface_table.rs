@@ -9,7 +9,8 @@ use crate::cells::{Detrend, Heights};
 use std::path::Path;
 use std::sync::Arc;
 
-/// Takes `[surface]` but for its numbers; its file is looked for beside the case file, which stands at `path`.
+/// Takes `[surface]` but for its numbers; its file is looked for beside the case file, which stands
+/// at `path`.
 pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Result<()> {
     let Some(entry) = root.find("surface") else { return Ok(()) };
     let table = entry.table()?;
@@ -29,7 +30,7 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
             return Err(entry.refuse("there is no such trend", remedy));
         }
     }
-    let heights = path.parent().unwrap_or(Path::new("")).join(file.string()?);
+    let heights = file.beside(path)?;
     // The distances are numbers of the case: whatever they are, the samples are the same.
     let samples = Heights::read(&heights, [1.0; 2])?;
     let has_steps = Heights::has_steps(&heights);

@@ -1,8 +1,8 @@
 //! A sweep: thousands of cases as a grid or as lists of parameters, or as a table.
 //!
-//! A sweep stores neither its cases nor the rows of a table: a row is the base with the values of that row, and is checked
-//! like every case. A mistake in the file is an error of the sweep; a mistake in a row is an error
-//! of that row.
+//! A sweep stores neither its cases nor the rows of a table: a row is the base with the values of
+//! that row, and is checked like every case. A mistake in the file is an error of the sweep; a
+//! mistake in a row is an error of that row.
 
 use super::draft::Draft;
 use super::keys::Key;
@@ -44,15 +44,22 @@ pub(super) enum Rows {
     Table(Table),
 }
 
+/// Why a sweep takes no rough surface, and what to do.
+pub(super) const SMOOTH: [&str; 2] = [
+    "a sweep solves contacts along a line, which are smooth",
+    "remove [surface], and solve rough cases by `edgeline solve`",
+];
+
 impl Sweep {
     /// Reads a sweep from a TOML file or, if its name ends in `.csv`, from a table. `base` gives
     /// the values that a table has no column for; a TOML file must contain all values.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line when it is not
-    /// TOML or CSV, has an unknown or missing key or column, or a value of the wrong type. Values
-    /// out of their range are no errors here: see [`Sweep::case`].
-    pub fn read(path: &Path, base: Option<&Case>) -> Result<Sweep> {
+    /// TOML or CSV, has an unknown or missing key or column, or a value of the wrong type;
+    /// [`Error::Value`] if the base has a rough surface. Values out of their range are no errors
+    /// here: see [`Sweep::case`].
+    pub fn read(path: &Path, base: Option<&Draft>) -> Result<Sweep> {
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
             return Sweep::read_csv(path, base);
         }
@@ -90,7 +97,8 @@ impl Sweep {
     /// The texts of the columns, row by row. A table is read from its file meanwhile.
     ///
     /// # Errors
-    /// [`Error::Io`] when the table cannot be opened. A row is an error when the file has changed since it was checked.
+    /// [`Error::Io`] when the table cannot be opened. A row is an error when the file has changed
+    /// since it was checked.
     pub fn rows(&self) -> Result<RowCells<'_>> {
         let text_of = |value: f64| format!("{value:e}");
         Ok(match &self.rows {
@@ -113,7 +121,8 @@ impl Sweep {
         })
     }
 
-    /// The case of row `i`, whose texts are `cells`. Its name is in the column `name`; otherwise it is `row-1` and so on.
+    /// The case of row `i`, whose texts are `cells`. Its name is in the column `name`; otherwise it
+    /// is `row-1` and so on.
     ///
     /// # Errors
     /// [`Error::Value`] about the first value of the row that is not legal.

@@ -3,8 +3,7 @@
 use super::document::nearest;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
-use super::model::Case;
-use super::sweep::{Column, Rows, Sweep};
+use super::sweep::{Column, Rows, SMOOTH, Sweep};
 use super::sweep_table::Table;
 use crate::base::{Error, Result};
 use crate::host::read_text;
@@ -17,7 +16,7 @@ const BOTH: [&str; 2] = ["young_pa", "poisson"];
 const MAX_BYTES: u64 = 4 << 30;
 
 impl Sweep {
-    pub(super) fn read_csv(path: &Path, base: Option<&Case>) -> Result<Sweep> {
+    pub(super) fn read_csv(path: &Path, base: Option<&Draft>) -> Result<Sweep> {
         let remedy = "split it into several files";
         let file = std::fs::metadata(path).ok();
         if file.as_ref().is_some_and(|file| file.len() > MAX_BYTES) {
@@ -41,11 +40,14 @@ impl Sweep {
     ///
     /// # Errors
     /// As [`Sweep::read`].
-    pub fn parse_csv(text: &str, path: &Path, base: Option<&Case>) -> Result<Sweep> {
+    pub fn parse_csv(text: &str, path: &Path, base: Option<&Draft>) -> Result<Sweep> {
         Sweep::of_table(Table::new(path, Some(text.to_string()))?, path, base)
     }
 
-    fn of_table(table: Table, path: &Path, base: Option<&Case>) -> Result<Sweep> {
+    fn of_table(table: Table, path: &Path, base: Option<&Draft>) -> Result<Sweep> {
+        if let Some(base) = base {
+            base.case.check_smooth(SMOOTH[0], SMOOTH[1])?;
+        }
         let in_header = |(message, remedy)| Error::File {
             path: path.to_path_buf(),
             line: Some(1),
@@ -61,7 +63,8 @@ impl Sweep {
         let given = given_once(&columns).map_err(in_header)?;
         let form = form_of(&given, base).map_err(in_header)?;
         let base = match base {
-            Some(case) => Draft::of(case, form),
+            Some(base) if base.form() == form => base.clone(),
+            Some(base) => Draft::of(&base.case()?, form),
             None => {
                 nothing_missing(&given, form).map_err(in_header)?;
                 Draft::new("", form)
@@ -112,8 +115,8 @@ fn given_once(columns: &[Column]) -> Finding<Vec<&'static Key>> {
     Ok(given)
 }
 
-/// The form in which the columns give the load; factors if the base gives it by a force.
-fn form_of(given: &[&Key], base: Option<&Case>) -> Finding<Form> {
+/// The form in which the columns give the load; without such columns that of the base.
+fn form_of(given: &[&Key], base: Option<&Draft>) -> Finding<Form> {
     let several: Vec<&str> =
         given.iter().filter(|key| key.is_one_of_several()).map(|key| key.path).collect();
     if let [first, second, ..] = several[..] {
@@ -124,15 +127,14 @@ fn form_of(given: &[&Key], base: Option<&Case>) -> Finding<Form> {
         let other = if form == Form::Load { Form::Factors } else { Form::Load };
         given.iter().any(|key| key.is_of(form) && !key.is_of(other))
     };
-    let approached = base.is_some_and(|case| case.load.approach_m.is_some());
     match (any_of(Form::Factors), any_of(Form::Load)) {
         (true, true) => Err((
             "gives the load twice, by W, S_l, L_r and by force_n and lengths".into(),
             "keep the columns of one of the two".into(),
         )),
         (false, true) => Ok(Form::Load),
-        (false, false) if approached => Ok(Form::Load),
-        _ => Ok(Form::Factors),
+        (true, false) => Ok(Form::Factors),
+        (false, false) => Ok(base.map_or(Form::Factors, Draft::form)),
     }
 }
 

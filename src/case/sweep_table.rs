@@ -37,8 +37,8 @@ impl Table {
     /// Reads all rows once and counts them.
     ///
     /// # Errors
-    /// [`Error::File`] with the line of a row that is no CSV or of another length than the header, or when there are no
-    /// rows or too many.
+    /// [`Error::File`] with the line of a row that is no CSV or of another length than the header,
+    /// or when there are no rows or too many.
     pub fn counted(mut self) -> Result<Self> {
         self.rows = self.count()?;
         match self.rows {
@@ -70,7 +70,8 @@ impl Table {
     /// The rows.
     ///
     /// # Errors
-    /// [`Error::Io`] when the file cannot be opened. A row is an error when the file has changed since its rows were counted.
+    /// [`Error::Io`] when the file cannot be opened. A row is an error when the file has changed
+    /// since its rows were counted.
     pub fn rows(&self) -> Result<RowCells<'_>> {
         let mut records = self.reader()?.into_records();
         let mut seen = 0;

@@ -5,7 +5,7 @@ use super::document::{Document, Entry, Table, read_text};
 use super::draft::Draft;
 use super::keys::Key;
 use super::levels::{Levels, MAX_ROWS, levels};
-use super::sweep::{Column, Rows, Sweep};
+use super::sweep::{Column, Rows, SMOOTH, Sweep};
 use crate::base::Result;
 use std::path::Path;
 
@@ -35,10 +35,7 @@ impl Sweep {
         let root = document.root();
         only_tables(&root, &["name", "sweep"])?;
         if let Some(surface) = root.get("surface") {
-            let reason = "a sweep solves contacts along a line, which are smooth";
-            return Err(
-                surface.refuse(reason, "remove it, and solve rough cases by `edgeline solve`")
-            );
+            return Err(surface.refuse(SMOOTH[0], SMOOTH[1]));
         }
         if let Some(entry) = root.get("name") {
             // The name is only for readers, but must be legal.

@@ -1,4 +1,5 @@
-//! The pressure of cells as a stress field takes it: a profile across the contact at each node along it.
+//! The pressure of cells as a stress field takes it: a profile across the contact at each node
+//! along it.
 
 use super::pressure::CellPressure;
 use super::profile::nodal;
@@ -8,8 +9,8 @@ use crate::stress::Load;
 use crate::stress::round::LocalContact;
 use nalgebra::DMatrix;
 
-/// The part of the pressure of cells that is even in x, at the nodes of an axis along the contact: uniform across each cell,
-/// and along the line the polynomials next to what has their means.
+/// The part of the pressure of cells that is even in x, at the nodes of an axis along the contact:
+/// uniform across each cell, and along the line the polynomials next to what has their means.
 #[derive(Debug)]
 pub struct Columns<'a> {
     axis: &'a Panels,
@@ -21,9 +22,9 @@ pub struct Columns<'a> {
 }
 
 impl<'a> Columns<'a> {
-    /// The pressures of `cells` at the nodes of `axis`, which ends where they do; of a `symmetric` contact, with even numbers of cells, the
-    /// axis is the half y > 0. At the ends of the line the pressure goes like s^-m of the distance s, m of `exponents`, zero where it is
-    /// finite.
+    /// The pressures of `cells` at the nodes of `axis`, which ends where they do; of a `symmetric`
+    /// contact, with even numbers of cells, the axis is the half y > 0. At the ends of the line the
+    /// pressure goes like s^-m of the distance s, m of `exponents`, zero where it is finite.
     pub fn new(
         cells: &CellPressure,
         axis: &'a Panels,

@@ -5,13 +5,15 @@ use super::ends::EndCorrection;
 use super::linear::Linear;
 use rayon::prelude::*;
 
-/// Lines that a thread transforms one after the other: neighbours share the cache lines that they gather.
+/// Lines that a thread transforms one after the other: neighbours share the cache lines that they
+/// gather.
 pub(super) const LINES: usize = 8;
 
 /// A convolution with a kernel that is even in x and y.
 ///
-/// Padded with zeros to m numbers in a direction, an even field has the period 2 m and the cosine transform X_k, and
-/// the convolution multiplies X_k with the kernel's own transform: m numbers in place of 2 m.
+/// Padded with zeros to m numbers in a direction, an even field has the period 2 m and the cosine
+/// transform X_k, and the convolution multiplies X_k with the kernel's own transform: m numbers in
+/// place of 2 m.
 pub(super) struct EvenConvolution {
     nx: usize,
     ny: usize,
@@ -28,8 +30,9 @@ pub(super) struct EvenConvolution {
 }
 
 impl EvenConvolution {
-    /// On a quarter of `nx` x `ny` cells, padded to `mx` x `my`. `spectrum` has the factors of the wavenumbers k <= mx in
-    /// x, for each of them those l <= my in y, and the scale 1 / (mx my) in them.
+    /// On a quarter of `nx` x `ny` cells, padded to `mx` x `my`. `spectrum` has the factors of the
+    /// wavenumbers k <= mx in x, for each of them those l <= my in y, and the scale 1 / (mx my) in
+    /// them.
     pub(super) fn new(
         [nx, ny]: [usize; 2],
         [mx, my]: [usize; 2],

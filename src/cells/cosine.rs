@@ -7,8 +7,9 @@ use std::sync::Arc;
 
 /// Cosine transforms of length m: X_k = sum_i x_i cos(pi k (2 i + 1) / (2 m)) (DCT-II), and back.
 ///
-/// One real transform of the same length does it (Makhoul 1980, IEEE Trans. ASSP 28, 27): with v the even
-/// places of x followed by the odd ones backwards and V its transform, X_k = Re(w_k V_k) and X_(m-k) = -Im(w_k V_k), w_k = e^(-i pi k / 2m).
+/// One real transform of the same length does it (Makhoul 1980, IEEE Trans. ASSP 28, 27): with v
+/// the even places of x followed by the odd ones backwards and V its transform, X_k = Re(w_k V_k)
+/// and X_(m-k) = -Im(w_k V_k), w_k = e^(-i pi k / 2m).
 pub(super) struct Cosine {
     length: usize,
     forward: Arc<dyn RealToComplex<f64>>,
@@ -73,7 +74,8 @@ impl Cosine {
         }
     }
 
-    /// m times the sequence that has the transform X(k) = `x(k)`; calls `put(i, x_i)` for i < `count`.
+    /// m times the sequence that has the transform X(k) = `x(k)`; calls `put(i, x_i)` for i <
+    /// `count`.
     pub(super) fn backward(
         &self,
         scratch: &mut Scratch,

@@ -1,8 +1,9 @@
 //! What free ends add to the stresses of a mirrored half-space under any pressures of cells.
 //!
-//! The cells themselves and their images are Love's ([`super::CellField`]), so that a rough pressure is summed as it is. What free ends
-//! add to that, the field by free ends less that by mirrored ones, is smooth but at the corner, and taken from the
-//! pressures on the nodes that carry the ends ([`super::FreeEnds`]), for their part that is even and for that which is odd in x.
+//! The cells themselves and their images are Love's ([`super::CellField`]), so that a rough
+//! pressure is summed as it is. What free ends add to that, the field by free ends less that by
+//! mirrored ones, is smooth but at the corner, and taken from the pressures on the nodes that carry
+//! the ends ([`super::FreeEnds`]), for their part that is even and for that which is odd in x.
 
 use super::ends::FreeEnds;
 use super::pressure::CellPressure;
@@ -11,7 +12,8 @@ use crate::base::{Panels, Parity, StressTensor};
 use crate::stress::{Field, Load};
 use nalgebra::DMatrix;
 
-/// One part in x of the pressures of cells, as waves alone: of fields that only count as differences.
+/// One part in x of the pressures of cells, as waves alone: of fields that only count as
+/// differences.
 #[derive(Debug)]
 struct Part<'a> {
     axis: &'a Panels,
@@ -56,7 +58,8 @@ impl<'a> EndLoads<'a> {
         Self { ends, parts }
     }
 
-    /// The stresses that free ends add in the body of this half-length, Poisson's ratio and middle, see [`FreeEnds::fields`].
+    /// The stresses that free ends add in the body of this half-length, Poisson's ratio and middle,
+    /// see [`FreeEnds::fields`].
     pub fn stress(&self, body: (f64, f64, f64), tolerance: f64) -> EndStress<'_> {
         let fields = self
             .parts
@@ -67,8 +70,8 @@ impl<'a> EndLoads<'a> {
 }
 
 impl EndStress<'_> {
-    /// What is added at (x, `y`, `z`) for each x of `xs`. On an end face the tractions of the sum are zero, which only the
-    /// caller can tell.
+    /// What is added at (x, `y`, `z`) for each x of `xs`. On an end face the tractions of the sum
+    /// are zero, which only the caller can tell.
     pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let mut sums = vec![StressTensor::default(); xs.len()];
         for fields in &self.fields {

@@ -1,21 +1,26 @@
 //! What free end faces add to a mirrored half-space.
 //!
-//! R(k) = C(k) - C_mirrored(k), the compliance of a body with end faces free of traction less that of the half-space with one
-//! image of every pressure in each face, is smooth but at the corner: panels of polynomials, graded towards the
-//! end, carry it with a few nodes ([`crate::body`]), however many cells there are. With E the means of the panels' polynomials over
-//! the cells, W the nodes' weights and 2 b the length of a cell,
+//! R(k) = C(k) - C_mirrored(k), the compliance of a body with end faces free of traction less that
+//! of the half-space with one image of every pressure in each face, is smooth but at the corner:
+//! panels of polynomials, graded towards the end, carry it with a few nodes ([`crate::body`]),
+//! however many cells there are. With E the means of the panels' polynomials over the cells, W the
+//! nodes' weights and 2 b the length of a cell,
 //!
 //! p_nodes = 2 b W^-1 E^T p_cells (least squares),    u_cells = E R p_nodes,
 //!
-//! which is symmetric as R W^-1 is. R fades within a few 1/k of the ends, so few shapes along the line make up all of it: the
-//! eigenvectors of the sum of W^1/2 R W^-1/2 squared over the wavenumbers. Across the contact R is a convolution with r(x) = (1/pi^2) int_0^inf R(k) cos(k x) dk,
-//! taken at the cells' distances: it fades too slowly for a sum over the grid's own wavenumbers.
+//! which is symmetric as R W^-1 is. R fades within a few 1/k of the ends, so few shapes along the
+//! line make up all of it: the eigenvectors of the sum of W^1/2 R W^-1/2 squared over the
+//! wavenumbers. Across the contact R is a convolution with r(x) = (1/pi^2) int_0^inf R(k) cos(k x)
+//! dk, taken at the cells' distances: it fades too slowly for a sum over the grid's own
+//! wavenumbers.
 //!
-//! Towards k = 0 R grows like 1 / k, too fast to be interpolated, for the two shapes of a rigid motion: a body of half-length H and of a
-//! plane wave's width is a plate, loaded on its edge. What it does is taken out in closed form, faded beyond 1 / H, and put
-//! back at all wavenumbers: a load displaces by pi / (k H (1 - nu^2)) wherever it acts, plane stress, and a moment turns the plate
-//! by 3 pi / (k H^3 (1 - nu) (3 + nu)) (Kirchhoff's plate w = (A + B k z) e^(-k z) cos k x under the moment M cos k x on its edge
-//! without shear, whose slope is 2 M / (D k (1 - nu) (3 + nu)) with the plate's stiffness D).
+//! Towards k = 0 R grows like 1 / k, too fast to be interpolated, for the two shapes of a rigid
+//! motion: a body of half-length H and of a plane wave's width is a plate, loaded on its edge. What
+//! it does is taken out in closed form, faded beyond 1 / H, and put back at all wavenumbers: a load
+//! displaces by pi / (k H (1 - nu^2)) wherever it acts, plane stress, and a moment turns the plate
+//! by 3 pi / (k H^3 (1 - nu) (3 + nu)) (Kirchhoff's plate w = (A + B k z) e^(-k z) cos k x under
+//! the moment M cos k x on its edge without shear, whose slope is 2 M / (D k (1 - nu) (3 + nu))
+//! with the plate's stiffness D).
 
 use super::columns::Columns;
 use super::grid::Grid;
@@ -71,21 +76,23 @@ pub struct FreeEnds {
     axis: Panels,
     /// Whether pressures are even in x and y, and the axis lies along half of the contact.
     symmetric: bool,
-    /// Exponents m of the pressure s^-m at the distance s from the contact's ends, zero where it is finite.
+    /// Exponents m of the pressure s^-m at the distance s from the contact's ends, zero where it is
+    /// finite.
     exponents: [f64; 2],
     wavenumbers: Wavenumbers,
     /// Bodies of one place, one length and one Poisson's ratio are one.
     bodies: Vec<Freed>,
-    /// B, a column for each of the few shapes along the line that R consists of: those of rigid motions, then the others.
+    /// B, a column for each of the few shapes along the line that R consists of: those of rigid
+    /// motions, then the others.
     basis: DMatrix<f64>,
     /// r at the coarse wavenumbers, with (R - [`FreeEnds::long`]) W^-1 = B r B^T.
     matrices: Vec<DMatrix<f64>>,
 }
 
 impl FreeEnds {
-    /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free ends, under pressures that are even
-    /// in x and y if it is `symmetric`, and that go like s^-m at the distance s (C) from its ends, m of `exponents`, zero where they are
-    /// finite.
+    /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free
+    /// ends, under pressures that are even in x and y if it is `symmetric`, and that go like s^-m
+    /// at the distance s (C) from its ends, m of `exponents`, zero where they are finite.
     pub fn new(
         half_length: f64,
         bodies: &[FreeBody],
@@ -140,15 +147,16 @@ impl FreeEnds {
         self.basis = basis;
     }
 
-    /// W^1/2 (R - [`FreeEnds::long`]) W^-1/2 of the compliance `r` at `k`, with the square `roots` of the weights.
+    /// W^1/2 (R - [`FreeEnds::long`]) W^-1/2 of the compliance `r` at `k`, with the square `roots`
+    /// of the weights.
     fn remainder(&self, k: f64, r: DMatrix<f64>, roots: &DVector<f64>) -> DMatrix<f64> {
         let columns = scaled(r.transpose(), roots, |value, root| value / root);
         let sum = scaled(columns.transpose(), roots, |value, root| value * root);
         let rigid = scaled(self.basis.clone(), roots, |value, root| value * root);
         let long = &rigid * self.long(k) * rigid.transpose();
-        // R is symmetric, but the strips in the place of far images carry the mean of a pressure: right
-        // at the place that moves, not at the one that is pressed. The symmetric part therefore gets
-        // the displacement by a uniform pressure.
+        // R is symmetric, but the strips in the place of far images carry the mean of a pressure:
+        // right at the place that moves, not at the one that is pressed. The symmetric part
+        // therefore gets the displacement by a uniform pressure.
         let symmetric = (&sum + sum.transpose()) * 0.5;
         let missing = (&sum - &symmetric) * roots / roots.norm_squared();
         let both = &missing * roots.transpose() + roots * missing.transpose();
@@ -199,9 +207,9 @@ impl FreeEnds {
         self.bodies.len() == 1
     }
 
-    /// The stresses in the body of half-length `half` (C), Poisson's ratio `nu` and its middle at `middle` (C), one of those given, under
-    /// `pressure` with its [`FreeEnds::moments`], by free ends and by mirrored ones; contributions below
-    /// `tolerance` (p0) are neglected.
+    /// The stresses in the body of half-length `half` (C), Poisson's ratio `nu` and its middle at
+    /// `middle` (C), one of those given, under `pressure` with its [`FreeEnds::moments`], by free
+    /// ends and by mirrored ones; contributions below `tolerance` (p0) are neglected.
     pub fn fields<'a>(
         &'a self,
         (half, nu, middle): (f64, f64, f64),
@@ -218,8 +226,8 @@ impl FreeEnds {
             .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance))
     }
 
-    /// The displacement (C^2 / (2 R)) of the line x = 0 that the free ends add, at `y`, under a `pressure` on the axis; far points are those of
-    /// contacts on `grid`.
+    /// The displacement (C^2 / (2 R)) of the line x = 0 that the free ends add, at `y`, under a
+    /// `pressure` on the axis; far points are those of contacts on `grid`.
     pub fn lift<'a>(&'a self, pressure: &dyn Load, grid: &Grid) -> impl Fn(f64) -> f64 + use<'a> {
         let wavenumbers = self.resolving(grid);
         let fine = wavenumbers.fine();
@@ -245,14 +253,14 @@ impl FreeEnds {
         }
     }
 
-    /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms across the contact that are padded to
-    /// `mx` cells on either side.
+    /// On the cells of `grid`, or on their quarter if pressures are symmetric, for transforms
+    /// across the contact that are padded to `mx` cells on either side.
     pub(super) fn on_cells(&self, grid: &Grid, mx: usize) -> EndCorrection {
         let (a, b) = grid.half_sides();
         let (rank, rigid) = (self.basis.ncols(), self.bodies[0].long.nrows());
         let wavenumbers = self.resolving(grid);
-        // Of each coarse wavenumber, and of each body's long waves, the share in the matrix of each of
-        // the cells' own wavenumbers.
+        // Of each coarse wavenumber, and of each body's long waves, the share in the matrix of each
+        // of the cells' own wavenumbers.
         let fine = wavenumbers.fine();
         let mut shares = vec![vec![0.0; mx + 1]; self.matrices.len()];
         let mut long_shares = vec![vec![0.0; mx + 1]; self.bodies.len()];
@@ -281,7 +289,8 @@ impl FreeEnds {
             matrix.view_mut((0, 0), (rigid, rigid)).copy_from(&own.long);
             parts.push((shares, matrix));
         }
-        // The cosine transforms both ways across the contact make mx times the sequence, others 2 mx.
+        // The cosine transforms both ways across the contact make mx times the sequence, others 2
+        // mx.
         let (waves, both_ways) = if self.symmetric { (mx, mx) } else { (mx + 1, 2 * mx) };
         let scale = 2.0 * b / both_ways as f64;
         let mut matrices = vec![0.0; waves * rank * rank];
@@ -344,7 +353,8 @@ fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
     DMatrix::from_row_slice(2, 2, &[first, mixed, mixed, turned])
 }
 
-/// The eigenvectors that all of the symmetric `matrices` consist of, those of the sum of their squares.
+/// The eigenvectors that all of the symmetric `matrices` consist of, those of the sum of their
+/// squares.
 fn shapes(matrices: &[DMatrix<f64>], weights: &[f64]) -> DMatrix<f64> {
     let n = matrices[0].nrows();
     let squares = matrices.iter().zip(weights).map(|(matrix, weight)| matrix * matrix * *weight);
@@ -374,7 +384,8 @@ fn scaled(
 /// [`FreeEnds`] on cells, in the wavenumbers of their transform.
 #[derive(Debug, Clone)]
 pub(super) struct EndCorrection {
-    /// E B: for each cell along the line the mean of each shape; and for each shape those of all cells.
+    /// E B: for each cell along the line the mean of each shape; and for each shape those of all
+    /// cells.
     shapes: Vec<f64>,
     turned: Vec<f64>,
     rank: usize,
@@ -411,7 +422,8 @@ impl Amplitude<2> for Complex<f64> {
     }
 }
 
-/// Adds `factor` times `from` to `sum`; compiled for the processor's vector units with what calls it.
+/// Adds `factor` times `from` to `sum`; compiled for the processor's vector units with what calls
+/// it.
 #[inline(always)]
 fn axpy(factor: f64, from: &[f64], sum: &mut [f64]) {
     sum.iter_mut().zip(from).for_each(|(sum, v)| *sum += factor * v);

@@ -35,7 +35,8 @@ struct Row {
 #[derive(Debug)]
 struct RowCorners {
     all: CornerRow,
-    /// Those at x > 0, if the others are their mirror images with the opposite weight: all that counts in the plane x = 0.
+    /// Those at x > 0, if the others are their mirror images with the opposite weight: all that
+    /// counts in the plane x = 0.
     half: Option<CornerRow>,
 }
 
@@ -48,7 +49,8 @@ pub struct FieldEnd {
     pub middle: f64,
     /// Whether every cell has its image, of full weight, in both faces.
     pub mirrored: bool,
-    /// Factor gamma of the [`transition`] with which the normal stress of a face is taken off; none without.
+    /// Factor gamma of the [`transition`] with which the normal stress of a face is taken off; none
+    /// without.
     pub gamma: Option<f64>,
 }
 
@@ -89,11 +91,12 @@ impl CellField {
         Self { rows, unit: (a * b).sqrt(), end, nu, even }
     }
 
-    /// The stress (p0) at (`x`, `y`, `z`), z >= 0 into the body. On the surface it is finite everywhere, and
-    /// sigma_zz is less the cell's pressure.
+    /// The stress (p0) at (`x`, `y`, `z`), z >= 0 into the body. On the surface it is finite
+    /// everywhere, and sigma_zz is less the cell's pressure.
     ///
-    /// Eqs. 4 to 10 over the cells and their images. The images leave the normal stress on an end face, and no shear: of this, at the place
-    /// of the face next to the point, the share [`transition`] is taken off, for both faces.
+    /// Eqs. 4 to 10 over the cells and their images. The images leave the normal stress on an end
+    /// face, and no shear: of this, at the place of the face next to the point, the share
+    /// [`transition`] is taken off, for both faces.
     pub fn at(&self, x: f64, y: f64, z: f64) -> StressTensor {
         let mut stress = self.mirrored(x, y, z);
         let Some(gamma) = self.end.gamma else { return stress };
@@ -131,7 +134,8 @@ impl CellField {
     }
 }
 
-/// The corners at the edge below the cells of row `j`, weighted with the second differences of the pressures; none if all are zero.
+/// The corners at the edge below the cells of row `j`, weighted with the second differences of the
+/// pressures; none if all are zero.
 fn corners(solution: &CellPressure, j: usize) -> Option<RowCorners> {
     let Grid { nx, ny, half_width, .. } = solution.grid;
     let p = |i: Option<usize>, j: Option<usize>| match (i, j) {

@@ -2,8 +2,8 @@
 
 use crate::base::{Error, Result};
 
-/// Cells that are more than this many times as long as wide, or as wide as long, resolve one direction
-/// only.
+/// Cells that are more than this many times as long as wide, or as wide as long, resolve one
+/// direction only.
 const SLENDEREST: f64 = 20.0;
 
 /// Fewest cells across the contact and along it.
@@ -26,8 +26,8 @@ impl Grid {
     /// `nx` x `ny` cells.
     ///
     /// # Errors
-    /// [`Error::Value`] for fewer than four cells in a direction, and for cells more than twenty times as
-    /// long as wide or as wide as long.
+    /// [`Error::Value`] for fewer than four cells in a direction, and for cells more than twenty
+    /// times as long as wide or as wide as long.
     pub fn new(nx: usize, ny: usize, half_width: f64, half_length: f64) -> Result<Self> {
         let grid = Self { nx, ny, half_width, half_length };
         let refuse = |reason: String, remedy: String| {
@@ -84,7 +84,8 @@ impl Grid {
     }
 }
 
-/// The centre of cell `i` of `n` over [-`half`, `half`], exactly opposite to that of cell n - 1 - i.
+/// The centre of cell `i` of `n` over [-`half`, `half`], exactly opposite to that of cell n - 1 -
+/// i.
 fn centre(i: usize, n: usize, half: f64) -> f64 {
     half * ((2 * i + 1) as f64 - n as f64) / n as f64
 }

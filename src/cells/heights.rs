@@ -6,8 +6,8 @@ use crate::contact::Gap;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// Heights of a surface over a regular grid, positive out of the body: sample (i, j) lies at x = (i - (nx - 1) / 2) dx and y
-/// alike, so that the middle of the samples is that of the contact.
+/// Heights of a surface over a regular grid, positive out of the body: sample (i, j) lies at
+/// x = (i - (nx - 1) / 2) dx and y alike, so that the middle of the samples is that of the contact.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heights {
     shape: [usize; 2],
@@ -44,8 +44,8 @@ impl Heights {
     /// `shape` heights, y fastest, `steps_m` apart (m).
     ///
     /// # Errors
-    /// [`Error::Value`] for fewer than two samples in a direction, a number of values that is not that of the shape, steps that are
-    /// no lengths, and a value that is not finite.
+    /// [`Error::Value`] for fewer than two samples in a direction, a number of values that is not
+    /// that of the shape, steps that are no lengths, and a value that is not finite.
     pub fn new(shape: [usize; 2], steps_m: [f64; 2], values_m: Vec<f64>) -> Result<Self> {
         let refuse = |key: &str, value: String, reason: &str, remedy: &str| {
             let (key, reason, remedy) = (key.into(), reason.into(), remedy.into());
@@ -152,8 +152,8 @@ pub struct RoughGap<'a> {
 }
 
 impl<'a> RoughGap<'a> {
-    /// The gap over the cells of `grid` where the surface's heights come on top of the `smooth` one; `c_m` is the length C and `unit_m`
-    /// the unit of gaps, C^2 / (2 R) (m).
+    /// The gap over the cells of `grid` where the surface's heights come on top of the `smooth`
+    /// one; `c_m` is the length C and `unit_m` the unit of gaps, C^2 / (2 R) (m).
     ///
     /// # Errors
     /// As [`Heights::check_covers`].

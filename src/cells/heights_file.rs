@@ -5,6 +5,8 @@ use super::heights::Heights;
 use super::x3p;
 use crate::base::{Error, Result};
 use crate::host::check_memory;
+use std::fs::File;
+use std::io::Read;
 use std::path::Path;
 
 /// Larger files are refused unread (bytes): more samples than cells can be.
@@ -21,29 +23,40 @@ const FORMATS: &str =
     "give a two-dimensional array of floats as .npy, .csv with a row for each x, or .x3p";
 
 impl Heights {
-    /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit floats, .csv with a line for each
-    /// x, or .x3p (ISO 25178-72), which has its own distances of the samples. Other formats go through SurfaceTopography, whose `Topography.heights()` numpy saves.
+    /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit
+    /// floats, .csv with a line for each x, or .x3p (ISO 25178-72), which has its own distances of
+    /// the samples. Other formats go through SurfaceTopography, whose `Topography.heights()` numpy
+    /// saves.
     ///
     /// # Errors
-    /// [`Error::Io`] when it cannot be read, [`Error::File`] and [`Error::Memory`] before a file is read that is too large, [`Error::File`] when it has
-    /// another format, and [`Error::Value`] as [`Heights::new`].
+    /// [`Error::Io`] when it cannot be read, [`Error::File`] and [`Error::Memory`] before a file is
+    /// read that is too large, [`Error::File`] when it has another format, and [`Error::Value`] as
+    /// [`Heights::new`].
     pub fn read(path: &Path, steps_m: [f64; 2]) -> Result<Self> {
         let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
-        let bytes = std::fs::metadata(path).map_err(io)?.len();
+        let too_large = |has: String| Error::File {
+            path: path.to_path_buf(),
+            line: None,
+            message: format!("has {has} bytes; at most {MOST_BYTES} are read"),
+            remedy: "cut out the part within the contact, or keep every second sample".into(),
+        };
+        let file = File::open(path).map_err(io)?;
+        let bytes = file.metadata().map_err(io)?.len();
         if bytes > MOST_BYTES {
-            return Err(Error::File {
-                path: path.to_path_buf(),
-                line: None,
-                message: format!("has {bytes} bytes; at most {MOST_BYTES} are read"),
-                remedy: "cut out the part within the contact, or keep every second sample".into(),
-            });
+            return Err(too_large(bytes.to_string()));
         }
         check_memory(
             &format!("the surface {}", path.display()),
             COPIES * bytes as f64,
             "give fewer samples",
         )?;
-        Self::parse(&std::fs::read(path).map_err(io)?, path, steps_m)
+        // A pipe or a device has no length of its own.
+        let mut content = Vec::new();
+        file.take(MOST_BYTES + 1).read_to_end(&mut content).map_err(io)?;
+        if content.len() as u64 > MOST_BYTES {
+            return Err(too_large("more".to_string()));
+        }
+        Self::parse(&content, path, steps_m)
     }
 
     /// Reads the `content` of a file; the name of its `path` says in which format.
@@ -81,6 +94,7 @@ fn has_extension(path: &Path, name: &str) -> bool {
 /// The array of lines of numbers; or the line that is none, and what is wrong.
 fn csv(content: &[u8]) -> std::result::Result<Array, (Option<usize>, String)> {
     let text = std::str::from_utf8(content).map_err(|_| (None, "is not text".to_string()))?;
+    let text = text.trim_start_matches('\u{feff}');
     let (mut values, mut columns, mut rows) = (Vec::new(), None, 0);
     for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let before = values.len();
@@ -131,16 +145,21 @@ fn npy(content: &[u8]) -> std::result::Result<Array, String> {
     }
     let data = &content[start + length..];
     let size = match kind {
-        "<f8" => 8,
-        "<f4" => 4,
+        "<f8" | ">f8" => 8,
+        "<f4" | ">f4" => 4,
         _ => return Err(format!("has numbers of the type {kind}")),
     };
     if nx.checked_mul(ny).and_then(|n| n.checked_mul(size)) != Some(data.len()) {
         return Err(format!("has {} bytes of data for the shape {shape}", data.len()));
     }
     let value = |at: usize| {
-        let own = &data[at * size..][..size];
-        match own.try_into() {
+        let mut own = [0; 8];
+        let own = &mut own[..size];
+        own.copy_from_slice(&data[at * size..][..size]);
+        if kind.starts_with('>') {
+            own.reverse();
+        }
+        match (&*own).try_into() {
             Ok(eight) => f64::from_le_bytes(eight),
             Err(_) => f64::from(f32::from_le_bytes([own[0], own[1], own[2], own[3]])),
         }
@@ -178,11 +197,14 @@ mod tests {
             [0.0, 1.0, 2.0, 10.0, 11.0, 12.0f64].iter().flat_map(|v| v.to_le_bytes()).collect();
         let columns: Vec<u8> =
             [0.0, 10.0, 1.0, 11.0, 2.0, 12.0f32].iter().flat_map(|v| v.to_le_bytes()).collect();
+        let others: Vec<u8> =
+            [0.0, 1.0, 2.0, 10.0, 11.0, 12.0f64].iter().flat_map(|v| v.to_be_bytes()).collect();
         let want = Heights::new([2, 3], [1.0; 2], vec![0.0, 1.0, 2.0, 10.0, 11.0, 12.0]).unwrap();
         for (name, content) in [
             ("a.npy", array("<f8", "False", "(2, 3)", &rows)),
             ("b.npy", array("<f4", "True", "(2, 3)", &columns)),
-            ("c.CSV", b"0, 1, 2\n10,11,12e0\n\n".to_vec()),
+            ("d.npy", array(">f8", "False", "(2, 3)", &others)),
+            ("c.CSV", b"\xef\xbb\xbf0, 1, 2\n10,11,12e0\n\n".to_vec()),
         ] {
             assert_eq!(read(name, &content).unwrap(), want, "{name}");
         }

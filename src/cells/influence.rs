@@ -18,21 +18,21 @@ pub struct Images {
     pub half: f64,
     /// Place y of its middle (C), from that of the cells.
     pub middle: f64,
-    /// Weight of an image in the displacement: the body's share of the compliance times psi, Eq. 3's
-    /// (1 - nu^2) / E in parts of 1 / E*.
+    /// Weight of an image in the displacement: the body's share of the compliance times psi, Eq.
+    /// 3's (1 - nu^2) / E in parts of 1 / E*.
     pub weight: f64,
 }
 
 impl Images {
-    /// Twice the places of both faces: the image in the face at H of what acts at y' is at 2 H - y'. Each
-    /// with the weight.
+    /// Twice the places of both faces: the image in the face at H of what acts at y' is at 2 H -
+    /// y'. Each with the weight.
     pub(super) fn shifts(&self) -> [(f64, f64); 2] {
         [1.0, -1.0].map(|side| (2.0 * (self.middle + side * self.half), self.weight))
     }
 }
 
-/// Eq. 3: displacement u at the distance (`x`, `y`) from the centre of a cell of half-sides `a` and `b` under the unit
-/// pressure.
+/// Eq. 3: displacement u at the distance (`x`, `y`) from the centre of a cell of half-sides `a` and
+/// `b` under the unit pressure.
 pub(super) fn influence(x: f64, y: f64, (a, b): (f64, f64)) -> f64 {
     deflection::rectangle(x, y, a, b) / PI
 }
@@ -51,8 +51,9 @@ impl Table {
         Self::sum(grid, mx, my, &[(0.0, 1.0)])
     }
 
-    /// The part that is even, or odd, in y of the displacements by a pressure that is mirrored in y = 0 and shifted to both
-    /// faces of every body. Without bodies off the cells' middle there is no odd part.
+    /// The part that is even, or odd, in y of the displacements by a pressure that is mirrored in y
+    /// = 0 and shifted to both faces of every body. Without bodies off the cells' middle there is
+    /// no odd part.
     pub(super) fn images(
         grid: &Grid,
         mx: usize,
@@ -99,9 +100,9 @@ impl Table {
         Self { mx, my, values }
     }
 
-    /// The transform of the table continued to the periods 2 mx and 2 my, times `scale`: evenly in x, in y with its own
-    /// `parity`. It has that parity too; that of an odd table is imaginary, and this its imaginary part. For each
-    /// wavenumber k <= mx in x those l <= my in y.
+    /// The transform of the table continued to the periods 2 mx and 2 my, times `scale`: evenly in
+    /// x, in y with its own `parity`. It has that parity too; that of an odd table is imaginary,
+    /// and this its imaginary part. For each wavenumber k <= mx in x those l <= my in y.
     pub(super) fn spectrum(&self, parity: Parity, scale: f64) -> Vec<f64> {
         let (nx, ny) = (self.mx + 1, self.my + 1);
         let mut along_x = self.values.clone();
@@ -146,7 +147,8 @@ impl HalfTransform {
         x.iter_mut().zip(&self.spectrum).for_each(|(x, s)| *x = s.re);
     }
 
-    /// The imaginary part of the transform of `x` continued oddly (DST-I), in place; x_0 and x_m count as zero.
+    /// The imaginary part of the transform of `x` continued oddly (DST-I), in place; x_0 and x_m
+    /// count as zero.
     pub(super) fn odd(&mut self, x: &mut [f64]) {
         let m = x.len() - 1;
         (x[0], x[m]) = (0.0, 0.0);

@@ -1,8 +1,8 @@
 //! Stresses under all cells at one depth, by transforms.
 //!
-//! Love's stresses of a cell at the distances of all others are a kernel; with the pressures, and with those mirrored in y = 0 for the
-//! images, they make a convolution for each of the six components. Of a cell's stresses xy and xz change their sign with x, xy
-//! and yz with y.
+//! Love's stresses of a cell at the distances of all others are a kernel; with the pressures, and
+//! with those mirrored in y = 0 for the images, they make a convolution for each of the six
+//! components. Of a cell's stresses xy and xz change their sign with x, xy and yz with y.
 
 use super::cosine::good_length;
 use super::end_stress::EndStress;
@@ -34,7 +34,8 @@ impl Padded {
         Self { nx: grid.nx, ny: grid.ny, periods, plans: Plans::new(periods) }
     }
 
-    /// The transform of the field with the rows `row(j)` of each j < period, none where it is zero: for each wavenumber in x all those in y.
+    /// The transform of the field with the rows `row(j)` of each j < period, none where it is zero:
+    /// for each wavenumber in x all those in y.
     fn forward(&self, row: impl Fn(usize, &mut [f64]) -> bool + Sync) -> Vec<Complex<f64>> {
         let [px, py] = self.periods;
         let count = px / 2 + 1;
@@ -82,7 +83,8 @@ impl Padded {
         })
     }
 
-    /// The transform of component `c` of a kernel given for the distances 0 to nx - 1 in x and 1 - ny to ny - 1 in y.
+    /// The transform of component `c` of a kernel given for the distances 0 to nx - 1 in x and 1 -
+    /// ny to ny - 1 in y.
     fn kernel(&self, rows: &[Vec<StressTensor>], c: usize) -> Vec<Complex<f64>> {
         let ([px, py], ny) = (self.periods, self.ny);
         let sign = if StressTensor::ODD_IN_X[c] { -1.0 } else { 1.0 };
@@ -104,8 +106,8 @@ impl Padded {
     }
 }
 
-/// Love's stresses at the depth `z` of a cell under the unit pressure, at the distances of [`Padded::kernel`], summed over cells at
-/// `shifts` along y.
+/// Love's stresses at the depth `z` of a cell under the unit pressure, at the distances of
+/// [`Padded::kernel`], summed over cells at `shifts` along y.
 fn kernel(grid: &Grid, nu: f64, z: f64, shifts: &[f64]) -> Vec<Vec<StressTensor>> {
     let (a, b) = grid.half_sides();
     let row = |j: usize| {
@@ -119,8 +121,8 @@ fn kernel(grid: &Grid, nu: f64, z: f64, shifts: &[f64]) -> Vec<Vec<StressTensor>
     (0..2 * grid.ny - 1).into_par_iter().map(row).collect()
 }
 
-/// The stresses of a body with Poisson's ratio `nu` at the depth `z` (C) under each cell: sums of Love's over cells and images, with the
-/// correction of [`CellField::at`].
+/// The stresses of a body with Poisson's ratio `nu` at the depth `z` (C) under each cell: sums of
+/// Love's over cells and images, with the correction of [`CellField::at`].
 pub fn layer(cells: &CellPressure, end: FieldEnd, nu: f64, z: f64) -> Layer {
     let grid = &cells.grid;
     let plan = Padded::new(grid);
@@ -154,7 +156,8 @@ pub fn layer(cells: &CellPressure, end: FieldEnd, nu: f64, z: f64) -> Layer {
     layer
 }
 
-/// Adds what free ends do, known on the nodes of `axis` along the contact, to a layer at the depth `z` (C).
+/// Adds what free ends do, known on the nodes of `axis` along the contact, to a layer at the depth
+/// `z` (C).
 pub fn add_ends(layer: &mut Layer, grid: &Grid, axis: &Panels, ends: &EndStress, z: f64) {
     let xs: Vec<f64> = (0..grid.nx).map(|i| grid.x(i)).collect();
     let rows: Vec<Vec<StressTensor>> =

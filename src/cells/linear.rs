@@ -2,6 +2,7 @@
 
 /// A linear map of fields over the cells.
 pub(super) trait Linear {
-    /// Writes what `x` is mapped to into `out`, of the same length. Does not depend on the number of threads.
+    /// Writes what `x` is mapped to into `out`, of the same length. Does not depend on the number
+    /// of threads.
     fn apply(&mut self, x: &[f64], out: &mut [f64]);
 }

@@ -3,7 +3,8 @@
 use super::grid::Grid;
 use crate::base::Panels;
 
-/// What lies in one panel of a cell: the panel's index, and the cell's part in it with its own nodes.
+/// What lies in one panel of a cell: the panel's index, and the cell's part in it with its own
+/// nodes.
 pub(super) type Part = (usize, Panels);
 
 /// The parts of each cell along the line, of a `symmetric` contact of those on the axis's half.
@@ -25,7 +26,8 @@ pub(super) fn parts(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<Part
     (0..count).map(of_cell).collect()
 }
 
-/// The integrals over a cell of `f(y)` times each polynomial of `axis` that is not zero there: its node, and the integral.
+/// The integrals over a cell of `f(y)` times each polynomial of `axis` that is not zero there: its
+/// node, and the integral.
 pub(super) fn integrals(axis: &Panels, cell: &[Part], f: impl Fn(f64) -> f64) -> Vec<(usize, f64)> {
     let order = axis.order();
     let mut all = Vec::with_capacity(cell.len() * order);
@@ -41,7 +43,8 @@ pub(super) fn integrals(axis: &Panels, cell: &[Part], f: impl Fn(f64) -> f64) ->
     all
 }
 
-/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact over those on the axis's half.
+/// The means of the polynomials of `axis` over the cells along the line, of a `symmetric` contact
+/// over those on the axis's half.
 pub(super) fn means(axis: &Panels, grid: &Grid, symmetric: bool) -> Vec<Vec<(usize, f64)>> {
     let length = 2.0 * grid.half_sides().1;
     let parts = parts(axis, grid, symmetric);

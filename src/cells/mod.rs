@@ -1,16 +1,18 @@
 //! Contact on uniform cells of constant pressure.
 //!
-//! The method of the study that the package reproduces, as published: a flexibility matrix by Eqs. 2
-//! and 3 with each cell's images in the end faces, a contact iteration, stresses by Love's sums
+//! The method of the study that the package reproduces, as published: a flexibility matrix by Eqs.
+//! 2 and 3 with each cell's images in the end faces, a contact iteration, stresses by Love's sums
 //! (Eqs. 4 to 10). Any gap may be asked for; the accuracy is the grid's.
 //!
 //! # Conventions
 //!
-//! - Lengths are in units of C, pressures and stresses of p0, displacements and gaps of C^2 / (2 R).
-//! - Cells are 2a x 2b and fill |x| <= X, |y| <= S: centres x_i = (2 i + 1) a - X, y_j = (2 j + 1) b - S.
+//! - Lengths are in units of C, pressures and stresses of p0, displacements and gaps of
+//!   C^2 / (2 R).
+//! - Cells are 2a x 2b and fill |x| <= X, |y| <= S: centres x_i = (2 i + 1) a - X,
+//!   y_j = (2 j + 1) b - S.
 //!   Fields over the grid have x as the index that runs fastest: cell (i, j) is at j nx + i.
-//! - The displacement is u = (1/pi) sum f p, f of [`crate::kernels::deflection`], with the shares of the two
-//!   bodies in the compliance adding up to one.
+//! - The displacement is u = (1/pi) sum f p, f of [`crate::kernels::deflection`], with the shares
+//!   of the two bodies in the compliance adding up to one.
 //! - A symmetric contact is solved on the quarter x, y > 0, whose cells are the whole grid's.
 //! - Transforms carry no scale forwards; the spectra of the kernels hold the scale of both ways.
 //!   Sequences are padded with zeros to at least twice the grid, so that nothing wraps around.

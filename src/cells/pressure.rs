@@ -35,7 +35,8 @@ impl CellPressure {
         4.0 * a * b * self.pressure.iter().filter(|p| **p > 0.0).count() as f64
     }
 
-    /// Shares of the contact area whose pressure lies in each of `bins` equal parts between zero and the largest pressure, lowest first.
+    /// Shares of the contact area whose pressure lies in each of `bins` equal parts between zero
+    /// and the largest pressure, lowest first.
     pub fn histogram(&self, bins: usize) -> Vec<f64> {
         let largest = self.pressure.iter().fold(0.0, |m: f64, p| m.max(*p));
         let mut shares = vec![0.0; bins];

@@ -75,14 +75,14 @@ impl CellProblem {
     /// Solves the contact of bodies with this `gap`.
     ///
     /// # Errors
-    /// [`Error::Uncovered`] where the contact reaches the edge of the cells in x, [`Error::NotConverged`],
-    /// and [`Error::Memory`] before anything large is allocated.
+    /// [`Error::Uncovered`] where the contact reaches the edge of the cells in x,
+    /// [`Error::NotConverged`], and [`Error::Memory`] before anything large is allocated.
     pub fn solve(&self, gap: &dyn Gap) -> Result<CellPressure> {
         self.solve_telling(gap, &|_, _| {})
     }
 
-    /// [`CellProblem::solve`] that tells `progress` of every step on any of its grids: how often the compliance was applied there, and the
-    /// relative residual.
+    /// [`CellProblem::solve`] that tells `progress` of every step on any of its grids: how often
+    /// the compliance was applied there, and the relative residual.
     ///
     /// # Errors
     /// As [`CellProblem::solve`].
@@ -117,7 +117,7 @@ impl CellProblem {
             return Err(Error::NotConverged {
                 iterations,
                 residual,
-                remedy: "take a larger [accuracy] tolerance or other cells".into(),
+                remedy: "give a larger --tolerance, or other --cells".into(),
             });
         }
         let pressure = unfold(grid, symmetry, pressure);
@@ -182,7 +182,8 @@ impl CellProblem {
         Ok(problem.solve(start, tolerance, self.most_iterations, level.progress))
     }
 
-    /// The gaps (C^2 / (2 R)) over the cells under the pressures of `solution`, those of the problem's contact with this `gap`.
+    /// The gaps (C^2 / (2 R)) over the cells under the pressures of `solution`, those of the
+    /// problem's contact with this `gap`.
     pub fn gaps(&self, gap: &dyn Gap, solution: &CellPressure) -> Vec<f64> {
         let grid = &self.grid;
         let gap = &Tilted { gap, tilt: CellTilt::Held(solution.tilt) };
@@ -250,8 +251,9 @@ impl Gap for Tilted<'_> {
     }
 }
 
-/// An approximate inverse of the compliance on `nx` x `ny` cells, `part` of the grid's width and length, whose edges mirror: u = 2 p / k for waves of
-/// wavenumber k on a half-space. The longest waves are not told from those of half a period over the region's width.
+/// An approximate inverse of the compliance on `nx` x `ny` cells, `part` of the grid's width and
+/// length, whose edges mirror: u = 2 p / k for waves of wavenumber k on a half-space. The longest
+/// waves are not told from those of half a period over the region's width.
 fn inverse(grid: &Grid, [nx, ny]: [usize; 2], part: f64) -> EvenConvolution {
     let base = |half: f64| PI / (2.0 * half * part);
     let (kx, ky) = (base(grid.half_width), base(grid.half_length));
@@ -298,7 +300,8 @@ fn unfold(grid: &Grid, symmetry: Symmetry, part: Vec<f64>) -> Vec<f64> {
     rows.flat_map(|row| (0..grid.nx).map(move |i| row[mirror(i, nx)])).collect()
 }
 
-/// The field over the cells of `coarse` at the centres of those of `fine`, bilinearly between centres.
+/// The field over the cells of `coarse` at the centres of those of `fine`, bilinearly between
+/// centres.
 fn refine(coarse: &Grid, field: &[f64], fine: &Grid) -> Vec<f64> {
     let places = |from: usize, to: usize| -> Vec<(usize, f64)> {
         let place = |i: usize| {

@@ -1,12 +1,14 @@
 //! The pressure along the line that the pressures of cells are the means of.
 //!
-//! Stresses on the surface and beside the contact's end follow the pressure at a place, which steps from cell to cell. Where
-//! the pressure is smooth along the line, its means over a cell and both neighbours tell it better: it is taken as
+//! Stresses on the surface and beside the contact's end follow the pressure at a place, which steps
+//! from cell to cell. Where the pressure is smooth along the line, its means over a cell and both
+//! neighbours tell it better: it is taken as
 //!
 //! p(y) = (S - y)^-m (S + y)^-m' (c_0 + c_1 y + c_2 y^2)
 //!
-//! with the c that give the three means, and m and m' the exponents of the pressure at the contact's ends, zero where it is
-//! finite ([`crate::body::corner_exponent`]). Each cell keeps its load.
+//! with the c that give the three means, and m and m' the exponents of the pressure at the
+//! contact's ends, zero where it is finite ([`crate::body::corner_exponent`]). Each cell keeps its
+//! load.
 
 use super::grid::Grid;
 use super::means::{Part, integrals, parts};
@@ -17,22 +19,25 @@ use nalgebra::{DMatrix, Matrix3};
 /// Means that make up the pressure in a cell.
 const MEANS: usize = 3;
 
-/// Integrals over a cell with each polynomial of the axis that is not zero there: nodes, and the integrals.
+/// Integrals over a cell with each polynomial of the axis that is not zero there: nodes, and the
+/// integrals.
 type Integrals = Vec<(usize, f64)>;
 
 /// What a cell's pressures add to the loads on the nodes of an axis.
 struct CellLoads {
     /// By the uniform pressure one.
     uniform: Integrals,
-    /// The first cell of those whose means count, and what the pressure adds that has the mean one over one of them and zero over
-    /// the others; none where pressures are uniform, and with too few cells.
+    /// The first cell of those whose means count, and what the pressure adds that has the mean one
+    /// over one of them and zero over the others; none where pressures are uniform, and with too
+    /// few cells.
     smooth: Option<(usize, [Integrals; MEANS])>,
 }
 
-/// The pressures that `of` makes of the rows of cells for each of `count` places across, at the nodes of an axis by least squares: a row for
-/// each node. With `exponents` they are smooth along the line and go like s^-m at the distance s from its ends, m of `exponents`,
-/// zero where they are finite; only in a cell that is not pressed, or next to one, are they uniform, as the contact's edge is there.
-/// Without they are uniform in every cell.
+/// The pressures that `of` makes of the rows of cells for each of `count` places across, at the
+/// nodes of an axis by least squares: a row for each node. With `exponents` they are smooth along
+/// the line and go like s^-m at the distance s from its ends, m of `exponents`, zero where they are
+/// finite; only in a cell that is not pressed, or next to one, are they uniform, as the contact's
+/// edge is there. Without they are uniform in every cell.
 pub(super) fn nodal(
     cells: &CellPressure,
     axis: &Panels,
@@ -109,7 +114,8 @@ fn cell_loads(
 mod tests {
     use super::*;
 
-    /// Panels between the edges of cells of length 0.5 over [-2, 2], the outer ones graded towards the ends.
+    /// Panels between the edges of cells of length 0.5 over [-2, 2], the outer ones graded towards
+    /// the ends.
     fn axis() -> Panels {
         let outer = (0..30).map(|i| 0.5f64.powi(i + 1));
         let mut breaks: Vec<f64> = outer.flat_map(|s| [s - 2.0, 2.0 - s]).collect();

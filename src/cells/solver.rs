@@ -2,8 +2,8 @@
 
 use super::linear::Linear;
 
-/// The complementarity problem of a contact over n cells: u + gap = D where p > 0, u + gap >= D elsewhere, sum p given. With
-/// arms y, D + T y takes the place of D, and sum y p is given too.
+/// The complementarity problem of a contact over n cells: u + gap = D where p > 0, u + gap >= D
+/// elsewhere, sum p given. With arms y, D + T y takes the place of D, and sum y p is given too.
 pub(super) struct Complementarity<'a> {
     /// Displacement u of a pressure.
     pub(super) displacement: &'a mut dyn Linear,
@@ -51,14 +51,18 @@ pub(super) struct State {
 const SETTLED: f64 = 0.1;
 
 impl Complementarity<'_> {
-    /// Solves from the pressure `start` >= 0, not zero everywhere, to the residual `tolerance`; gives up, with what it has, after
-    /// `most` applications of the displacement. Tells `progress` of their number and of the residual.
+    /// Solves from the pressure `start` >= 0, not zero everywhere, to the residual `tolerance`;
+    /// gives up, with what it has, after `most` applications of the displacement. Tells `progress`
+    /// of their number and of the residual.
     ///
-    /// On the set of cells in contact the pressure solves linear equations with one constraint, its sum, whose
-    /// multiplier is D, and with arms another one, whose multiplier is T: conjugate gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual
-    /// on the set has fallen, cells that pull leave the set and cells that penetrate enter it. The
-    /// pressures are set to the prescribed load, and the displacement is taken anew, whenever cells were cut off, not
-    /// carried along with what the step does: that is what the published iteration leaves inexact.
+    /// On the set of cells in contact the pressure solves linear equations with one constraint, its
+    /// sum, whose multiplier is D, and with arms another one, whose multiplier is T: conjugate
+    /// gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a
+    /// preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual on the set has
+    /// fallen, cells that pull leave the set and cells that penetrate enter it. The pressures are
+    /// set to the prescribed load, and the displacement is taken anew, whenever cells were cut off,
+    /// not carried along with what the step does: that is what the published iteration leaves
+    /// inexact.
     pub(super) fn solve(
         &mut self,
         start: Vec<f64>,
@@ -132,8 +136,8 @@ impl Complementarity<'_> {
         [values.iter().sum(), self.arms.map_or(0.0, |(arms, _)| dot(arms, values))]
     }
 
-    /// The change of pressure on the set that the preconditioner holds against the misfit u + gap - D - T y, with the
-    /// motion such that it changes no sum; and this motion.
+    /// The change of pressure on the set that the preconditioner holds against the misfit u + gap -
+    /// D - T y, with the motion such that it changes no sum; and this motion.
     fn descent(&mut self, set: &ContactSet, u: &[f64]) -> (Vec<f64>, Motion) {
         let mut misfit: Vec<f64> = u.iter().zip(self.gap).map(|(u, gap)| u + gap).collect();
         project(&mut misfit, &set.contact);
@@ -155,8 +159,8 @@ impl Complementarity<'_> {
         (descent, motion)
     }
 
-    /// Scales the pressures to their sum; with arms by e^(s y) besides, which keeps them positive, for the sum of arms
-    /// times pressures.
+    /// Scales the pressures to their sum; with arms by e^(s y) besides, which keeps them positive,
+    /// for the sum of arms times pressures.
     fn rescale(&self, pressure: &mut [f64]) {
         if let Some((arms, moment)) = self.arms {
             let wanted = moment / self.total;
@@ -198,7 +202,8 @@ struct ContactSet {
 
 /// The line along which conjugate gradients search.
 struct Line {
-    /// Change of the pressures, zero in sum and outside the contact, and the displacement that it causes.
+    /// Change of the pressures, zero in sum and outside the contact, and the displacement that it
+    /// causes.
     step: Vec<f64>,
     moved: Vec<f64>,
     /// Product of the last misfit and its descent; none before the first step on a set.
@@ -222,8 +227,8 @@ impl Line {
     }
 }
 
-/// Lets cells that pull leave the contact and those whose `misfit` says that they penetrate enter it. Whether any did, and
-/// whether pull was cut off.
+/// Lets cells that pull leave the contact and those whose `misfit` says that they penetrate enter
+/// it. Whether any did, and whether pull was cut off.
 fn change(pressure: &mut [f64], contact: &mut [bool], misfit: &[f64]) -> (bool, bool) {
     let (mut changed, mut cut) = (false, false);
     for ((p, contact), misfit) in pressure.iter_mut().zip(contact).zip(misfit) {

@@ -8,15 +8,17 @@ use rayon::prelude::*;
 use rustfft::num_complex::Complex;
 use std::f64::consts::PI;
 
-/// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x, K in y too. One transform of p
-/// serves both: p' has the coefficient of the opposite wavenumber in y, turned by the phase of the mirror.
+/// u = K * p + M * p', p' the field p mirrored in y = 0, for kernels K and M that are even in x, K
+/// in y too. One transform of p serves both: p' has the coefficient of the opposite wavenumber in
+/// y, turned by the phase of the mirror.
 pub(super) struct WholeConvolution {
     nx: usize,
     ny: usize,
     /// Half the padded periods.
     half: [usize; 2],
     plans: Plans,
-    /// Of K, and of the even and the odd part of M, as [`super::influence::Table::spectrum`] gives them.
+    /// Of K, and of the even and the odd part of M, as [`super::influence::Table::spectrum`] gives
+    /// them.
     direct: Vec<f64>,
     images: Vec<f64>,
     odd_images: Vec<f64>,
@@ -29,9 +31,9 @@ pub(super) struct WholeConvolution {
 }
 
 impl WholeConvolution {
-    /// On `nx` x `ny` cells, padded to the periods 2 `mx` and 2 `my`. `direct` and the even and the odd part of `images` have the factors of the
-    /// wavenumbers k <= mx in x, for each of them those l <= my in y, and the scale 1 / (4 mx my) in them; what is zero is
-    /// empty.
+    /// On `nx` x `ny` cells, padded to the periods 2 `mx` and 2 `my`. `direct` and the even and the
+    /// odd part of `images` have the factors of the wavenumbers k <= mx in x, for each of them
+    /// those l <= my in y, and the scale 1 / (4 mx my) in them; what is zero is empty.
     pub(super) fn new(
         [nx, ny]: [usize; 2],
         [mx, my]: [usize; 2],

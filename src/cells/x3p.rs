@@ -1,11 +1,12 @@
-//! Heights in the format x3p of ISO 25178-72: a zip archive with a description, main.xml, and the heights.
+//! Heights in the format x3p of ISO 25178-72: a zip archive with a description, main.xml, and the
+//! heights.
 
 use roxmltree::{Document, Node};
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
 
-/// What an x3p file holds: the shape (nx, ny), the distances of the samples along x and y (m), and the heights (m), those
-/// of the last index next to each other.
+/// What an x3p file holds: the shape (nx, ny), the distances of the samples along x and y (m), and
+/// the heights (m), those of the last index next to each other.
 pub(super) type Samples = ([usize; 2], [f64; 2], Vec<f64>);
 
 /// More samples than cells can be: an archive may hold far more than it weighs.
@@ -15,8 +16,8 @@ const MOST_SAMPLES: usize = 1 << 27;
 const MOST_TEXT: u64 = 16 << 20;
 const MOST_BYTES: u64 = 24;
 
-/// The samples of an x3p file, or what is wrong with it. Lengths are in metres, as the format has them; heights that are
-/// missing become NaN.
+/// The samples of an x3p file, or what is wrong with it. Lengths are in metres, as the format has
+/// them; heights that are missing become NaN.
 pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
     let mut archive =
         ZipArchive::new(Cursor::new(content)).map_err(|e| format!("is no zip archive: {e}"))?;
@@ -46,15 +47,29 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
     }
     let samples = nx.checked_mul(ny).filter(|n| (1..=MOST_SAMPLES).contains(n));
     let samples = samples.ok_or_else(|| format!("has heights of the shape {nx} x {ny}"))?;
-    let raw = match find(root, "PointDataLink") {
-        Ok(link) => {
-            let most = (samples as u64).saturating_mul(MOST_BYTES);
-            binary(&part(&mut archive, word(link).trim_start_matches('/'), most)?, kind)?
-        }
+    let mut linked =
+        |link: Node, most: u64| part(&mut archive, word(link).trim_start_matches('/'), most);
+    let mut raw = match find(root, "PointDataLink") {
+        Ok(link) => binary(&linked(link, (samples as u64).saturating_mul(MOST_BYTES))?, kind)?,
         Err(_) => list(find(root, "DataList")?)?,
     };
     if raw.len() != samples {
         return Err(format!("has {} heights for the shape {nx} x {ny}", raw.len()));
+    }
+    if let Ok(link) = find(root, "ValidPointsLink")
+        && !word(link).is_empty()
+    {
+        let bytes = samples.div_ceil(8);
+        let valid = linked(link, bytes as u64)?;
+        if valid.len() != bytes {
+            return Err(format!("says of {} heights whether they are valid", 8 * valid.len()));
+        }
+        // A bit a height, the lowest of a byte first.
+        for (i, height) in raw.iter_mut().enumerate() {
+            if valid[i / 8] >> (i % 8) & 1 == 0 {
+                *height = f64::NAN;
+            }
+        }
     }
     // In the file x is fastest.
     let place = |i: usize, j: usize| offset + scale * raw[j * nx + i];
@@ -114,7 +129,8 @@ fn binary(bytes: &[u8], kind: &str) -> Result<Vec<f64>, String> {
     }
 }
 
-/// Heights in the description itself, one a datum, the last of whose numbers is the height; an empty one is missing.
+/// Heights in the description itself, one a datum, the last of whose numbers is the height; an
+/// empty one is missing.
 fn list(node: Node) -> Result<Vec<f64>, String> {
     let data = node.children().filter(|child| child.tag_name().name() == "Datum");
     data.map(|datum| match word(datum).rsplit(';').next().unwrap_or("").trim() {
@@ -132,10 +148,25 @@ mod tests {
 
     /// An archive with this description and these bytes of heights.
     fn archive(kind: &str, shape: [usize; 2], data: Option<&[u8]>, list: &str) -> Vec<u8> {
+        archive_with(kind, shape, data, list, None)
+    }
+
+    /// The same with these bits of validity.
+    fn archive_with(
+        kind: &str,
+        shape: [usize; 2],
+        data: Option<&[u8]>,
+        list: &str,
+        valid: Option<&[u8]>,
+    ) -> Vec<u8> {
+        let mask = match valid {
+            Some(_) => "<ValidPointsLink>bindata/valid.bin</ValidPointsLink>",
+            None => "",
+        };
         let link = match data {
-            Some(_) => {
-                "<DataLink><PointDataLink>bindata/data.bin</PointDataLink></DataLink>".into()
-            }
+            Some(_) => format!(
+                "<DataLink><PointDataLink>bindata/data.bin</PointDataLink>{mask}</DataLink>"
+            ),
             None => format!("<DataList>{list}</DataList>"),
         };
         let text = format!(
@@ -150,9 +181,11 @@ mod tests {
         let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
         writer.start_file("main.xml", SimpleFileOptions::default()).unwrap();
         writer.write_all(text.as_bytes()).unwrap();
-        if let Some(data) = data {
-            writer.start_file("bindata/data.bin", SimpleFileOptions::default()).unwrap();
-            writer.write_all(data).unwrap();
+        for (name, bytes) in [("bindata/data.bin", data), ("bindata/valid.bin", valid)] {
+            if let Some(bytes) = bytes {
+                writer.start_file(name, SimpleFileOptions::default()).unwrap();
+                writer.write_all(bytes).unwrap();
+            }
         }
         writer.finish().unwrap().into_inner()
     }
@@ -196,5 +229,12 @@ mod tests {
         // A missing height is a hole, which a surface must not have.
         let (_, _, values) = read(&archive("D", [1, 1], None, "<Datum></Datum>")).unwrap();
         assert!(values[0].is_nan());
+        // Whole numbers have no NaN: bits say which of them are heights.
+        let data: Vec<u8> = (0..10i16).flat_map(|v| v.to_le_bytes()).collect();
+        let masked = |valid: &[u8]| read(&archive_with("I", [10, 1], Some(&data), "", Some(valid)));
+        let (_, _, values) = masked(&[0b1111_1110, 0b01]).unwrap();
+        let holes: Vec<usize> = (0..10).filter(|i| values[*i].is_nan()).collect();
+        assert_eq!(holes, [0, 9]);
+        assert!(masked(&[0xff]).unwrap_err().contains("of 8 heights"));
     }
 }

@@ -29,13 +29,13 @@ use std::path::{Path, PathBuf};
 /// both sides) and bench.json into the output folder. Errors are taken against FEM's finest mesh
 /// and against quarter-space at the tightest tolerance. Only with --fem live are times of FEM and
 /// the models divided; recorded ones are shown apart. A mesh that is done in the folder already is
-/// not run again: give a new folder to time both sides anew. With meshes by several codes the fastest within
-/// an error, of whichever code, is what quarter-space is compared with. Takes a few minutes for the four
-/// default cases; with --fem live some minutes more a case, for the meshes.
+/// not run again: give a new folder to time both sides anew. With meshes by several codes the
+/// fastest within an error, of whichever code, is what quarter-space is compared with. Takes a few
+/// minutes for the four default cases; with --fem live some minutes more a case, for the meshes.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// Case or study files, built-in cases, cases of the built-in studies, or the studies by their names
-    /// for all of one; the four corners of `factorial` of the lower load by default
+    /// Case or study files, built-in cases, cases of the built-in studies, or the studies by their
+    /// names for all of one; the four corners of `factorial` of the lower load by default
     #[arg(value_hint = ValueHint::FilePath, value_name = "CASE")]
     cases: Vec<PathBuf>,
     /// Folder for the results; created if it does not exist
@@ -64,8 +64,8 @@ pub(super) struct Arguments {
     /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
-    /// Relative element sizes of the meshes with --fem live; ENGINE=S for one by another code than --engine,
-    /// as in 2,1.4,calculix=2
+    /// Relative element sizes of the meshes with --fem live; ENGINE=S for one by another code than
+    /// --engine, as in 2,1.4,calculix=2
     #[arg(
         long,
         value_delimiter = ',',

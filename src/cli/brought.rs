@@ -34,7 +34,8 @@ pub(super) struct Brought {
 }
 
 impl Brought {
-    /// Reads all files and solves their cases, so that what cannot be used is said before the study runs.
+    /// Reads all files and solves their cases, so that what cannot be used is said before the study
+    /// runs.
     ///
     /// # Errors
     /// [`Error::Value`] for a case that the study has not, or two files of a case with one name; as
@@ -61,7 +62,11 @@ impl Brought {
             }
             if !files.is_empty() {
                 case.check_force("every model would find another force")?;
-                let beside = options.beside(case)?.with_refined(refined_tolerance(case))?;
+                let beside = options.beside(case)?;
+                let beside = match refined_tolerance(case) {
+                    Some(tolerance) => beside.with_refined(tolerance)?,
+                    None => beside,
+                };
                 brought.push(Self { case: case.clone(), files, beside });
             }
         }

@@ -14,9 +14,9 @@ pub(super) struct ColdRuns {
 }
 
 impl ColdRuns {
-    /// Runs in the folder `cold` below `folder`.
+    /// Runs in a hidden folder of this process below `folder`, which it has locked.
     pub(super) fn new(folder: &Path) -> Self {
-        Self { folder: folder.join("cold") }
+        Self { folder: folder.join(format!(".cold-{}", std::process::id())) }
     }
 
     /// Time of the complete solution (s) as measured by that process, without start-up and files;
@@ -42,7 +42,7 @@ impl ColdRuns {
 
 impl Drop for ColdRuns {
     fn drop(&mut self) {
-        // A folder that cannot be removed is in the user's own folder and has a clear name.
+        // One that cannot be removed is hidden, and in nobody's way.
         let _ = std::fs::remove_dir_all(&self.folder);
     }
 }

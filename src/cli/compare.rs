@@ -115,6 +115,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let mut brought: Vec<BroughtFile> = Vec::new();
     for path in &arguments.curves {
         let file = BroughtFile::read(path, &case, &stated)?;
+        file.check_foreign()?;
         file.check_name(&brought)?;
         brought.push(file);
     }

@@ -11,10 +11,10 @@ use std::path::PathBuf;
 
 /// Writes a case as an input deck for CalculiX and Abaqus.
 ///
-/// Writes model.inp with the files that it includes (mesh.inp, bodies.inp), the meshes as .msh and .vtu,
-/// mesh.json and request.json into the output folder, in mm, N and MPa: 20-node bricks, node sets, contact
-/// pair, steps and output requests, with comments (docs/deck.md). `edgeline fem --engine calculix` runs the
-/// same deck, but for large displacements. Takes a few seconds.
+/// Writes model.inp with the files that it includes (mesh.inp, bodies.inp), the meshes as .msh and
+/// .vtu, mesh.json and request.json into the output folder, in mm, N and MPa: 20-node bricks, node
+/// sets, contact pair, steps and output requests, with comments (docs/deck.md). `edgeline fem
+/// --engine calculix` runs the same deck, but for large displacements. Takes a few seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case

@@ -133,7 +133,8 @@ fn text(findings: &Findings) -> String {
     let mut lines = vec![
         format!("edgeline {}", findings.version),
         format!(
-            "semi-analytical solver: works ({} for a built-in case)",
+            "semi-analytical solver: {} ({} for a built-in case)",
+            if findings.solver.works { "works" } else { "does not work: install it anew" },
             duration(findings.solver.milliseconds * 1e-3)
         ),
         format!("recorded finite-element cases: {}", findings.records),

@@ -9,9 +9,10 @@ use std::path::PathBuf;
 
 /// Shows a case in the browser: change it, and see pressures and stresses of all models.
 ///
-/// Prints a link for the browser on this machine, and answers it until Ctrl-C or until the page is closed.
-/// Nobody else is answered: the link has a secret word, and the port is open to this machine alone. Writes
-/// nothing; the page offers files for download. Takes some hundredths of a second for each change.
+/// Prints a link for the browser on this machine, and answers it until Ctrl-C or until the page is
+/// closed. Nobody else is answered: the link has a secret word, and the port is open to this
+/// machine alone. Writes nothing; the page offers files for download. Takes some hundredths of a
+/// second for each change.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case

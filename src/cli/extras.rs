@@ -15,9 +15,9 @@ use std::path::PathBuf;
 
 /// Writes shell completions, manual pages, JSON Schemas and the reference.
 ///
-/// Writes the completions for bash, fish and zsh, a manual page for each command, the schemas of case
-/// files (case.schema.json) and of summary.json (summary.schema.json), and every key, option, file and
-/// column as Markdown (reference.md) into the output folder. Takes less than a second.
+/// Writes the completions for bash, fish and zsh, a manual page for each command, the schemas of
+/// case files (case.schema.json) and of summary.json (summary.schema.json), and every key, option,
+/// file and column as Markdown (reference.md) into the output folder. Takes less than a second.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Folder for the files; made if it is not there

@@ -1,7 +1,7 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
 use super::output::{Exit, print, print_json};
-use super::values::{checked_tolerance, count, edge_model};
+use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -15,12 +15,13 @@ use std::path::PathBuf;
 
 /// Finds where a contact that passes again and again begins to damage its bodies.
 ///
-/// A place of a body sees the stresses along x, one after the other. From this history at places over the
-/// length and the depth of both bodies: the range of tau_xz, the largest shear and von Mises stress and, with their
-/// numbers in the case's [fatigue] table, the measures of Dang Van and of Fatemi and Socie. Writes fatigue.csv (one
-/// row per place, the values by half-spaces beside the method's), fatigue-<body>.vtr for ParaView, a map of each measure
-/// with its largest value marked (fatigue-*.svg and .png), and summary.json with the critical places and how
-/// far half-spaces are off. Takes some seconds.
+/// A place of a body sees the stresses along x, one after the other. From this history at places
+/// over the length and the depth of both bodies: the range of tau_xz, the largest shear and von
+/// Mises stress and, with their numbers in the case's [fatigue] table, the measures of Dang Van and
+/// of Fatemi and Socie. Writes fatigue.csv (one row per place, the values by half-spaces beside the
+/// method's), fatigue-<body>.vtr for ParaView, a map of each measure with its largest value marked
+/// (fatigue-*.svg and .png), and summary.json with the critical places and how far half-spaces are
+/// off. Takes some seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -32,7 +33,8 @@ pub(super) struct Arguments {
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "fatigue", value_hint = ValueHint::DirPath)]
     out: PathBuf,
-    /// Numbers of places along the contact and into the bodies; half as many are added beyond an end
+    /// Numbers of places along the contact and into the bodies; half as many are added beyond an
+    /// end
     #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count("places", 2..=500))]
     places: Vec<usize>,
     /// Accuracy as a fraction of p0, that of the case by default
@@ -48,6 +50,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
+    say_if_too_fine(&case);
     let counts = places(&arguments)?;
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &Options::new(arguments.method))?;

@@ -6,17 +6,17 @@ use super::progress::Progress;
 use crate::base::Result;
 use crate::case::Case;
 use crate::fem::{Driver, MeshResult};
-use crate::host::prepare_folder;
 use clap::{Args, ValueHint};
 use serde_json::json;
 use std::path::PathBuf;
 
-/// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx or CalculiX, as child processes.
+/// Solves one case by finite elements: meshes by gmsh, contact by FEniCSx or CalculiX, as child
+/// processes.
 ///
 /// Writes curves.csv and pressure.csv (at the points of the semi-analytical solution), fem.json,
-/// mesh.json, request.json and the log of each stage into the output folder. Takes a few seconds at --size 2 and
-/// a minute at --size 1; with --engine calculix one to two minutes at --size 2. The next run continues
-/// a run that was stopped; a finished run is not repeated.
+/// mesh.json, request.json and the log of each stage into the output folder. Takes a few seconds at
+/// --size 2 and a minute at --size 1; with --engine calculix one to two minutes at --size 2. The
+/// next run continues a run that was stopped; a finished run is not repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -38,7 +38,6 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
     let code = arguments.fem.engine();
     code.check(&case)?;
-    prepare_folder(&arguments.out)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
     let interpreter = driver.interpreter();
     say(&format!(

@@ -1,7 +1,8 @@
 //! Options of the subcommands that run finite elements.
 
+use super::values::one_of;
 use crate::fem::{Code, FemSettings, LinearSolver};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -35,7 +36,8 @@ pub(super) struct FemOptions {
     /// MPI processes per finite-element run
     #[arg(long, default_value_t = 1, value_name = "N")]
     ranks: usize,
-    /// Interpreter that imports dolfinx (for CalculiX: numpy) [default: $EDGELINE_PYTHON, /usr/bin/python3, python3]
+    /// Interpreter that imports dolfinx (for CalculiX: numpy) [default: $EDGELINE_PYTHON,
+    /// /usr/bin/python3, python3]
     #[arg(long, value_name = "FILE", value_hint = ValueHint::ExecutablePath)]
     python: Option<PathBuf>,
     /// The gmsh program
@@ -89,17 +91,11 @@ impl FemOptions {
 }
 
 fn code() -> impl TypedValueParser<Value = Code> {
-    PossibleValuesParser::new(Code::ALL.map(Code::name)).map(|name| {
-        let named = |code: &Code| code.name() == name;
-        Code::ALL.into_iter().find(named).expect("only these names pass")
-    })
+    one_of(&Code::ALL, Code::name)
 }
 
 fn linear() -> impl TypedValueParser<Value = LinearSolver> {
-    PossibleValuesParser::new(LinearSolver::ALL.map(LinearSolver::name)).map(|name| {
-        let named = |linear: &LinearSolver| linear.name() == name;
-        LinearSolver::ALL.into_iter().find(named).expect("only these names pass")
-    })
+    one_of(&LinearSolver::ALL, LinearSolver::name)
 }
 
 /// Parses a time limit.

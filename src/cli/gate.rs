@@ -8,6 +8,7 @@ use crate::host::{Lock, write_set, write_whole};
 use crate::report::gates;
 use crate::report::study_files::pretty;
 use crate::report::table::read;
+use crate::study::StudyRun;
 use crate::study::gate::{self, Baseline, Gates};
 use clap::{Args, ValueHint};
 use std::io::Write;
@@ -16,8 +17,8 @@ use std::path::{Path, PathBuf};
 /// Checks the models against their accuracy gates: absolute limits, and drift from accepted
 /// numbers.
 ///
-/// Without a study, and without thresholds of one's own, runs all built-in studies, each with its gates.
-/// Prints a table of all gates with value, limit and margin; writes gates.json, gates.md and
+/// Without a study, and without thresholds of one's own, runs all built-in studies, each with its
+/// gates. Prints a table of all gates with value, limit and margin; writes gates.json, gates.md and
 /// junit.xml into the output folder, and the Markdown also to the file that $GITHUB_STEP_SUMMARY
 /// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes some seconds with recorded
 /// finite-element curves; with --fem live minutes per case, so name a study.
@@ -25,7 +26,8 @@ use std::path::{Path, PathBuf};
 pub(super) struct Arguments {
     #[command(flatten)]
     study: StudyOptions,
-    /// Thresholds (TOML) of one study, the default one if none is named, instead of the built-in ones
+    /// Thresholds (TOML) of one study, the default one if none is named, instead of the built-in
+    /// ones
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     gates: Option<PathBuf>,
     /// Accepted numbers (JSON), instead of the built-in ones
@@ -55,7 +57,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     };
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
-    let (mut outcomes, mut now) = (Vec::new(), Baseline::default());
+    let (mut outcomes, mut now) = (Vec::new(), accepted.clone());
     for study in &studies {
         let thresholds = match &arguments.gates {
             Some(path) => gate::parse(&read(path)?, path)?,
@@ -65,7 +67,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let repeats = if timed { 5 } else { 0 };
         let run = arguments.study.run(study, &thresholds.methods(), repeats, false)?;
         if arguments.accept {
-            now = now.with(Baseline::of(&run));
+            check_solved(&run)?;
+            now = now.without(&run).with(Baseline::of(&run));
         } else {
             outcomes.extend(gate::evaluate(&run, &thresholds, Some(&accepted)));
         }
@@ -91,6 +94,20 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let hold = outcomes.iter().all(|o| o.passed);
     Ok(if hold { Exit::Done } else { Exit::GateFailed })
+}
+
+/// Refuses a run in which a model has no solution: its numbers would be missing among the accepted
+/// ones.
+fn check_solved(run: &StudyRun) -> Result<()> {
+    let all = run.cases.iter().flat_map(|case| case.methods.iter().map(move |m| (case, m)));
+    let mut failed = all.filter_map(|(case, m)| Some((case, m, m.result.as_ref().err()?)));
+    let Some((case, method, error)) = failed.next() else { return Ok(()) };
+    Err(Error::Value {
+        key: "--accept".to_string(),
+        value: format!("{} of {}", method.source.name(), case.case.name),
+        reason: format!("it has no solution: {error}"),
+        remedy: "accept numbers when all cases are solved".to_string(),
+    })
 }
 
 /// Writes the numbers of a run as the accepted ones and lists the changes.

@@ -11,8 +11,8 @@ pub(super) fn is_chosen(named: &[Source]) -> bool {
     named.is_empty() || named.contains(&Engine::published().into())
 }
 
-/// Its solution of `case` on so many cells across and along, or on as many as the case's shape asks for; `psi` as in
-/// [`Options`].
+/// Its solution of `case` on so many cells across and along, or on as many as the case's shape asks
+/// for; `psi` as in [`Options`].
 pub(super) fn solve(
     case: &Case,
     counts: Option<[usize; 2]>,

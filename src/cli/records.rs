@@ -23,8 +23,8 @@ impl Records {
         }
     }
 
-    /// The records of further codes for a case, or what is wrong with them: beside built-in records alone,
-    /// since a folder of one's own has one code's.
+    /// The records of further codes for a case, or what is wrong with them: beside built-in records
+    /// alone, since a folder of one's own has one code's.
     pub(super) fn further(&self, case: &Case) -> Vec<(Engine, Result<FemResults>)> {
         if self.0.is_some() {
             return Vec::new();

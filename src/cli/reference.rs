@@ -1,5 +1,5 @@
-//! The reference as Markdown: every key of a case, every option, every file and its columns, from the code that
-//! reads and writes them.
+//! The reference as Markdown: every key of a case, every option, every file and its columns, from
+//! the code that reads and writes them.
 
 use crate::base::Result;
 use crate::base::number::significant;
@@ -65,6 +65,8 @@ fn keys(text: &mut String) {
 fn given(key: &Key) -> &'static str {
     match (key.is_required(), key.is_of(Form::Load), key.is_of(Form::Factors)) {
         _ if key.table().ends_with(".profile") => "by kind",
+        _ if key.table() == "surface" => "with `[surface]`, but for .x3p",
+        _ if key.is_one_of_several() => "one of the two with `[load]`",
         (true, true, true) => "always",
         (true, true, false) => "with `[load]`",
         (true, false, _) => "with `[dimensionless]`",

@@ -20,8 +20,10 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    // A study that writes there meanwhile would mix its files with those that are read. A folder
+    // that is not there has no lock either.
+    let _lock = arguments.run.is_dir().then(|| Lock::claim(&arguments.run)).transpose()?;
     let files = StudyFiles::read(&arguments.run)?;
-    let _lock = Lock::claim(&arguments.run)?;
     page::write(&files, &arguments.run)?;
     print(&format!("wrote report.html, report.md and plots into {}\n", arguments.run.display()))?;
     Ok(Exit::Done)

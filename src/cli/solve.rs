@@ -4,7 +4,9 @@ use super::output::{Exit, print, print_json, say};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
-use super::values::{checked_residual, checked_tolerance, count, edge_model};
+use super::values::{
+    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine,
+};
 use crate::base::number::duration;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -25,16 +27,18 @@ use std::path::PathBuf;
 /// Solves one case with the semi-analytical method.
 ///
 /// Writes summary.json, pressure.csv (the contact pressure, one row per cell), line_load.csv (load
-/// per length and half-width along the contact), curves.csv (stresses on the standard curves of both
-/// bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg and .png
-/// (pressure, its map, stresses of both bodies) and summary.html, a page of one sheet about the case.
-/// With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281, steel's constant. With --uncertain, what uncertain inputs make of the results. Takes well under a second, with
-/// --uncertain that for each sample; with --field, or for a scene that is not symmetric, a few seconds.
+/// per length and half-width along the contact), curves.csv (stresses on the standard curves of
+/// both bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg
+/// and .png (pressure, its map, stresses of both bodies) and summary.html, a page of one sheet
+/// about the case. With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281,
+/// steel's constant. With --uncertain, what uncertain inputs make of the results. Takes well under
+/// a second, with --uncertain that for each sample; with --field, or for a scene that is not
+/// symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
-/// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums. For a rough
-/// surface also pressure_histogram.csv. With --loads load_gap.csv, with --layers layer-BODY-NUMBER.npy (numbers of cells,
-/// then xx, yy, zz, xy, xz, yz in Pa) and layers.json.
+/// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums.
+/// For a rough surface also pressure_histogram.csv. With --loads load_gap.csv, with --layers
+/// layer-BODY-NUMBER.npy (numbers of cells, then xx, yy, zz, xy, xz, yz in Pa) and layers.json.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a built-in case
@@ -43,14 +47,15 @@ pub(super) struct Arguments {
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
-    /// How the contact is discretised: modes across the line, or uniform cells (the published method); line by default,
-    /// cells for a case with a rough surface
+    /// How the contact is discretised: modes across the line, or uniform cells (the published
+    /// method); line by default, cells for a case with a rough surface
     #[arg(long, value_enum)]
     engine: Option<Engine>,
     /// Numbers of cells across and along the contact; by its shape if absent
     #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = count("cells", 4..=65536))]
     cells: Vec<usize>,
-    /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact area
+    /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact
+    /// area
     #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_negative_numbers = true)]
     loads: Vec<f64>,
     /// Also all stresses under every cell at these depths (m), on cells
@@ -81,7 +86,8 @@ pub(super) struct Arguments {
     /// residual, 1e-8 by default
     #[arg(long, allow_negative_numbers = true)]
     tolerance: Option<f64>,
-    /// Adds the stiffnesses, force by approach and moment by tilt, to summary.json: four more solutions
+    /// Adds the stiffnesses, force by approach and moment by tilt, to summary.json: four more
+    /// solutions
     #[arg(long)]
     stiffness: bool,
     /// Writes laminae.csv: the loads of N equal slices of the contact beside those of ISO/TS 16281
@@ -112,10 +118,7 @@ impl Arguments {
 }
 
 fn body() -> impl TypedValueParser<Value = BodyKind> {
-    PossibleValuesParser::new(BodyKind::ALL.map(BodyKind::name)).map(|name| {
-        let named = |body: &BodyKind| body.name() == name;
-        BodyKind::ALL.into_iter().find(named).expect("only these names pass")
-    })
+    one_of(&BodyKind::ALL, BodyKind::name)
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
@@ -136,6 +139,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
+    say_if_too_fine(&case);
     if !arguments.cells.is_empty() {
         return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
     }

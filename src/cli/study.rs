@@ -2,12 +2,12 @@
 
 use super::brought::{Brought, CurvesOf, curves_of};
 use super::fem_options::FemSource;
-use super::output::{Exit, print, print_json};
+use super::output::{Exit, print, print_json, say};
 use super::provenance::{command_line, now, processor};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::{Case, Study};
+use crate::case::{Case, Study, builtin_case};
 use crate::fem::FemResults;
 use crate::host::Lock;
 use crate::report::page;
@@ -15,6 +15,7 @@ use crate::report::study_files::StudyFiles;
 use crate::report::study_summary::FemOrigin;
 use crate::report::summarise::Context;
 use crate::solve::{Options, solve};
+use crate::stress::Curves;
 use crate::study::bench::{Bench, Machine, Speedup};
 use crate::study::brought::FileRun;
 use crate::study::gate::{self, Baseline, Gates};
@@ -30,16 +31,18 @@ use std::time::Instant;
 /// Writes study.csv (one row per case and source), curves.csv, pressure.csv, fem_error.csv,
 /// errors.csv (one row per case, model, curve and quantity), effects.csv, verification.csv,
 /// summary.json, plots/*.svg, report.html and report.md into the output folder; with --curves also
-/// brought.csv, brought_curves.csv and brought_pressure.csv (docs/compare.md). With recorded finite-element
-/// curves it takes about a minute, nearly all of it for timing and for the published method on cells
-/// (half as long with --repeats 0); with --fem live it takes minutes per case. `edgeline study profiled` runs
-/// five factors in 16 runs and a centre point, `edgeline study scenes` fourteen cases that slide, that have
-/// profiles, eccentric loads and offsets, or other materials; they take several times as long.
+/// brought.csv, brought_curves.csv and brought_pressure.csv (docs/compare.md). With recorded
+/// finite-element curves it takes about a minute, nearly all of it for timing and for the published
+/// method on cells (half as long with --repeats 0); with --fem live it takes minutes per case.
+/// `edgeline study profiled` runs five factors in 16 runs and a centre point, `edgeline study
+/// scenes` fourteen cases that slide, that have profiles, eccentric loads and offsets, or other
+/// materials; they take several times as long.
 #[derive(Args)]
 pub(super) struct Arguments {
     #[command(flatten)]
     study: StudyOptions,
-    /// Curves of a case from elsewhere (CSV as for `edgeline compare`), beside its references; may be repeated
+    /// Curves of a case from elsewhere (CSV as for `edgeline compare`), beside its references; may
+    /// be repeated
     #[arg(long, value_name = "CASE=FILE", value_parser = curves_of, value_hint = ValueHint::FilePath)]
     curves: Vec<CurvesOf>,
     /// Warm repetitions of each timing of a model; 0 for no timing
@@ -108,17 +111,24 @@ fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome
 /// Cases on record to which nothing was ever tuned.
 const HELD_BACK: [&str; 3] = ["validation-nu025", "validation-nu040", "validation-steel-aluminium"];
 
-/// The differences of quarter-space beside the numerical uncertainty of both sides: for the cases of the run, and in
-/// the built-in study for those held back.
+/// The differences of quarter-space beside the numerical uncertainty of both sides: for the cases
+/// of the run, and in the built-in study for those held back.
 fn verification(
     options: &StudyOptions,
     run: &StudyRun,
     brought: &[FileRun],
 ) -> Result<Vec<VerificationRow>> {
     let model = EdgeModel::QuarterSpace;
-    let refined = |case: &Case| {
-        let tighter = case.clone().with_tolerance(verification::refined_tolerance(case));
-        solve(&tighter, &Options::new(model)).map(|solution| solution.curves)
+    // Without it nothing is said of the differences; the run is complete all the same.
+    let refined = |case: &Case| -> Option<Curves> {
+        let tighter = case.clone().with_tolerance(verification::refined_tolerance(case)?);
+        match solve(&tighter, &Options::new(model)) {
+            Ok(solution) => Some(solution.curves),
+            Err(e) => {
+                say(&format!("note: {}, refined: {e}", case.name));
+                None
+            }
+        }
     };
     let mut all = Vec::new();
     for case in &run.cases {
@@ -127,7 +137,8 @@ fn verification(
             found.filter_map(|r| Some((r.engine.clone(), r.result.as_ref().ok()?))).collect();
         let own = case.methods.iter().find(|m| m.source == model.into());
         if let (Some(Ok(own)), false) = (own.map(|m| &m.result), references.is_empty()) {
-            let curves = (model.into(), &own.solution.curves, &refined(&case.case)?);
+            let refined = refined(&case.case);
+            let curves = (model.into(), &own.solution.curves, refined.as_ref());
             all.extend(verification::rows(&case.case, false, curves, &references));
         }
         let files = brought.iter().filter(|file| file.case == case.case.name);
@@ -136,17 +147,19 @@ fn verification(
     let built_in = options.is_default() && options.fem == FemSource::Recorded;
     let compared = all.iter().any(|row| row.source == model.into());
     for name in HELD_BACK.into_iter().filter(|_| built_in && compared) {
-        let case = Case::find(Path::new(name))?;
+        let case = builtin_case(name).expect("it is built in")?;
         let Some(record) = FemResults::embedded_of(&case)? else { continue };
         let (reference, own) = (from_fem(&record), solve(&case, &Options::new(model))?);
-        let curves = (model.into(), &own.curves, &refined(&case)?);
+        let refined = refined(&case);
+        let curves = (model.into(), &own.curves, refined.as_ref());
         let references = [(Engine::fenicsx(), &reference)];
         all.extend(verification::rows(&case, true, curves, &references));
     }
     Ok(all)
 }
 
-/// Ratios of the FEM time to the model's time and to the published method's, if a record has them from one run.
+/// Ratios of the FEM time to the model's time and to the published method's, if a record has them
+/// from one run.
 fn speedups(options: &StudyOptions, study: &Study) -> Result<[Vec<Speedup>; 2]> {
     match options.fem {
         FemSource::Recorded => {

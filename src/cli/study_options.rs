@@ -101,8 +101,8 @@ impl StudyOptions {
         Beside::new(case, &chosen_models(&self.methods), self.psi, &self.range())
     }
 
-    /// Runs `study` by the chosen models, by the `usual` ones if none was chosen, with live FEM in folders
-    /// below the one for the results.
+    /// Runs `study` by the chosen models, by the `usual` ones if none was chosen, with live FEM in
+    /// folders below the one for the results.
     ///
     /// `with_cells` tells whether the published method on cells may take part.
     pub(super) fn run(

@@ -5,7 +5,7 @@ use super::progress::progress_bar;
 use super::values::{checked_tolerance, edge_model};
 use crate::base::Result;
 use crate::body::EdgeModel;
-use crate::case::{Case, Sweep};
+use crate::case::{Draft, Sweep};
 use crate::host::prepare_folder;
 use crate::report::sweep::{Label, SweepFile};
 use crate::report::sweep_target::Target;
@@ -29,7 +29,8 @@ pub(super) struct Arguments {
     /// each parameter (CSV)
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
-    /// The file of the results, CSV or, if its name ends in .parquet, Parquet; existing rows are kept
+    /// The file of the results, CSV or, if its name ends in .parquet, Parquet; existing rows are
+    /// kept
     #[arg(long, value_name = "FILE", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
     out: PathBuf,
     /// A case file or built-in case for the values that a table has no column for
@@ -54,7 +55,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
-    let base = arguments.base.as_deref().map(Case::find).transpose()?;
+    let base = arguments.base.as_deref().map(Draft::find).transpose()?;
     let sweep = Sweep::read(&arguments.file, base.as_ref())?;
     let settings = Settings {
         method: arguments.method,
@@ -106,6 +107,10 @@ impl Rows<Vec<String>> for Shown {
         let there = self.file.has(row, cells)?;
         self.bar.inc(u64::from(there));
         Ok(there)
+    }
+
+    fn check(&mut self, row: usize, outcome: &Outcome) -> Result<()> {
+        self.file.check(row, outcome)
     }
 
     fn add(&mut self, row: usize, cells: &Vec<String>, outcome: &Outcome) -> Result<()> {

@@ -1,6 +1,6 @@
 //! Options of uncertain inputs.
 
-use crate::base::Result;
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::report::uncertainty;
@@ -11,8 +11,8 @@ use clap::Args;
 /// Uncertain numbers of a case, and how they are sampled.
 #[derive(Args)]
 pub(super) struct UncertainOptions {
-    /// A number of the case and its standard deviation, as load_n=5% or roller.radius_m=1e-5; may be given
-    /// several times. Writes uncertainty.csv and .json and plot-uncertainty.svg
+    /// A number of the case and its standard deviation, as load_n=5% or roller.radius_m=1e-5; may
+    /// be given several times. Writes uncertainty.csv and .json and plot-uncertainty.svg
     #[arg(long, value_name = "KEY=DEVIATION")]
     uncertain: Vec<String>,
     /// Samples of the Latin hypercube
@@ -32,9 +32,22 @@ impl UncertainOptions {
     /// The uncertain numbers of `case`.
     ///
     /// # Errors
-    /// As [`Input::parse`].
+    /// As [`Input::parse`]; [`Error::Value`] for a number that is given twice.
     pub(super) fn inputs(&self, case: &Case) -> Result<Vec<Input>> {
-        self.uncertain.iter().map(|text| Input::parse(text, case)).collect()
+        let mut all: Vec<Input> = Vec::new();
+        for text in &self.uncertain {
+            let input = Input::parse(text, case)?;
+            if all.iter().any(|known| known.key == input.key) {
+                return Err(Error::Value {
+                    key: "--uncertain".into(),
+                    value: text.clone(),
+                    reason: format!("{} is uncertain already", input.key.path),
+                    remedy: "give one standard deviation for each number".into(),
+                });
+            }
+            all.push(input);
+        }
+        Ok(all)
     }
 
     /// The files of the spreads of a solution with these `curves`; none without an uncertain input.

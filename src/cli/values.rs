@@ -1,18 +1,28 @@
 //! Values of options that several subcommands share.
 
+use super::output::say;
 use crate::base::{Error, Result};
-use crate::body::EdgeModel;
-use crate::case::Key;
+use crate::body::{EdgeModel, Resolution};
+use crate::case::{Case, Key};
 use crate::study::{Engine, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::ops::RangeInclusive;
 
+/// Parses the name of one of `all`.
+pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
+    all: &'static [T],
+    name_of: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    let names = all.iter().map(move |value| name_of(*value));
+    PossibleValuesParser::new(names).map(move |name| {
+        let named = |value: &&T| name_of(**value) == name;
+        *all.iter().find(named).expect("only these names pass")
+    })
+}
+
 /// Parses the name of an edge model.
 pub(super) fn edge_model() -> impl TypedValueParser<Value = EdgeModel> {
-    PossibleValuesParser::new(EdgeModel::ALL.map(EdgeModel::name)).map(|name| {
-        let named = |model: &EdgeModel| model.name() == name;
-        EdgeModel::ALL.into_iter().find(named).expect("only these names pass")
-    })
+    one_of(&EdgeModel::ALL, EdgeModel::name)
 }
 
 /// Parses the name of an edge model or of the published method on cells.
@@ -52,6 +62,16 @@ const RESIDUALS: (f64, f64) = (1e-12, 1e-2);
 pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
     let range = Key::find("accuracy.tolerance").expect("a key of the list").range;
     checked(tolerance, range, "a fraction of p0", "1e-3")
+}
+
+/// Says so where a case asks for more than the finest resolution of the engine along a line.
+pub fn say_if_too_fine(case: &Case) {
+    let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
+    if asked < finest {
+        say(&format!(
+            "note: the finest resolution is that of a tolerance of {finest:e}, which {asked:e} takes, too"
+        ));
+    }
 }
 
 /// The relative residual if it is within its legal range.

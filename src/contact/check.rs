@@ -72,8 +72,8 @@ fn near_end(problem: &Problem, solution: &ContactSolution, y: f64) -> bool {
 }
 
 /// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes along the line, at the distances
-/// `places` from x = 0 in half-widths of each node: a row of all nodes for each place. A node without
-/// pressure has the half-width interpolated from its neighbours.
+/// `places` from x = 0 in half-widths of each node: a row of all nodes for each place. A node
+/// without pressure has the half-width interpolated from its neighbours.
 pub fn gaps(problem: &Problem, solution: &ContactSolution, places: &[f64]) -> Vec<Vec<f64>> {
     let operator = LineOperator::new(problem.compliance, problem.axis, 0.0);
     gaps_of(&operator, problem, solution, places)

@@ -37,8 +37,8 @@ impl Shaped {
         self.profiles.iter().filter_map(of).flatten().collect()
     }
 
-    /// The length (C) within which the gap's slope along y grows by e towards the place `y`, from the side on which `inward`
-    /// points; infinite where it does not grow.
+    /// The length (C) within which the gap's slope along y grows by e towards the place `y`, from
+    /// the side on which `inward` points; infinite where it does not grow.
     pub fn turns_within(&self, y: f64, inward: f64) -> f64 {
         let slope = |y: f64| -> f64 {
             self.profiles.iter().map(|(middle, profile)| profile.slope(y - middle)).sum::<f64>()
@@ -60,7 +60,8 @@ impl Gap for Shaped {
 mod tests {
     use super::*;
 
-    /// ln(1 / (1 - k t^2)) has the slope 2 k t / (1 - k t^2): near t = 1 it grows by e within (1 - k) / (2 k).
+    /// ln(1 / (1 - k t^2)) has the slope 2 k t / (1 - k t^2): near t = 1 it grows by e within (1 -
+    /// k) / (2 k).
     #[test]
     fn a_gap_turns_within_the_length_of_its_profiles_end() {
         let profile = |k| Profile::Logarithm { amplitude: 1.0, k, start: 0.0, span: 50.0 };

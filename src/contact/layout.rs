@@ -24,24 +24,24 @@ const LEAST: usize = 2;
 /// amplitude scales.
 const STEEPEST: f64 = 10.0;
 
-/// Power of the distance from the contact's end in which the half-width is interpolated: it steepens towards
-/// an end where the pressure changes by s^-m or by s ln s.
+/// Power of the distance from the contact's end in which the half-width is interpolated: it
+/// steepens towards an end where the pressure changes by s^-m or by s ln s.
 const STEEPENING: f64 = 0.6;
 
 /// The unknowns of each node. Free nodes have all modes and the singular one, whose amplitude
 /// determines the change of their half-width. Next to the end of the line the nodes are closer than
-/// the shortest wave, and independent half-widths would be noise. They are interpolated
-/// from those of the free nodes, at least `spacing` apart, in the [`STEEPENING`] power of the distance from the end. A node beyond the last free one whose
-/// pressure would be tensile loses modes, the higher ones first; with none left it carries no
-/// pressure.
+/// the shortest wave, and independent half-widths would be noise. They are interpolated from those
+/// of the free nodes, at least `spacing` apart, in the [`STEEPENING`] power of the distance from
+/// the end. A node beyond the last free one whose pressure would be tensile loses modes, the higher
+/// ones first; with none left it carries no pressure.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     /// The free nodes, ascending.
     pub free: Vec<usize>,
     /// The half-width of each node from those of the free nodes: positions in `free`, and shares.
     pub shares: Vec<[(usize, f64); 2]>,
-    /// Whether the contact narrows to a tip towards the end next to each node: it is the square of the
-    /// half-width that is interpolated then.
+    /// Whether the contact narrows to a tip towards the end next to each node: it is the square of
+    /// the half-width that is interpolated then.
     pub narrows: Vec<bool>,
     /// Modes of each node.
     pub counts: Vec<usize>,
@@ -49,8 +49,8 @@ pub(super) struct Layout {
     starts: Vec<usize>,
 }
 
-/// The free nodes of those in `contact`, ascending: from each end towards the middle, so that mirror
-/// images of a contact have mirror images of them.
+/// The free nodes of those in `contact`, ascending: from each end towards the middle, so that
+/// mirror images of a contact have mirror images of them.
 fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<usize> {
     let nodes = problem.axis.nodes();
     // Where the contact ends before the bodies do, it narrows to a tip.
@@ -90,7 +90,8 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
     if free.is_empty() { vec![middle] } else { free }
 }
 
-/// The [`STEEPENING`] power of the distance from the nearer end, as a coordinate that ascends with y.
+/// The [`STEEPENING`] power of the distance from the nearer end, as a coordinate that ascends with
+/// y.
 fn steepening(problem: &Problem, y: f64) -> f64 {
     let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
     let half = if problem.both_ends { 0.5 * (to - from) } else { to - from };
@@ -112,7 +113,8 @@ fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
 }
 
 impl Layout {
-    /// All modes at the nodes that are in `contact`, at most `tail_modes` behind the last free one, none at the others.
+    /// All modes at the nodes that are in `contact`, at most `tail_modes` behind the last free one,
+    /// none at the others.
     pub fn new(
         problem: &Problem,
         settings: &ContactSettings,
@@ -173,8 +175,8 @@ impl Layout {
         self.starts.push(next);
     }
 
-    /// The nodes in `contact` without those towards an end that carry no load: from the outermost free
-    /// nodes inwards those whose pressure, with its singular mode, sums to tension.
+    /// The nodes in `contact` without those towards an end that carry no load: from the outermost
+    /// free nodes inwards those whose pressure, with its singular mode, sums to tension.
     pub fn shrunk(
         &self,
         problem: &Problem,

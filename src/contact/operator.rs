@@ -159,8 +159,8 @@ impl Remainders {
     }
 }
 
-/// Interpolates up to [`SIDE`] functions from their values at the coarse wavenumbers: all fine values of the first one,
-/// then those of the next.
+/// Interpolates up to [`SIDE`] functions from their values at the coarse wavenumbers: all fine
+/// values of the first one, then those of the next.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn interpolate(coarse: &[[f64; SIDE]], shares: &[(usize, &[f64])], fine: &mut [f64]) {
     let all = shares.len();

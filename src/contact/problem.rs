@@ -5,8 +5,8 @@ use super::operator::Compliance;
 use super::slices::Slices;
 use crate::base::Panels;
 
-/// What is known of the bodies' tilt, in units of C / (2 R), and of the load's moment, the integral of y p in units
-/// of C^3 p0.
+/// What is known of the bodies' tilt, in units of C / (2 R), and of the load's moment, the integral
+/// of y p in units of C^3 p0.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Rotation {
     /// The bodies are held at this tilt.
@@ -29,8 +29,8 @@ pub struct Problem<'a> {
     pub compliance: &'a Compliance<'a>,
     /// Axis along the contact.
     pub axis: &'a Panels,
-    /// Whether the axis begins at the contact's other end; else it begins in a plane of symmetry, and
-    /// holds one half of the contact.
+    /// Whether the axis begins at the contact's other end; else it begins in a plane of symmetry,
+    /// and holds one half of the contact.
     pub both_ends: bool,
     /// The gap between the bodies before they are loaded.
     pub gap: &'a dyn Gap,
@@ -50,8 +50,8 @@ pub struct Problem<'a> {
 pub(super) struct Motion {
     /// Displacement of a node at y.
     pub displacement: fn(f64) -> f64,
-    /// Its equation: `share` times the integral of the pressure times this displacement, and `own` times the motion
-    /// itself, sum to `resultant`.
+    /// Its equation: `share` times the integral of the pressure times this displacement, and `own`
+    /// times the motion itself, sum to `resultant`.
     pub share: f64,
     pub own: f64,
     pub resultant: f64,

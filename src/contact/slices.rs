@@ -1,5 +1,5 @@
-//! A first guess of the contact: every slice across the line is in contact by itself, or what is known of a contact
-//! that is solved.
+//! A first guess of the contact: every slice across the line is in contact by itself, or what is
+//! known of a contact that is solved.
 
 use super::gap::Gap;
 use super::solution::ContactSolution;
@@ -26,12 +26,13 @@ pub struct Slices {
 }
 
 impl Slices {
-    /// The contact on the overlap of the bodies, from end to end, under `load`; with its `moment` if the
-    /// tilt is free, otherwise with the held `tilt`.
+    /// The contact on the overlap of the bodies, from end to end, under `load`; with its `moment`
+    /// if the tilt is free, otherwise with the held `tilt`.
     ///
-    /// The half-width a of a slice at which the bodies would overlap by d follows a^2 = d / L. A line of
-    /// the half-length l under a uniform load has L = ln(4 l) + 1/2 (Johnson, Contact Mechanics, 1985,
-    /// section 5.6); a load that varies over that length itself has about half of it.
+    /// The half-width a of a slice at which the bodies would overlap by d follows a^2 = d / L. A
+    /// line of the half-length l under a uniform load has L = ln(4 l) + 1/2 (Johnson, Contact
+    /// Mechanics, 1985, section 5.6); a load that varies over that length itself has about half of
+    /// it.
     pub fn new(
         gap: &dyn Gap,
         overlap: [f64; 2],

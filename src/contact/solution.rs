@@ -28,8 +28,8 @@ pub struct ContactSolution {
 }
 
 impl ContactSolution {
-    /// The same solution in units of length and of pressure that are 1 / `factor` of the present ones;
-    /// displacements are in units of C^2 / (2 R).
+    /// The same solution in units of length and of pressure that are 1 / `factor` of the present
+    /// ones; displacements are in units of C^2 / (2 R).
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();

@@ -20,9 +20,9 @@ const NEGLIGIBLE: f64 = 0.1;
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
-/// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse. Higher modes,
-/// which describe the pressure's inside, may cancel the slope of the first one for an iteration, and the
-/// half-width would run away.
+/// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse. Higher
+/// modes, which describe the pressure's inside, may cancel the slope of the first one for an
+/// iteration, and the half-width would run away.
 const STEEPER: f64 = 1.3;
 
 /// Amplitude of the edge singularity (p0) from which on tensile nodes are released.
@@ -32,8 +32,9 @@ const NEAR: f64 = 1e-3;
 const NARROWEST: f64 = 0.05;
 const TIP: f64 = 1e-3;
 
-/// Modes of the last attempt behind the last free node: there the half-widths follow those of the free nodes, and with
-/// many modes the pressures of a contact that hardly reaches its end turn tensile one after the other.
+/// Modes of the last attempt behind the last free node: there the half-widths follow those of the
+/// free nodes, and with many modes the pressures of a contact that hardly reaches its end turn
+/// tensile one after the other.
 const FEW_TAIL_MODES: usize = 3;
 
 /// Solves for the pressure that carries the problem's load.
@@ -216,8 +217,9 @@ fn carrying(
     }
 }
 
-/// Where the contact ends: at the axis's ends, or, where the bodies go on, where the square of the half-width,
-/// continued from the last three free nodes, is zero; far beyond the axis if it does not fall.
+/// Where the contact ends: at the axis's ends, or, where the bodies go on, where the square of the
+/// half-width, continued from the last three free nodes, is zero; far beyond the axis if it does
+/// not fall.
 fn ends(
     problem: &Problem,
     layout: &Layout,

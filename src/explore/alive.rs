@@ -1,5 +1,5 @@
-//! Pages that are open: each holds one answer that never ends. When the last one has gone, so does the
-//! explorer.
+//! Pages that are open: each holds one answer that never ends. When the last one has gone, so does
+//! the explorer.
 
 use hyper::body::{Body, Bytes, Frame};
 use std::convert::Infallible;

@@ -9,15 +9,16 @@ use crate::stress::{Quantity, StressCurve};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The curves in the planes of symmetry along the contact and into the bodies, which suffice while a slider
-/// moves.
+/// The curves in the planes of symmetry along the contact and into the bodies, which suffice while
+/// a slider moves.
 const FEW: [&str; 6] =
     ["surface-along-y", "along-y-0.5C", "along-y-0.78C", "depth-centre", "depth-0.9", "depth-end"];
 
 /// Points of a profile's line.
 const PROFILE_POINTS: usize = 81;
 
-/// A case and its solution. Fields of the drawing have seven digits, which is more than a screen shows.
+/// A case and its solution. Fields of the drawing have seven digits, which is more than a screen
+/// shows.
 #[derive(Serialize)]
 struct Answer {
     case: CaseAnswer,
@@ -64,7 +65,8 @@ struct Line {
 
 #[derive(Serialize)]
 struct Map {
-    /// Width of the cells (m); the first of a row lies in the middle, and the row is its own mirror image.
+    /// Width of the cells (m); the first of a row lies in the middle, and the row is its own mirror
+    /// image.
     dx_m: f64,
     y_m: Vec<f32>,
     dy_m: Vec<f32>,
@@ -90,8 +92,8 @@ struct Curve {
     stress_pa: BTreeMap<&'static str, Vec<f32>>,
 }
 
-/// Solves `case` and writes the answer. With a tolerance `coarser`, the case's own is at least that, and there are
-/// only the curves of [`FEW`].
+/// Solves `case` and writes the answer. With a tolerance `coarser`, the case's own is at least
+/// that, and there are only the curves of [`FEW`].
 ///
 /// # Errors
 /// As [`SolvedCase::new`].

@@ -6,12 +6,12 @@ use serde_json::Value as Json;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Texts that a request may give as it likes; any other one must be that of the case that the explorer was
-/// started with, so that a page cannot make the program open a file.
+/// Texts that a request may give as it likes; any other one must be that of the case that the
+/// explorer was started with, so that a page cannot make the program open a file.
 const FREE_TEXTS: [&str; 3] = ["name", "roller.profile.kind", "block.profile.kind"];
 
-/// Reads the case of a request, in JSON if `is_json`, otherwise in TOML. `own` is the case that the explorer
-/// was started with.
+/// Reads the case of a request, in JSON if `is_json`, otherwise in TOML. `own` is the case that the
+/// explorer was started with.
 ///
 /// # Errors
 /// The messages of the command line, [`Error::Value`] and [`Error::File`].

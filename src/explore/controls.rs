@@ -1,5 +1,6 @@
-//! What the page needs to make its fields: every key of a case with its meaning and range, the profiles, the
-//! models and the built-in cases. A key that is added to a case has its field without a further word here.
+//! What the page needs to make its fields: every key of a case with its meaning and range, the
+//! profiles, the models and the built-in cases. A key that is added to a case has its field without
+//! a further word here.
 
 use super::answer::described;
 use super::files::FILES;
@@ -57,8 +58,8 @@ fn key(key: &Key) -> Value {
     })
 }
 
-/// The range of a key's slider, and its scale: logarithmic where the legal range spans decades; of either sign
-/// beyond a gap about zero where values are; and otherwise even, about zero.
+/// The range of a key's slider, and its scale: logarithmic where the legal range spans decades; of
+/// either sign beyond a gap about zero where values are; and otherwise even, about zero.
 fn slider(key: &Key, example: f64) -> Value {
     let (low, high) = key.range;
     let near = |scale: &str, size: f64| json!({ "scale": scale, "low": (size / REACH).max(low), "high": (size * REACH).min(high) });

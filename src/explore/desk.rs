@@ -1,5 +1,5 @@
-//! Where solves wait: one thread works on them, one at a time, each on all cores. A request of a page
-//! replaces its older ones, and what nobody waits for is stopped.
+//! Where solves wait: one thread works on them, one at a time, each on all cores. A request of a
+//! page replaces its older ones, and what nobody waits for is stopped.
 
 use crate::base::Result;
 use crate::base::stop::stoppable;

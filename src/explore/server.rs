@@ -1,8 +1,8 @@
 //! The server of the explorer: who is answered, and what.
 //!
-//! It listens on the loopback interface alone. Every path begins with a secret word, so that no other program
-//! or page can guess one; requests to another host's name (DNS rebinding) or from another origin are refused.
-//! Sizes, rates, connections and times are limited. It writes no file.
+//! It listens on the loopback interface alone. Every path begins with a secret word, so that no
+//! other program or page can guess one; requests to another host's name (DNS rebinding) or from
+//! another origin are refused. Sizes, rates, connections and times are limited. It writes no file.
 
 use super::alive::{Alive, Pages};
 use super::answer::solved;
@@ -51,8 +51,8 @@ const STYLE: &str = include_str!("page.css");
 const SCRIPT: &str = include_str!("page.js");
 const CHARTS: &str = include_str!("charts.js");
 
-/// What every answer says to the browser: no other source of anything, no frame, no sniffing, no cache, no
-/// word about the link to others.
+/// What every answer says to the browser: no other source of anything, no frame, no sniffing, no
+/// cache, no word about the link to others.
 const HEADERS: [(&str, &str); 7] = [
     (
         "content-security-policy",
@@ -328,8 +328,8 @@ fn refused(refusal: Refusal) -> Answer {
     }
 }
 
-/// The answer to a well-formed request whose case has no solution. To HTTP it is a success: a browser would put
-/// anything else on its console as an error of the page.
+/// The answer to a well-formed request whose case has no solution. To HTTP it is a success: a
+/// browser would put anything else on its console as an error of the page.
 fn without_solution(reason: &'static str, message: &str) -> Answer {
     let mut answer = whole("application/json", serde_json::json!({ "error": message }).to_string());
     answer.headers_mut().insert(REFUSED, HeaderValue::from_static(reason));

@@ -17,9 +17,10 @@ pub struct Ball<const N: usize> {
 
 /// The smallest ball around `points`; one of radius zero at the origin if there are none.
 ///
-/// At most N + 1 points hold it. While a point lies outside, the farthest one joins those that hold the ball, and the
-/// smallest ball around these few takes its place (Gaertner, Fast and robust smallest enclosing balls, ESA 1999). It is larger
-/// each time, so the search ends. Points along a smooth curve are nearly dependent, which no step here divides by.
+/// At most N + 1 points hold it. While a point lies outside, the farthest one joins those that hold
+/// the ball, and the smallest ball around these few takes its place (Gaertner, Fast and robust
+/// smallest enclosing balls, ESA 1999). It is larger each time, so the search ends. Points along a
+/// smooth curve are nearly dependent, which no step here divides by.
 pub fn smallest_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
     let Some(first) = points.first() else { return Ball { centre: [0.0; N], radius: 0.0 } };
     let mut centre = *first;
@@ -40,8 +41,9 @@ pub fn smallest_ball<const N: usize>(points: &[[f64; N]]) -> Ball<N> {
     }
 }
 
-/// The smallest ball around the points that are `holding` another one and a point outside that, and those of them that hold
-/// it, the one outside among them: of the balls that some hold, the one whose centre has the nearest farthest point.
+/// The smallest ball around the points that are `holding` another one and a point outside that, and
+/// those of them that hold it, the one outside among them: of the balls that some hold, the one
+/// whose centre has the nearest farthest point.
 fn around<const N: usize>(holding: &[[f64; N]], outside: &[f64; N]) -> (Ball<N>, Vec<[f64; N]>) {
     let all: Vec<[f64; N]> = holding.iter().chain([outside]).copied().collect();
     let mut best = (f64::INFINITY, *outside, 0);
@@ -62,10 +64,11 @@ fn of<const N: usize>(points: &[[f64; N]], chosen: u32) -> impl Iterator<Item = 
     points.iter().enumerate().filter(move |(i, _)| chosen >> i & 1 == 1).map(|(_, point)| point)
 }
 
-/// The place at equal distances from `base` and `others` in their affine hull; none if one of them depends on those before it.
+/// The place at equal distances from `base` and `others` in their affine hull; none if one of them
+/// depends on those before it.
 ///
-/// With an orthonormal basis of the edges from `base`, made one after the other, an edge of length l puts the centre at
-/// l^2 / 2 along itself, which gives its coordinates in turn.
+/// With an orthonormal basis of the edges from `base`, made one after the other, an edge of length
+/// l puts the centre at l^2 / 2 along itself, which gives its coordinates in turn.
 fn circumcentre<'a, const N: usize>(
     base: &[f64; N],
     others: impl Iterator<Item = &'a [f64; N]>,
@@ -75,7 +78,8 @@ fn circumcentre<'a, const N: usize>(
     for other in others {
         let edge = minus(other, base);
         let mut own = edge;
-        // Twice: what one pass leaves of the others is rounding of the edge, not of what is left of it.
+        // Twice: what one pass leaves of the others is rounding of the edge, not of what is left of
+        // it.
         for _ in 0..2 {
             for direction in &basis {
                 let part = dot(&own, direction);
@@ -118,8 +122,9 @@ mod tests {
     use proptest::prelude::RngCore;
     use proptest::test_runner::{RngAlgorithm, TestRng};
 
-    /// The stresses of a passage lie on a smooth curve, close to each other. The largest distance from a place is convex in
-    /// it: where no small step in any direction lessens it, it is the least.
+    /// The stresses of a passage lie on a smooth curve, close to each other. The largest distance
+    /// from a place is convex in it: where no small step in any direction lessens it, it is the
+    /// least.
     #[test]
     fn balls_of_smooth_curves_are_the_smallest() {
         let mut source = TestRng::deterministic_rng(RngAlgorithm::ChaCha);

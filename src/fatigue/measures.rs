@@ -1,5 +1,5 @@
-//! Measures of fatigue on a history: the stresses of one material point, in the order of time. All are in the
-//! unit of the stresses.
+//! Measures of fatigue on a history: the stresses of one material point, in the order of time. All
+//! are in the unit of the stresses.
 
 use super::ball::smallest_ball;
 use crate::base::StressTensor;
@@ -50,8 +50,8 @@ pub struct Measures {
 }
 
 impl Measures {
-    /// The measures of a `history` of at least one stress. The residual stress is added to it for the largest shear and
-    /// von Mises stress too.
+    /// The measures of a `history` of at least one stress. The residual stress is added to it for
+    /// the largest shear and von Mises stress too.
     pub fn of(history: &[StressTensor], parameters: &Parameters) -> Self {
         let Parameters { alpha, fatemi_socie: strain, residual } = *parameters;
         let whole: Vec<StressTensor> = history.iter().map(|s| *s + residual).collect();
@@ -85,10 +85,11 @@ pub fn shear_range(history: &[StressTensor]) -> f64 {
     high - low
 }
 
-/// Dang Van's measure: the largest tau_a(t) + `alpha` sigma_H(t), both at the same instant. sigma_H is the mean
-/// normal stress, tau_a the largest shear stress of the deviator less its mean in the history, the centre of the
-/// smallest ball around the deviators (Dang Van, Griveau and Message, in Biaxial and Multiaxial Fatigue, EGF 3,
-/// 1989; Dang Van, ASTM STP 1191, 1993). The ball is that of elastic shakedown.
+/// Dang Van's measure: the largest tau_a(t) + `alpha` sigma_H(t), both at the same instant. sigma_H
+/// is the mean normal stress, tau_a the largest shear stress of the deviator less its mean in the
+/// history, the centre of the smallest ball around the deviators (Dang Van, Griveau and Message, in
+/// Biaxial and Multiaxial Fatigue, EGF 3, 1989; Dang Van, ASTM STP 1191, 1993). The ball is that of
+/// elastic shakedown.
 pub fn dang_van(history: &[StressTensor], alpha: f64) -> Extreme {
     let deviators: Vec<[f64; 5]> = history.iter().map(deviator).collect();
     let centre = tensor(&smallest_ball(&deviators).centre);
@@ -128,14 +129,15 @@ fn tensor(&[a, b, c, d, e]: &[f64; 5]) -> StressTensor {
 const FIRST_ANGLE: f64 = PI / 18.0;
 const LAST_ANGLE: f64 = PI / 720.0;
 
-/// Fatemi and Socie's measure: the largest (dgamma / 2) (1 + `factor` sigma_n,max) over all planes (Fatigue and
-/// Fracture of Engineering Materials and Structures 11, 149, 1988). The amplitude of the shear strain is the
-/// radius of the smallest circle around the path of the shear stress in the plane over the shear `modulus`
-/// (Papadopoulos, Fatigue and Fracture of Engineering Materials and Structures 21, 269, 1998), sigma_n,max the largest
-/// normal stress, of which pressure does not heal: none counts below -1 / `factor`.
+/// Fatemi and Socie's measure: the largest (dgamma / 2) (1 + `factor` sigma_n,max) over all planes
+/// (Fatigue and Fracture of Engineering Materials and Structures 11, 149, 1988). The amplitude of
+/// the shear strain is the radius of the smallest circle around the path of the shear stress in the
+/// plane over the shear `modulus` (Papadopoulos, Fatigue and Fracture of Engineering Materials and
+/// Structures 21, 269, 1998), sigma_n,max the largest normal stress, of which pressure does not
+/// heal: none counts below -1 / `factor`.
 ///
-/// Planes are searched over half of the sphere, 10 degrees apart, and then around the best one until it stays
-/// within a quarter of a degree.
+/// Planes are searched over half of the sphere, 10 degrees apart, and then around the best one
+/// until it stays within a quarter of a degree.
 pub fn fatemi_socie(history: &[StressTensor], factor: f64, modulus: f64) -> Plane {
     let on = |[polar, around]: [f64; 2]| {
         let (sin, cos) = polar.sin_cos();
@@ -171,8 +173,8 @@ pub fn fatemi_socie(history: &[StressTensor], factor: f64, modulus: f64) -> Plan
     Plane { normal: [side * x, side * y, side * z], ..best.1 }
 }
 
-/// Amplitude of the shear stress and largest normal stress on the plane with a normal at the angles `polar`
-/// from z and `around` it from x.
+/// Amplitude of the shear stress and largest normal stress on the plane with a normal at the angles
+/// `polar` from z and `around` it from x.
 fn on_plane(history: &[StressTensor], polar: f64, around: f64) -> (f64, f64) {
     let ((s, c), (sa, ca)) = (polar.sin_cos(), around.sin_cos());
     let (normal, down, aside) = ([s * ca, s * sa, c], [c * ca, c * sa, -s], [-sa, ca, 0.0]);
@@ -225,8 +227,8 @@ mod tests {
         *s - StressTensor { xx: mean, yy: mean, zz: mean, ..Default::default() }
     }
 
-    /// Dang Van's measure from its definition: of all balls through up to six deviators, with their centre in
-    /// these deviators' hull, the smallest one that contains the others.
+    /// Dang Van's measure from its definition: of all balls through up to six deviators, with their
+    /// centre in these deviators' hull, the smallest one that contains the others.
     fn by_brute_force(history: &[StressTensor], alpha: f64) -> f64 {
         let all: Vec<StressTensor> = history.iter().map(whole_deviator).collect();
         let mut best = (f64::INFINITY, StressTensor::default());
@@ -307,7 +309,8 @@ mod tests {
 
     #[test]
     fn fatemi_and_socie_find_the_plane_of_largest_shear() {
-        // Fully reversed shear in planes of z, under a tension on one of the two kinds of planes of largest shear.
+        // Fully reversed shear in planes of z, under a tension on one of the two kinds of planes of
+        // largest shear.
         let shear = |xz: f64| StressTensor { xz, xx: 0.5, ..Default::default() };
         let history: Vec<_> =
             (0..40).map(|i| shear((2.0 * PI * f64::from(i) / 40.0).sin())).collect();

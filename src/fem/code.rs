@@ -83,12 +83,8 @@ impl Code {
                 remedy,
             );
         }
-        if let Some(surface) = &case.surface {
-            let value = format!("{:?}", surface.heights.display());
-            let reason = "finite elements take smooth surfaces only";
-            let remedy = "remove [surface], or solve the case with `edgeline solve`";
-            return refuse("surface.heights", value, reason, remedy);
-        }
+        let remedy = "remove [surface], or solve the case with `edgeline solve`";
+        case.check_smooth("finite elements take smooth surfaces only", remedy)?;
         if self == Code::Fenicsx {
             return Ok(());
         }

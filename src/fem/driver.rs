@@ -32,6 +32,8 @@ const UNKNOWNS_OF_SIZE_1: f64 = 200e3;
 pub struct Driver {
     settings: FemSettings,
     interpreter: Interpreter,
+    /// What gmsh and CalculiX say of their versions.
+    versions: Vec<String>,
 }
 
 impl Driver {
@@ -41,10 +43,13 @@ impl Driver {
     /// [`Error::Missing`] if gmsh, a suitable interpreter or, for several ranks, mpirun is missing;
     /// [`Error::Value`] if a setting is not legal.
     pub fn new(settings: FemSettings) -> Result<Self> {
-        if settings.code == Code::Calculix {
-            tools::require_ccx(&settings.ccx)?;
-        }
-        Self::without_solver(settings)
+        let ccx = match settings.code {
+            Code::Calculix => Some(tools::require_ccx(&settings.ccx)?),
+            Code::Fenicsx => None,
+        };
+        let mut driver = Self::without_solver(settings)?;
+        driver.versions.extend(ccx);
+        Ok(driver)
     }
 
     /// The same for decks, which are written and not solved.
@@ -83,12 +88,12 @@ impl Driver {
                 return refuse(key, program.display().to_string(), reason, remedy);
             }
         }
-        tools::require(&settings.gmsh, "--gmsh")?;
+        let versions = vec![tools::require(&settings.gmsh, "--gmsh")?];
         if settings.ranks > 1 {
             tools::require(Path::new("mpirun"), "the PATH")?;
         }
         let interpreter = tools::find_interpreter(settings.python.as_deref(), settings.code)?;
-        Ok(Self { settings, interpreter })
+        Ok(Self { settings, interpreter, versions })
     }
 
     /// The interpreter that runs the model.
@@ -99,13 +104,14 @@ impl Driver {
     /// Solves `case` in `folder`, or takes the result from there if the same request has been
     /// solved before. `progress` receives messages on the state of the run.
     ///
-    /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `request.json`, `fem.json` and the log of each stage. On
-    /// failure all files that help to find the cause are kept.
+    /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `request.json`, `fem.json` and the log of
+    /// each stage. On failure all files that help to find the cause are kept.
     ///
     /// # Errors
-    /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run uses
-    /// the folder, [`Error::Child`] when a stage fails or takes too long, [`Error::File`] when its output is invalid, [`Error::Interrupted`] when this
-    /// process was asked to stop, [`Error::Io`] when a file cannot be written.
+    /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run
+    /// uses the folder, [`Error::Child`] when a stage fails or takes too long, [`Error::File`] when
+    /// its output is invalid or the folder has a `work` of somebody else, [`Error::Interrupted`]
+    /// when this process was asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         self.settings.code.check(case)?;
         let (folder, _lock) = &claim(folder)?;
@@ -116,6 +122,11 @@ impl Driver {
         {
             progress("done already");
             return Ok(result);
+        }
+        // A summary is that of another run, whose curves give way to these.
+        let other = folder.join("summary.json");
+        if other.is_file() {
+            remove_if_there(&other)?;
         }
         // In this order, so that a run killed here does not look finished.
         for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
@@ -138,7 +149,8 @@ impl Driver {
         Ok(result)
     }
 
-    /// Writes the input deck of `case` and its meshes into `folder`; `progress` as in [`Driver::run`].
+    /// Writes the input deck of `case` and its meshes into `folder`; `progress` as in
+    /// [`Driver::run`].
     ///
     /// # Errors
     /// As [`Driver::run`].
@@ -180,7 +192,7 @@ impl Driver {
     /// The key that ties files to a request: everything that the result depends on.
     fn key(&self, request: &str) -> String {
         let mut text = request.to_string();
-        text += &format!("{:?} {}", self.interpreter, self.settings.ranks);
+        text += &format!("{:?} {:?} {}", self.interpreter, self.versions, self.settings.ranks);
         for (name, source) in SOURCES {
             text += name;
             text += source;
@@ -204,14 +216,13 @@ pub const DECK_FILES: [&str; 9] = [
 
 /// Makes a folder, and claims it for this process: its full path, and the lock.
 fn claim(folder: &Path) -> Result<(PathBuf, Lock)> {
-    prepare_folder(folder)?;
+    let lock = Lock::claim(folder)?;
     // The mark of the processes must not depend on how the folder is named.
     let folder = folder.canonicalize().map_err(|source| Error::Io {
         action: "find",
         path: folder.to_path_buf(),
         source,
     })?;
-    let lock = Lock::claim(&folder)?;
     // The process of an earlier run is dead; so are its children, unless the kernel cannot tell.
     kill_marked(&folder);
     Ok((folder, lock))
@@ -229,9 +240,21 @@ struct Run<'a> {
 impl Run<'_> {
     /// Prepares the working folder and keeps the files of the same request.
     fn prepare(&self, request: &str, key: &str) -> Result<()> {
-        if read(&self.work.join("request.key")).ok().as_deref() != Some(key) {
+        let marker = self.work.join("request.key");
+        if self.work.exists() && !marker.exists() {
+            return Err(Error::File {
+                path: self.work.clone(),
+                line: None,
+                message: "was not made by this program, which would work there".into(),
+                remedy: "give another --out, or move it away".into(),
+            });
+        }
+        if read(&marker).ok().as_deref() != Some(key) {
             remove_if_there(&self.work)?;
         }
+        // First of all: without it the folder would be taken for somebody else's.
+        prepare_folder(&self.work)?;
+        write_whole(&marker, key)?;
         let package = self.work.join("package/edgeline_fem");
         prepare_folder(&package)?;
         for (name, source) in SOURCES {
@@ -240,8 +263,7 @@ impl Run<'_> {
         // Incomplete entries of an earlier run would block the compilation.
         remove_if_there(&self.work.join("cache"))?;
         jit_cache::seed(&self.cache());
-        write_whole(&self.work.join("request.json"), request)?;
-        write_whole(&self.work.join("request.key"), key)
+        write_whole(&self.work.join("request.json"), request)
     }
 
     fn cache(&self) -> PathBuf {

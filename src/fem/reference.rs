@@ -12,7 +12,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Records that are built into the program: case, then `record.json`, `curves.csv` and `pressure.csv`.
+/// Records that are built into the program: case, then `record.json`, `curves.csv` and
+/// `pressure.csv`.
 type Embedded = &'static [(&'static str, [&'static str; 3])];
 
 /// Those of FEniCSx and of CalculiX.

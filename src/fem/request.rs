@@ -102,7 +102,8 @@ fn case_of(case: &Case) -> Value {
 const CUT: f64 = 1.0 - 1e-6;
 
 impl<'a> Request<'a> {
-    /// Asks for the standard curves and pressure lines of `case` by the code and on the mesh of `settings`.
+    /// Asks for the standard curves and pressure lines of `case` by the code and on the mesh of
+    /// `settings`.
     pub fn new(case: &Case, settings: &'a FemSettings) -> Self {
         let other = settings.code != Code::Fenicsx;
         Self {

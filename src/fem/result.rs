@@ -4,7 +4,7 @@ use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::Scene;
-use crate::stress::curves::{Span, across_contact, curves_on, every_name};
+use crate::stress::curves::{across_contact, curves_on, every_name};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -154,21 +154,15 @@ impl MeshResult {
 
 /// The standard curves of both bodies of `case` (C).
 fn curves_of(case: &Case) -> impl Iterator<Item = CurveSpec> {
-    let (c_m, span) = (case.hertz().c_m, span_of(case));
+    let (c_m, span) = (case.hertz().c_m, Scene::new(case, EdgeModel::HalfSpace, None).span());
     BodyKind::ALL
         .into_iter()
         .flat_map(move |body| curves_on(body, &span, case.ends_m(body).map(|y| y / c_m)))
 }
 
-/// The contact line of `case` (C).
-fn span_of(case: &Case) -> Span {
-    let scene = Scene::new(case, EdgeModel::HalfSpace, None);
-    Span { ends: case.overlap(), symmetric: scene.is_symmetric(), slides: scene.slides }
-}
-
 /// The points of the pressure lines of `case` (C).
 fn lines_of(case: &Case) -> [(&'static str, Vec<[f64; 2]>); 2] {
-    let span = span_of(case);
+    let span = Scene::new(case, EdgeModel::HalfSpace, None).span();
     let along_y = span.contact_line().into_iter().map(|y| [0.0, y]).collect();
     let along_x = across_contact().into_iter().map(|x| [x, span.centre()]).collect();
     let [first, second] = LINE_NAMES;
@@ -248,9 +242,7 @@ pub(super) fn parse_curves(
     let mut curves: Vec<(f64, StressCurve)> = Vec::new();
     for row in table.rows() {
         let row = row?;
-        let body = BodyKind::ALL
-            .into_iter()
-            .find(|body| body.name() == row.text(0))
+        let body = BodyKind::find(row.text(0))
             .ok_or_else(|| row.nonsense(format!("there is no body '{}'", row.text(0))))?;
         let name = row.one_of(1, &names_of_curves)?;
         let at = [row.number(2)?, row.number(3)?, row.number(4)?].map(|v| v / hertz.c_m);

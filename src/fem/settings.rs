@@ -43,8 +43,8 @@ pub struct FemSettings {
     pub code: Code,
     /// The CalculiX program, where that is the code.
     pub ccx: PathBuf,
-    /// Whether a deck's bodies are in equilibrium where they have moved to. Of a deck alone: runs take small
-    /// displacements.
+    /// Whether a deck's bodies are in equilibrium where they have moved to. Of a deck alone: runs
+    /// take small displacements.
     pub large_displacements: bool,
     /// Relative element size, 1 is the production mesh; see [`FemSettings::SIZE_RANGE`].
     pub size: f64,

@@ -89,13 +89,13 @@ pub fn version(program: &Path) -> Option<String> {
     Some(line.trim().to_string())
 }
 
-/// Fails unless `program` can be run.
+/// The version of `program`.
 ///
 /// # Errors
-/// [`Error::Missing`] when it cannot.
-pub(super) fn require(program: &Path, option: &str) -> Result<()> {
-    if version(program).is_some() {
-        return Ok(());
+/// [`Error::Missing`] when it cannot be run.
+pub(super) fn require(program: &Path, option: &str) -> Result<String> {
+    if let Some(version) = version(program) {
+        return Ok(version);
     }
     check_interrupt()?;
     Err(Error::Missing {
@@ -113,13 +113,13 @@ pub fn ccx_version(program: &Path) -> Option<String> {
     Some(line.trim().trim_start_matches("This is ").to_string())
 }
 
-/// Fails unless the CalculiX `program` can be run.
+/// The version of the CalculiX `program`.
 ///
 /// # Errors
-/// [`Error::Missing`] when it cannot.
-pub(super) fn require_ccx(program: &Path) -> Result<()> {
-    if ccx_version(program).is_some() {
-        return Ok(());
+/// [`Error::Missing`] when it cannot be run.
+pub(super) fn require_ccx(program: &Path) -> Result<String> {
+    if let Some(version) = ccx_version(program) {
+        return Ok(version);
     }
     check_interrupt()?;
     Err(Error::Missing {

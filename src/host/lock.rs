@@ -19,7 +19,8 @@ pub struct Lock {
 
 impl Lock {
     /// Creates `folder`, checks that files can be written there, takes its lock, and removes the
-    /// unfinished files of a run that was killed. A folder that is made here and empty in the end is removed.
+    /// unfinished files of a run that was killed. A folder that is made here and empty in the end
+    /// is removed.
     ///
     /// # Errors
     /// As [`prepare_folder`] and [`Lock::take`].

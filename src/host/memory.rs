@@ -1,6 +1,7 @@
 //! A check before large requests: those that need more memory than is free are refused.
 
 use crate::base::{Error, Result};
+use std::path::{Path, PathBuf};
 
 /// Free memory if the system does not report it (bytes).
 const UNKNOWN: u64 = 4 << 30;
@@ -8,13 +9,33 @@ const UNKNOWN: u64 = 4 << 30;
 /// Free memory (bytes): what the system reports as available, or the rest of the control group's
 /// limit if that is less.
 fn free_memory() -> u64 {
-    let text = |path: &str| std::fs::read_to_string(path).unwrap_or_default();
-    let bytes = |path: &str| text(path).trim().parse::<u64>().ok();
-    let system = available(&text("/proc/meminfo")).unwrap_or(UNKNOWN);
-    let group = bytes("/sys/fs/cgroup/memory.max").map_or(u64::MAX, |limit| {
-        limit.saturating_sub(bytes("/sys/fs/cgroup/memory.current").unwrap_or(0))
+    let text = |path: &Path| std::fs::read_to_string(path).unwrap_or_default();
+    let system = available(&text(Path::new("/proc/meminfo"))).unwrap_or(UNKNOWN);
+    // The process's own group and all above it.
+    let own = own_group(&text(Path::new("/proc/self/cgroup")));
+    let groups = own.ancestors().map(|group| Path::new("/sys/fs/cgroup").join(group));
+    let left = groups.filter_map(|group| {
+        let of = |name: &str| text(&group.join(name));
+        left_in_group(&of("memory.max"), &of("memory.current"), &of("memory.stat"))
     });
-    system.min(group)
+    left.fold(system, u64::min)
+}
+
+/// The path of the process's control group below the root of all, from the text of
+/// `/proc/self/cgroup`.
+fn own_group(cgroup: &str) -> PathBuf {
+    let path = cgroup.lines().find_map(|line| line.strip_prefix("0::/")).unwrap_or("");
+    PathBuf::from(path.trim_end())
+}
+
+/// What a control group's limit leaves (bytes), from the texts of its files; `None` without a
+/// limit. The kernel gives up files that nobody has used lately before it refuses memory.
+fn left_in_group(limit: &str, current: &str, stat: &str) -> Option<u64> {
+    let limit: u64 = limit.trim().parse().ok()?;
+    let used: u64 = current.trim().parse().unwrap_or(0);
+    let idle = stat.lines().find_map(|line| line.strip_prefix("inactive_file "));
+    let idle: u64 = idle.and_then(|bytes| bytes.trim().parse().ok()).unwrap_or(0);
+    Some(limit.saturating_sub(used.saturating_sub(idle)))
 }
 
 /// Available bytes from the text of `/proc/meminfo`.
@@ -52,6 +73,17 @@ mod tests {
             assert_eq!(available(text), None, "{text}");
         }
         assert!(free_memory() > 1 << 20, "a test runs in some memory");
+    }
+
+    #[test]
+    fn a_groups_limit_leaves_what_is_not_in_use() {
+        assert_eq!(own_group("1:cpu:/x\n0::/jobs/7\n"), Path::new("jobs/7"));
+        assert_eq!(own_group("0::/\n"), Path::new(""));
+        let stat = "anon 5\ninactive_file 300\nactive_file 20\n";
+        assert_eq!(left_in_group("1000\n", "900\n", stat), Some(400));
+        assert_eq!(left_in_group("1000\n", "", ""), Some(1000));
+        assert_eq!(left_in_group("1000\n", "2000\n", ""), Some(0));
+        assert_eq!(left_in_group("max\n", "900\n", stat), None);
     }
 
     #[test]

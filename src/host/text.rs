@@ -5,7 +5,11 @@ use std::fs::File;
 use std::io::Read;
 use std::path::Path;
 
-/// Reads a text file of at most `most` bytes; `remedy` says what to do about a larger one.
+/// What some programs write before the text, to say that it is UTF-8.
+const MARK: &[u8] = "\u{feff}".as_bytes();
+
+/// Reads a text file of at most `most` bytes, without a mark of its byte order; `remedy` says what
+/// to do about a larger one.
 ///
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is larger or not UTF-8.
@@ -25,7 +29,9 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
         return Err(refuse(format!("is larger than {} MiB", most >> 20), remedy));
     }
     let other = "give a text file, or save this one as UTF-8";
-    String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".to_string(), other))
+    let start = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
+    String::from_utf8(bytes.split_off(start))
+        .map_err(|_| refuse("is not UTF-8 text".to_string(), other))
 }
 
 #[cfg(test)]
@@ -40,6 +46,8 @@ mod tests {
         assert_eq!(read_text(&path, 2 << 20, "").unwrap().len(), 2 << 20);
         let said = read_text(&path, 1 << 20, "give less").unwrap_err().to_string();
         assert!(said.ends_with("is larger than 1 MiB; give less"), "{said}");
+        std::fs::write(&path, "\u{feff}y_m,drop_m\n").unwrap();
+        assert_eq!(read_text(&path, 99, "").unwrap(), "y_m,drop_m\n");
         std::fs::write(&path, [0xff]).unwrap();
         assert!(read_text(&path, 9, "").unwrap_err().to_string().contains("UTF-8"));
         // A file without end is refused as well.

@@ -1,20 +1,24 @@
 //! Love's stresses of many cells at once, summed over the corners that the cells share.
 //!
-//! The stress of a rectangle under pressure is a second difference of one function over its four corners ([`super::love`]).
-//! Under a grid of cells each corner's function is therefore wanted once, times the second difference of the pressures that meet
-//! there. Corners that share y are summed in vector units; the functions arctangent and logarithm are those of Cephes (Moshier 1989,
-//! Methods and Programs for Mathematical Functions), whose errors are a unit in the last place.
+//! The stress of a rectangle under pressure is a second difference of one function over its four
+//! corners ([`super::love`]). Under a grid of cells each corner's function is therefore wanted
+//! once, times the second difference of the pressures that meet there. Corners that share y are
+//! summed in vector units; the functions arctangent and logarithm are those of Cephes (Moshier
+//! 1989, Methods and Programs for Mathematical Functions), whose errors are a unit in the last
+//! place.
 //!
-//! With A = atan(x/y) - atan(x z / (y rho)) and B the same with x and y exchanged, both one arctangent each, the textbook's
-//! corner functions are -2 nu A - B + x y z / (rho (x^2 + z^2)) for xx and -A - B less the two fractions for zz. Rounding
-//! leaves some 1e-15 of the largest pressure. On the surface the values are those of [`super::love`]: on an edge between cells the
-//! mean of both sides, at a corner the finite part of xy.
+//! With A = atan(x/y) - atan(x z / (y rho)) and B the same with x and y exchanged, both one
+//! arctangent each, the textbook's corner functions are -2 nu A - B + x y z / (rho (x^2 + z^2)) for
+//! xx and -A - B less the two fractions for zz. Rounding leaves some 1e-15 of the largest pressure.
+//! On the surface the values are those of [`super::love`]: on an edge between cells the mean of
+//! both sides, at a corner the finite part of xy.
 
 use crate::base::StressTensor;
 use multiversion::multiversion;
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI, SQRT_2};
 
-/// A difference of places that is this part of them is none: points on an edge are not to fall on one side of it.
+/// A difference of places that is this part of them is none: points on an edge are not to fall on
+/// one side of it.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// Corners that are summed together.
@@ -43,8 +47,9 @@ impl CornerRow {
 pub struct CornerSums([f64; 8]);
 
 impl CornerSums {
-    /// Adds the corners of a `row` at y' = y - `y`, `weight` times, seen from the point (`x`, y, `z`). `unit`, a length of the size of
-    /// a cell, is what logarithms are taken of at a corner itself.
+    /// Adds the corners of a `row` at y' = y - `y`, `weight` times, seen from the point (`x`, y,
+    /// `z`). `unit`, a length of the size of a cell, is what logarithms are taken of at a corner
+    /// itself.
     pub fn add(&mut self, row: &CornerRow, weight: f64, [x, y, z]: [f64; 3], unit: f64) {
         let sums = row_sums(&row.groups, x, y, z, 1.0 / unit);
         self.0.iter_mut().zip(sums).for_each(|(sum, s)| *sum += weight * s);
@@ -64,8 +69,9 @@ impl CornerSums {
     }
 }
 
-/// Sums of A, B, x y z / (rho (x^2 + z^2)), the same with x and y exchanged, ln(rho + z), z / rho, y z^2 / (rho (x^2 + z^2)) and x z^2 /
-/// (rho (y^2 + z^2)); compiled for the processor's vector units.
+/// Sums of A, B, x y z / (rho (x^2 + z^2)), the same with x and y exchanged, ln(rho + z), z / rho,
+/// y z^2 / (rho (x^2 + z^2)) and x z^2 / (rho (y^2 + z^2)); compiled for the processor's vector
+/// units.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn row_sums(groups: &[[[f64; LANES]; 2]], x: f64, y: f64, z: f64, per_unit: f64) -> [f64; 8] {
     let mut sums = [[0.0; LANES]; 8];
@@ -146,7 +152,8 @@ fn arctangent(over: f64, under: f64) -> f64 {
 /// ln(`x`) of a normal number.
 #[inline(always)]
 fn logarithm(x: f64) -> f64 {
-    // x = 2^n m with m in [1/sqrt 2, sqrt 2): the bits of n are read as those of the number 2^52 + n.
+    // x = 2^n m with m in [1/sqrt 2, sqrt 2): the bits of n are read as those of the number 2^52 +
+    // n.
     const FIRST: u64 = 0x3fe6_a09e_667f_3bcd;
     let bits = x.to_bits().wrapping_sub(FIRST).wrapping_add(1023 << 52);
     let n =

@@ -3,9 +3,11 @@
 //! The textbook formula (Love 1929; Johnson, Contact Mechanics, 1985, Eq. 3.25) is a difference of
 //! four logarithms per direction and loses R^2 / (a b) in relative accuracy at the distance R. Here
 //! every difference that can cancel is formed before rounding, so the result is accurate to a few
-//! units in the last place everywhere. Far away, where most cells of a grid are, a series takes a tenth of the time.
+//! units in the last place everywhere. Far away, where most cells of a grid are, a series takes a
+//! tenth of the time.
 
-/// Distance in longer half-sides beyond which the series of [`far`] leaves out less than a rounding error.
+/// Distance in longer half-sides beyond which the series of [`far`] leaves out less than a rounding
+/// error.
 const FAR: f64 = 64.0;
 
 /// Influence f of a unit pressure on the rectangle |x'| <= `a`, |y'| <= `b` at the surface point
@@ -38,8 +40,9 @@ fn direct(x: f64, y: f64, a: f64, b: f64) -> f64 {
     direction(x, a, u, y, b, v, r) + direction(y, b, v, x, a, u, r_transposed)
 }
 
-/// The integral of the Taylor series of 1/r about the centre, up to the sixth derivatives: the moments of a rectangle are
-/// 4 a b a^2m b^2n / ((2m + 1) (2n + 1)), and the derivatives polynomials in the squared cosines of the direction.
+/// The integral of the Taylor series of 1/r about the centre, up to the sixth derivatives: the
+/// moments of a rectangle are 4 a b a^2m b^2n / ((2m + 1) (2n + 1)), and the derivatives
+/// polynomials in the squared cosines of the direction.
 fn far(x: f64, y: f64, a: f64, b: f64) -> f64 {
     let per_square = 1.0 / (x * x + y * y);
     let [c, s, p, q] = [x * x, y * y, a * a, b * b].map(|v| v * per_square);

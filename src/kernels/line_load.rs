@@ -2,25 +2,34 @@
 //!
 //! Conventions of this module: `u` is the offset from the load along the surface, across the line;
 //! `v` >= 0 is the depth; the load is a unit force per length times cos(k x) on the line u = 0 of
-//! the surface, into the surface or along x. Under a load into the surface the in-plane stresses `ww`
-//! (along u), `dd` (along the depth), `xx` and `wd` vary as cos(k x), the shears `xw` and `xd` as
-//! sin(k x); under a load along x it is the other way round. Pressure is positive, a load along x acts
-//! towards +x, stress is positive in tension. Integrating any of them over k from 0 to infinity and
-//! dividing by pi gives the field of a point load (Boussinesq, Cerruti).
+//! the surface, into the surface or along x. Under a load into the surface the in-plane stresses
+//! `ww` (along u), `dd` (along the depth), `xx` and `wd` vary as cos(k x), the shears `xw` and `xd`
+//! as sin(k x); under a load along x it is the other way round. Pressure is positive, a load along
+//! x acts towards +x, stress is positive in tension. Integrating any of them over k from 0 to
+//! infinity and dividing by pi gives the field of a point load (Boussinesq, Cerruti).
 //!
-//! Source, load into the surface: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2, has the stresses sigma_dd
-//! = -p (1 + kappa v) e^(-kappa v) and, tangentially, sigma_ab = (d_a d_b / kappa^2) [(1 - 2 nu) -
-//! kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v) (the Papkovich-Neuber solution with one
-//! harmonic function; Johnson, Contact Mechanics, 1985, chapter 3). The inverse transforms in l are
-//! K0, K1 and their incomplete integrals: e^(-kappa v)/kappa -> K0/pi, e^(-kappa v) -> k v K1/(pi
-//! rho), e^(-kappa v)/kappa^2 -> J/(pi k).
+//! Source, load into the surface: the half-space under p cos(k x) cos(l u), kappa^2 = k^2 + l^2,
+//! has the stresses sigma_dd = -p (1 + kappa v) e^(-kappa v) and, tangentially, sigma_ab = (d_a d_b
+//! / kappa^2) [(1 - 2 nu) - kappa v] p e^(-kappa v) - 2 nu delta_ab p e^(-kappa v) (the
+//! Papkovich-Neuber solution with one harmonic function; Johnson, Contact Mechanics, 1985, chapter
+//! 3). The inverse transforms in l are K0, K1 and their incomplete integrals: e^(-kappa v)/kappa ->
+//! K0/pi, e^(-kappa v) -> k v K1/(pi rho), e^(-kappa v)/kappa^2 -> J/(pi k).
 //!
-//! Load along x: its part along the wave vector is a plane-strain wave with Airy's function
-//! z e^(-kappa v), its part across the wave vector an antiplane one (Barber, Elasticity, 2010,
-//! chapters 13 and 19). Together, with e the factor e^(-kappa v) and the phase of each stress left out:
-//! xx = -k e (2 (1 + nu) / kappa - 2 nu k^2 / kappa^3 - k^2 v / kappa^2), ww = -k e (k^2 v / kappa^2 - v
-//! + 2 nu k^2 / kappa^3), dd = -k v e, xw = d_u e (1 / kappa - 2 nu k^2 / kappa^3 - k^2 v / kappa^2), xd = -e (1
-//! - k^2 v / kappa), wd = k v d_u e / kappa. The transform of e^(-kappa v)/kappa^3 is (rho K1 - v J) / (pi k).
+//! Load along x: its part along the wave vector is a plane-strain wave with Airy's function z
+//! e^(-kappa v), its part across the wave vector an antiplane one (Barber, Elasticity, 2010,
+//! chapters 13 and 19). Together, with e the factor e^(-kappa v) and the phase of each stress left
+//! out:
+//!
+//! ```text
+//! xx = -k e (2 (1 + nu) / kappa - 2 nu k^2 / kappa^3 - k^2 v / kappa^2)
+//! ww = -k e (k^2 v / kappa^2 - v + 2 nu k^2 / kappa^3)
+//! dd = -k v e
+//! xw = d_u e (1 / kappa - 2 nu k^2 / kappa^3 - k^2 v / kappa^2)
+//! xd = -e (1 - k^2 v / kappa)
+//! wd = k v d_u e / kappa
+//! ```
+//!
+//! The transform of e^(-kappa v) / kappa^3 is (rho K1 - v J) / (pi k).
 
 use super::bessel::{incomplete, k0_k1};
 use std::f64::consts::FRAC_1_PI;
@@ -99,8 +108,8 @@ pub fn exact_along(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
     }
 }
 
-/// [`exact_along`] to first order in `k` at distances much shorter than 1/k: the line of an antiplane
-/// load, and what varies along it.
+/// [`exact_along`] to first order in `k` at distances much shorter than 1/k: the line of an
+/// antiplane load, and what varies along it.
 #[inline]
 pub fn near_along(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
     let square = u * u + v * v;

@@ -1,11 +1,11 @@
 //! An infinite plate under pressure on both faces, and the two half-spaces that contain its steep
 //! part.
 //!
-//! The plate is |y| <= H, unbounded in x and z; the face at y = H carries the pressure
-//! q cos(k x) cos(l z), the other one the same (even) or its opposite (odd).
-//! kappa^2 = k^2 + l^2, t = kappa H. In the plane of the wave vector and y the plate is in plane
-//! strain (Timoshenko and Goodier, Theory of Elasticity, 1970, article 24). An odd load bends the plate:
-//! for long waves its stresses grow like 3 / t^2.
+//! The plate is |y| <= H, unbounded in x and z; the face at y = H carries the pressure q cos(k x)
+//! cos(l z), the other one the same (even) or its opposite (odd). kappa^2 = k^2 + l^2, t = kappa H.
+//! In the plane of the wave vector and y the plate is in plane strain (Timoshenko and Goodier,
+//! Theory of Elasticity, 1970, article 24). An odd load bends the plate: for long waves its
+//! stresses grow like 3 / t^2.
 
 use crate::base::Parity;
 
@@ -31,8 +31,8 @@ pub struct Remainder {
 }
 
 impl Remainder {
-    /// For loads of this `parity`, the half-thickness `half` > 0, Poisson's ratio `nu`, and the wavenumbers
-    /// `k` and `l` >= 0, not both zero.
+    /// For loads of this `parity`, the half-thickness `half` > 0, Poisson's ratio `nu`, and the
+    /// wavenumbers `k` and `l` >= 0, not both zero.
     pub fn new(parity: Parity, half: f64, nu: f64, k: f64, l: f64) -> Self {
         let kappa = k.hypot(l);
         let t = kappa * half;

@@ -19,9 +19,9 @@ pub fn stress(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3]
     [f + g, f - g, -h]
 }
 
-/// As [`stress`], of the modes as a traction along x on the surface, towards +x. With F as there, the
-/// tangential line load (Johnson 1985, Eq. 2.22) sums to pi xx = -2 Re F + Im(z F'), pi zz = -Im(z F'), pi xz =
-/// Im F + Re(z F').
+/// As [`stress`], of the modes as a traction along x on the surface, towards +x. With F as there,
+/// the tangential line load (Johnson 1985, Eq. 2.22) sums to pi xx = -2 Re F + Im(z F'), pi zz =
+/// -Im(z F'), pi xz = Im F + Re(z F').
 pub fn stress_along(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
     let [e, f, g, h] = potential(half_width, coefficients, x, z);
     [h - 2.0 * e, -h, f + g]
@@ -69,8 +69,8 @@ fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] 
     [fr, fi, hr, hi]
 }
 
-/// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the unit pressure on |x'| <= `half_width` (Johnson 1985, Eqs.
-/// 2.30); the mean of both sides where the pressure jumps on the surface.
+/// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the unit pressure on |x'| <= `half_width`
+/// (Johnson 1985, Eqs. 2.30); the mean of both sides where the pressure jumps on the surface.
 pub fn uniform(half_width: f64, x: f64, z: f64) -> [f64; 3] {
     // Of the pressure on x' <= x - u, per 1 / pi, with the angle theta from the surface.
     let beyond = |u: f64| {

@@ -25,7 +25,8 @@ pub enum Direction {
 pub struct WaveTable {
     direction: Direction,
     nu: f64,
-    /// xx, ww, dd and wd: of loads into the surface all stresses that do not vanish in the plane of symmetry x = 0.
+    /// xx, ww, dd and wd: of loads into the surface all stresses that do not vanish in the plane of
+    /// symmetry x = 0.
     even: Vec<Patch>,
     /// xw and xd.
     odd: Vec<OddPatch>,
@@ -166,9 +167,9 @@ impl WaveTable {
         self.sum(&waves, &places, f64::INFINITY, &[[1.0; WAVES]], Wanted::ALL)[0].0
     }
 
-    /// For each of the ascending wavenumbers `k`, the `wanted` stresses of the line loads at `places`
-    /// closer than `reach` / k, and the number of those taken from the table. `loads` holds the loads of
-    /// each place at all wavenumbers; an infinite wavenumber reaches none.
+    /// For each of the ascending wavenumbers `k`, the `wanted` stresses of the line loads at
+    /// `places` closer than `reach` / k, and the number of those taken from the table. `loads`
+    /// holds the loads of each place at all wavenumbers; an infinite wavenumber reaches none.
     pub fn sum(
         &self,
         k: &[f64; WAVES],
@@ -319,8 +320,8 @@ pub struct Places {
 }
 
 impl Places {
-    /// Line loads at the `offsets` target - source along the surface, of a target at `depth` > 0. The
-    /// shears xw and xd of these places are summed only where they are asked for now.
+    /// Line loads at the `offsets` target - source along the surface, of a target at `depth` > 0.
+    /// The shears xw and xd of these places are summed only where they are asked for now.
     pub fn new(offsets: Vec<f64>, depth: f64, shears: bool) -> Self {
         let count = offsets.len();
         let mut places = Self {

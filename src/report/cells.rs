@@ -1,5 +1,5 @@
-//! The files of a solution on cells beside those of every solution: `pressure.npy` and `axes.json`, and what rough surfaces
-//! and many loads add.
+//! The files of a solution on cells beside those of every solution: `pressure.npy` and `axes.json`,
+//! and what rough surfaces and many loads add.
 
 use super::columns::{Columns, Value};
 use crate::base::HertzScales;
@@ -58,7 +58,8 @@ fn csv(table: Columns) -> (String, Vec<u8>) {
     (format!("{}.csv", table.name), table.to_csv().into_bytes())
 }
 
-/// `layer-BODY-NUMBER.npy` for each of `layers`, numbered by their depths, and `layers.json` with the most stressed place of all.
+/// `layer-BODY-NUMBER.npy` for each of `layers`, numbered by their depths, and `layers.json` with
+/// the most stressed place of all.
 pub fn layers(found: &CellSolution, layers: &[CellLayer]) -> Vec<(String, Vec<u8>)> {
     let (grid, hertz) = (&found.pressure.grid, &found.solution.summary.hertz);
     let mut files = Vec::new();

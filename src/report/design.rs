@@ -1,5 +1,5 @@
-//! The files of a designed profile: the case with it, tables of loads, trials and lines through the optimum, pictures, and
-//! `summary.json`.
+//! The files of a designed profile: the case with it, tables of loads, trials and lines through the
+//! optimum, pictures, and `summary.json`.
 
 use super::columns::{Columns, Value};
 use super::draw::{Colour, Figure, Look, Marker, Panel, Rule, Series};
@@ -193,7 +193,8 @@ fn look(i: usize) -> Look {
     all[i % all.len()]
 }
 
-/// The objective over each parameter: the trials, and the line through the optimum; and over the trials.
+/// The objective over each parameter: the trials, and the line through the optimum; and over the
+/// trials.
 fn parameters(design: &Design, found: &Optimum) -> Figure {
     let label = format!("largest {} (MPa)", design.objective.label());
     let shown = |objective: f64| objective * MPA;

@@ -1,5 +1,5 @@
-//! The files of `edgeline fatigue`: `fatigue.csv`, `fatigue-<body>.vtr`, a map of each measure and, last,
-//! `summary.json`.
+//! The files of `edgeline fatigue`: `fatigue.csv`, `fatigue-<body>.vtr`, a map of each measure and,
+//! last, `summary.json`.
 
 use super::columns::{Columns, Values};
 use super::draw::{Figure, Map};
@@ -20,7 +20,8 @@ pub struct Passages {
     pub bodies: Vec<Passage>,
 }
 
-/// The value of a measure in units of p0 or without a unit, and the number in the history of its instant, if it has one.
+/// The value of a measure in units of p0 or without a unit, and the number in the history of its
+/// instant, if it has one.
 type Value = Option<(f64, Option<usize>)>;
 
 /// A measure as a column of the table, an array of the grid and a picture.
@@ -276,7 +277,8 @@ fn grid(passage: &Passage, hertz: &HertzScales) -> VtkGrid {
     VtkGrid { axes_m: [vec![0.0], y, z], arrays }
 }
 
-/// A map of a measure, whose largest value is marked. Near an edge it shows no more than the largest value outside.
+/// A map of a measure, whose largest value is marked. Near an edge it shows no more than the
+/// largest value outside.
 fn figure(case: &Case, measure: &Measure, passage: &Passage) -> Figure {
     let most = passage.critical(|m| measure.value(m)).map_or(f64::INFINITY, |m| m.value);
     let shown = |(place, m): (usize, &Measures)| {

@@ -1,8 +1,9 @@
 //! Stress fields of both bodies: VTK files, and contours of von Mises stress.
 //!
 //! The field is evaluated on a quarter of each body and mirrored: sigma_xy and sigma_xz are odd in
-//! x, sigma_xy and sigma_yz odd in y, everything else is even. Where the bodies slide on each other it is
-//! evaluated on both sides of x = 0, and over the whole length where the scene is not symmetric about y = 0.
+//! x, sigma_xy and sigma_yz odd in y, everything else is even. Where the bodies slide on each other
+//! it is evaluated on both sides of x = 0, and over the whole length where the scene is not
+//! symmetric about y = 0.
 
 use super::draw::{Figure, Map};
 use super::vtk::VtkGrid;
@@ -16,9 +17,10 @@ use rayon::prelude::*;
 /// the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
 
-/// Axes of a body's part in units of C: along x from 0, from one side to the other where the bodies slide; along y from the
-/// middle, over the whole length where the scene is not symmetric; finer towards the ends of the bodies' overlap and towards
-/// the surface along z. `counts` are at least 2 each.
+/// Axes of a body's part in units of C: along x from 0, from one side to the other where the bodies
+/// slide; along y from the middle, over the whole length where the scene is not symmetric; finer
+/// towards the ends of the bodies' overlap and towards the surface along z. `counts` are at least 2
+/// each.
 fn axes(solved: &SolvedCase, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3] {
     let case = solved.case();
     let [from, to] = case.overlap();
@@ -33,8 +35,8 @@ fn axes(solved: &SolvedCase, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3
     let side = |ledge: f64| -> Vec<f64> {
         let mut y: Vec<f64> =
             shares(counts[1]).map(|t| half * (std::f64::consts::FRAC_PI_2 * t).sin()).collect();
-        // The computed sine of a right angle may differ from 1, but the last point must be on the end
-        // face.
+        // The computed sine of a right angle may differ from 1, but the last point must be on the
+        // end face.
         y[counts[1] - 1] = half;
         if ledge > 1e-9 * half {
             let reach = ledge.min(REACH[1]);
@@ -128,8 +130,8 @@ impl<'a> Quarter<'a> {
         }
     }
 
-    /// Indices and signs of the points along x (0) or y (1) and their mirror images, ascending; an axis that has
-    /// both sides is not mirrored.
+    /// Indices and signs of the points along x (0) or y (1) and their mirror images, ascending; an
+    /// axis that has both sides is not mirrored.
     fn mirror(&self, axis: usize) -> impl Iterator<Item = (usize, f32)> + Clone + use<> {
         let count = self.axes[axis].len();
         let behind = if self.folded[axis] { 1..count } else { 1..1 };

@@ -1,15 +1,16 @@
-//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`, `line_load.csv`,
-//! `curves.csv` and `points.csv`.
+//! The tables and files of one solution, in SI units: `summary.json`, `pressure.csv`,
+//! `line_load.csv`, `curves.csv` and `points.csv`.
 
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
-use crate::host::{Lock, write_set};
+use crate::host::{Lock, remove_if_there, write_set};
 use crate::solve::{Lamina, Options, Solution};
 use serde::Serialize;
 use std::path::Path;
 
-/// Most cells that are written as text: more of them have a file of their own, see [`super::cells`].
+/// Most cells that are written as text: more of them have a file of their own, see
+/// [`super::cells`].
 const MOST_CELLS: usize = 100_000;
 
 /// Whether the pressures of the `cells` are few enough to be written as text.
@@ -17,8 +18,9 @@ pub fn writes_pressure<T>(cells: &[T]) -> bool {
     cells.len() <= MOST_CELLS
 }
 
-/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as CSV but for
-/// pressures on very many cells, and `summary.json` last, so that its presence means that all are there.
+/// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as
+/// CSV but for pressures on very many cells, and `summary.json` last, so that its presence means
+/// that all are there.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
@@ -37,6 +39,11 @@ pub fn write<D: Serialize>(
         put(format!("{}.csv", table.name), table.to_csv());
     }
     put("summary.json".into(), pretty(&solution.summary));
+    // Curves and pressures of finite elements there are no longer those that it marks as complete.
+    let other = folder.join("fem.json");
+    if other.is_file() {
+        remove_if_there(&other)?;
+    }
     write_set(folder, &files)
 }
 
@@ -54,7 +61,8 @@ pub fn write_locked<D: Serialize>(
     write(solution, options, more, folder)
 }
 
-/// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points, `points`.
+/// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points,
+/// `points`.
 pub fn tables<D>(solution: &Solution<D>, options: &Options) -> Vec<Columns> {
     let mut tables = vec![pressure(solution), line_load(solution), curves(solution)];
     if !options.points.is_empty() {

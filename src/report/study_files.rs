@@ -33,8 +33,8 @@ pub struct StudyFiles {
     pub effects: Vec<EffectRow>,
     /// `verification.csv`: differences beside the numerical uncertainty of both sides.
     pub verification: Vec<VerificationRow>,
-    /// `brought.csv`: the errors of all sources against curves from files. It and the next two are written
-    /// where there are such curves.
+    /// `brought.csv`: the errors of all sources against curves from files. It and the next two are
+    /// written where there are such curves.
     pub brought: Vec<Of<ErrorRow>>,
     /// `brought_curves.csv`: stresses of these curves and of all sources on their points.
     pub brought_curves: Vec<Of<CurveRow>>,

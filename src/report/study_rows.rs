@@ -298,7 +298,8 @@ pub struct EffectRow {
     pub centre: Option<f64>,
     /// Mean of the corners less the value at the centre.
     pub curvature: Option<f64>,
-    /// In a fractional design the effects that this one cannot be told from, by the factors' letters.
+    /// In a fractional design the effects that this one cannot be told from, by the factors'
+    /// letters.
     pub aliases: Vec<String>,
 }
 

@@ -117,11 +117,18 @@ pub struct SweepFile {
     whole: u64,
     /// The line of the next row, from 1.
     line: usize,
+    /// The row of an earlier run that was recognised last.
+    last: StringRecord,
     /// Number of rows of an earlier run.
     kept: usize,
     /// Number of rows with an `err`, including those of an earlier run.
     failed: usize,
 }
+
+/// The relative difference of results that is rounding, and what counts as zero (p0, C, or SI
+/// units).
+const ROUNDING: f64 = 1e-5;
+const LEAST: f64 = 1e-7;
 
 impl SweepFile {
     /// Creates the file or continues an existing one. `columns` are the sweep's own.
@@ -129,8 +136,8 @@ impl SweepFile {
     /// An incomplete last line, which a killed run may leave, is removed.
     ///
     /// # Errors
-    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it is not that of a sweep with these columns,
-    /// and [`Error::Io`].
+    /// [`Error::Busy`] when another process writes the file, [`Error::File`] when it is not that of
+    /// a sweep with these columns, and [`Error::Io`].
     pub fn open(path: &Path, columns: &[String], label: Label) -> Result<Self> {
         let io = |action| move |source| Error::Io { action, path: path.to_path_buf(), source };
         let file = open_locked(path)?;
@@ -144,6 +151,7 @@ impl SweepFile {
             before: None,
             whole,
             line: 2,
+            last: StringRecord::new(),
             kept: 0,
             failed: 0,
         };
@@ -166,7 +174,8 @@ impl SweepFile {
         Ok(own)
     }
 
-    /// The next row of an earlier run, its cells; none if there is no more, and new ones can be added.
+    /// The next row of an earlier run, its cells; none if there is no more, and new ones can be
+    /// added.
     fn next_before(&mut self) -> Result<Option<StringRecord>> {
         let io = |action, source| Error::Io { action, path: self.path.clone(), source };
         let Some(lines) = &mut self.before else { return Ok(None) };
@@ -227,7 +236,8 @@ impl SweepFile {
     /// Stores the rows on the disk, so that they survive a power cut.
     ///
     /// # Errors
-    /// [`Error::Io`] when they cannot be stored, [`Error::File`] when the file has more rows than the sweep.
+    /// [`Error::Io`] when they cannot be stored, [`Error::File`] when the file has more rows than
+    /// the sweep.
     pub fn finish(&mut self) -> Result<()> {
         if self.next_before()?.is_some() {
             return Err(self.refuse(self.line, "has more rows than this sweep".into()));
@@ -252,7 +262,31 @@ impl Rows<Vec<String>> for SweepFile {
         self.failed += usize::from(record.iter().next_back().is_some_and(|e| !e.is_empty()));
         self.kept += 1;
         self.line += 1;
+        self.last = record;
         Ok(true)
+    }
+
+    fn check(&mut self, row: usize, outcome: &Outcome) -> Result<()> {
+        let results = results(outcome);
+        let before = self.last.iter().skip(self.last.len().saturating_sub(results.len()));
+        for ((name, value), before) in results.iter().zip(before) {
+            let (same, now) = match value {
+                Value::Number(value) => {
+                    let found = before.parse().unwrap_or(f64::NAN);
+                    (agree(found, *value), number(*value))
+                }
+                Value::Text(text) => (before == one_line(text), text.clone()),
+            };
+            if !same {
+                let message = format!(
+                    "row {} has {name} = {before:?}, and this sweep finds {now:?}: another base, other settings or \
+                     another version made it",
+                    row + 1
+                );
+                return Err(self.refuse(self.line - 1, message));
+            }
+        }
+        Ok(())
     }
 
     fn add(&mut self, row: usize, cells: &Vec<String>, outcome: &Outcome) -> Result<()> {
@@ -274,8 +308,13 @@ pub(super) fn header_names(columns: &[String]) -> Vec<String> {
     start.chain(results).collect()
 }
 
-/// Whether a cell of an earlier run says what is now to stand there. Numbers may be written otherwise, and what was no
-/// number may be missing.
+/// Whether two results of one problem are the same, but for what another processor rounds.
+fn agree(a: f64, b: f64) -> bool {
+    a.is_nan() && b.is_nan() || (a - b).abs() <= ROUNDING * a.abs().max(b.abs()).max(LEAST)
+}
+
+/// Whether a cell of an earlier run says what is now to stand there. Numbers may be written
+/// otherwise, and what was no number may be missing.
 fn says_same(before: &str, now: &str) -> bool {
     let number = |text: &str| text.parse::<f64>().ok();
     before == now

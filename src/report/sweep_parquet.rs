@@ -1,4 +1,5 @@
-//! The rows of a sweep as Parquet: a finished CSV file of a sweep, converted in groups of rows, and back.
+//! The rows of a sweep as Parquet: a finished CSV file of a sweep, converted in groups of rows, and
+//! back.
 
 use super::sweep::{TEXTS, header_names, line};
 use super::table::number;
@@ -51,8 +52,8 @@ impl Kind {
     }
 }
 
-/// Writes the rows of the CSV file `rows` of a sweep into `out`: numbers as they stand there, in doubles; empty cells and what is
-/// no number in a column of numbers as null.
+/// Writes the rows of the CSV file `rows` of a sweep into `out`: numbers as they stand there, in
+/// doubles; empty cells and what is no number in a column of numbers as null.
 ///
 /// # Errors
 /// [`Error::Io`] when a file cannot be read or written.
@@ -141,10 +142,12 @@ fn nullable<T>(cells: impl Iterator<Item = Option<T>>) -> (Vec<i16>, Vec<T>) {
     (there, values)
 }
 
-/// Writes the rows of `out`, which [`write`] has made, into the CSV file `rows` again, where `columns` are the sweep's own.
+/// Writes the rows of `out`, which [`write`] has made, into the CSV file `rows` again, where
+/// `columns` are the sweep's own.
 ///
 /// # Errors
-/// [`Error::File`] when `out` is not the file of a sweep with these columns, [`Error::Io`] when a file cannot be read or written.
+/// [`Error::File`] when `out` is not the file of a sweep with these columns, [`Error::Io`] when a
+/// file cannot be read or written.
 pub(super) fn read(out: &Path, columns: &[String], rows: &Path) -> Result<()> {
     let foreign = |message: String| Error::File {
         path: out.to_path_buf(),

@@ -1,4 +1,5 @@
-//! The file that a sweep is to make: its rows in CSV themselves, or a Parquet file made of them at the end.
+//! The file that a sweep is to make: its rows in CSV themselves, or a Parquet file made of them at
+//! the end.
 
 use super::sweep::{Label, SweepFile};
 #[cfg(feature = "parquet")]
@@ -18,8 +19,9 @@ pub struct Target {
 }
 
 impl Target {
-    /// The file `out`, whose name says by `.parquet` that it is one of Parquet. Its rows stand in a CSV file of the same name with
-    /// `.part` behind it until it is finished, so that a stopped sweep can be continued.
+    /// The file `out`, whose name says by `.parquet` that it is one of Parquet. Its rows stand in a
+    /// CSV file of the same name with `.part` behind it until it is finished, so that a stopped
+    /// sweep can be continued.
     ///
     /// # Errors
     /// [`Error::File`] when this build writes no Parquet.
@@ -37,7 +39,8 @@ impl Target {
     /// Opens the rows for a sweep whose own columns are `columns`.
     ///
     /// # Errors
-    /// As [`SweepFile::open`]; and [`Error::File`] when a Parquet file is there that is not of such a sweep.
+    /// As [`SweepFile::open`]; and [`Error::File`] when a Parquet file is there that is not of such
+    /// a sweep.
     pub fn open(&mut self, columns: &[String], label: Label) -> Result<SweepFile> {
         let finished = self.parquet.as_ref().filter(|out| out.exists() && !self.rows.exists());
         if let Some(out) = finished {

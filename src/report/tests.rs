@@ -30,7 +30,7 @@ fn verification(run: &StudyRun) -> Vec<VerificationRow> {
         for line in &mut refined.pressure {
             line.p.iter_mut().for_each(|p| *p += 1e-4);
         }
-        verification::rows(&case.case, false, (model, curves, &refined), &references)
+        verification::rows(&case.case, false, (model, curves, Some(&refined)), &references)
     };
     run.cases.iter().flat_map(of_case).collect()
 }
@@ -245,8 +245,8 @@ fn ratios_are_shown_with_their_uncertainty_and_their_origin() {
     assert!(run.effects.iter().any(|r| r.response == Response::Log10Speedup));
 }
 
-/// The made-up meshes converge with the square of their size: the index is 1.25 times the error, which is the
-/// made-up difference itself.
+/// The made-up meshes converge with the square of their size: the index is 1.25 times the error,
+/// which is the made-up difference itself.
 #[test]
 fn differences_stand_beside_the_uncertainty_of_both_sides() {
     let files = files(Twist::SecondReference);

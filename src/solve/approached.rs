@@ -8,33 +8,35 @@ use crate::base::{BodyKind, Error, Result};
 use crate::body::Resolution;
 use crate::case::Case;
 
-/// Line contacts approach by about this power of the force (Palmgren's 10/9 for the inverse): along it the
-/// search is almost a straight line.
+/// Line contacts approach by about this power of the force (Palmgren's 10/9 for the inverse): along
+/// it the search is almost a straight line.
 const POWER: f64 = 0.9;
 
-/// Tolerance (p0) of the solutions at the search's beginning, where the case's is at most [`Resolution::COARSE`]. Otherwise
-/// it would cost more than it saves.
+/// Tolerance (p0) of the solutions at the search's beginning, where the case's is at most
+/// [`Resolution::COARSE`]. Otherwise it would cost more than it saves.
 const SEARCH: f64 = 3e-2;
 
 /// Relative errors of the approach at which the search at low accuracy ends, and the search itself.
 const CLOSE: f64 = 1e-3;
 const MET: f64 = 1e-10;
 
-/// The same after [`PATIENCE`] trials: rounding may decide between two solutions of the contact that are nearly this far
-/// apart.
+/// The same after [`PATIENCE`] trials: rounding may decide between two solutions of the contact
+/// that are nearly this far apart.
 const ROUNDED: f64 = 5e-9;
 const PATIENCE: usize = 6;
 
-/// Relative distance of two forces, raised to [`POWER`], from which they give a slope that rounding leaves alone, and one
-/// at which no better force is to be found between them: where the number of nodes or of steps of the contact's iteration
-/// changes with the force, the approach has a jump of the solution's own accuracy.
+/// Relative distance of two forces, raised to [`POWER`], from which they give a slope that rounding
+/// leaves alone, and one at which no better force is to be found between them: where the number of
+/// nodes or of steps of the contact's iteration changes with the force, the approach has a jump of
+/// the solution's own accuracy.
 const APART: f64 = 1e-6;
 const TOGETHER: f64 = 1e-10;
 
 /// Largest such jump, in tolerances.
 const JUMP: f64 = 0.1;
 
-/// Most contacts that are solved, those of them by secants, and the largest factor of the force from one to the next.
+/// Most contacts that are solved, those of them by secants, and the largest factor of the force
+/// from one to the next.
 const MOST_TRIALS: usize = 60;
 const MOST_SECANTS: usize = 20;
 const LARGEST_STEP: f64 = 8.0;
@@ -44,13 +46,14 @@ pub(super) fn approach_m(approaches: &Approaches, case: &Case) -> f64 {
     approaches.at(case.roller.radius_m / case.hertz().c_m) * case.gap_unit_m()
 }
 
-/// The solved scene of `case`, and the case with its force. A force that is given by its approach is
-/// found first: each trial solves the contact, which is what W, C and p0 need.
+/// The solved scene of `case`, and the case with its force. A force that is given by its approach
+/// is found first: each trial solves the contact, which is what W, C and p0 need.
 ///
 /// # Errors
-/// [`Error::Value`] if no legal force causes the approach, [`Error::NotConverged`] if none was found; else
-/// as [`SolvedScene::new`].
+/// As [`Options::check_line`]; [`Error::Value`] if no legal force causes the approach,
+/// [`Error::NotConverged`] if none was found; else as [`SolvedScene::new`].
 pub(super) fn with_force(case: &Case, options: &Options) -> Result<(Case, SolvedScene)> {
+    options.check_line(case)?;
     let Some(wanted_m) = case.load.approach_m else {
         let scene = SolvedScene::new(&Scene::new(case, options.method, options.psi))?;
         return Ok((case.clone(), scene));
@@ -96,8 +99,8 @@ impl<'a> Search<'a> {
         Self { case, options, wanted_m, range, next, slope, last, below, above, seconds: 0.0 }
     }
 
-    /// Solves contacts at `tolerance` until the relative error of the approach is at most `met`, or no better force is
-    /// to be found.
+    /// Solves contacts at `tolerance` until the relative error of the approach is at most `met`, or
+    /// no better force is to be found.
     fn run(&mut self, tolerance: f64, met: f64) -> Result<(Case, SolvedScene)> {
         // What other tolerances have found is near, but no bracket.
         (self.last, self.below, self.above) = (None, None, None);
@@ -127,7 +130,8 @@ impl<'a> Search<'a> {
         unreachable!("the trials end")
     }
 
-    /// Takes the relative error of the trial; whether no better force is to be found, and it is within `jump`.
+    /// Takes the relative error of the trial; whether no better force is to be found, and it is
+    /// within `jump`.
     fn tell(&mut self, off: f64, jump: f64) -> bool {
         let place = [self.next, off];
         if let Some([at, was]) = self.last.filter(|[at, _]| (place[0] - at).abs() > APART * at) {
@@ -202,16 +206,14 @@ impl<'a> Search<'a> {
     }
 }
 
-/// The force (N) under which a line contact of endless bodies approaches by `wanted_m` between points one roller radius
-/// below the surfaces (Johnson, Contact Mechanics, 1985, Eq. 5.57, for each body).
+/// The force (N) under which a line contact of endless bodies approaches by `wanted_m` between
+/// points one roller radius below the surfaces (Johnson, Contact Mechanics, 1985, Eq. 5.57, for
+/// each body).
 fn line_force(case: &Case, wanted_m: f64) -> f64 {
     let (e_star, radius) = (case.contact_modulus(), case.equivalent_radius_m());
     let depth = case.roller.radius_m;
     let lateral = |kind: BodyKind| {
-        let material = match kind {
-            BodyKind::Block => &case.block.material,
-            BodyKind::Roller => &case.roller.material,
-        };
+        let material = case.material(kind);
         let nu = material.poisson;
         e_star * material.plane_strain_compliance() * nu / (1.0 - nu)
     };

@@ -85,7 +85,8 @@ impl Default for CellOptions {
     }
 }
 
-/// Refuses a case that cells do not take, or not with these options; the first grid that is tried for others.
+/// Refuses a case that cells do not take, or not with these options; the first grid that is tried
+/// for others.
 ///
 /// # Errors
 /// [`Error::Value`] with what to do.
@@ -146,7 +147,8 @@ impl Region {
         }
     }
 
-    /// Cells over the contact up to `half_width` (C), less where it is not given and the heights end before.
+    /// Cells over the contact up to `half_width` (C), less where it is not given and the heights
+    /// end before.
     fn grid(&self, half_width: f64) -> Result<Grid> {
         let [nx, ny] = self.counts.unwrap_or_else(|| self.counts(half_width));
         let covered = |([span, _], _): ([f64; 2], _)| span * nx as f64 / (nx as f64 - 1.0);
@@ -157,7 +159,8 @@ impl Region {
         Grid::new(nx, ny, half_width.min(most), self.half_length)
     }
 
-    /// Even numbers of cells twice as long as wide, longer only where there would be too many; with heights as many as samples.
+    /// Even numbers of cells twice as long as wide, longer only where there would be too many; with
+    /// heights as many as samples.
     fn counts(&self, half_width: f64) -> [usize; 2] {
         let even = |n: f64| 2 * (0.5 * n).ceil() as usize;
         if let Some((_, steps)) = self.samples {
@@ -179,8 +182,8 @@ impl Region {
 /// Solves `case` on cells; tells `progress` of the iteration's steps and its residual.
 ///
 /// # Errors
-/// [`Error::Value`] when `options` ask for what does not exist, and for cells that do not suit; else as
-/// [`CellProblem::solve`].
+/// [`Error::Value`] when `options` ask for what does not exist, and for cells that do not suit;
+/// else as [`CellProblem::solve`].
 pub fn solve_on_cells(
     case: &Case,
     options: &Options,
@@ -268,7 +271,8 @@ pub fn loads_on_cells(
     forces.iter().map(step).collect()
 }
 
-/// Stresses (p0) at the points of `options` under the `pressure` that [`solve_on_cells`] found for `case`.
+/// Stresses (p0) at the points of `options` under the `pressure` that [`solve_on_cells`] found for
+/// `case`.
 ///
 /// # Errors
 /// [`Error::Value`] that names the first point outside its body.

@@ -53,8 +53,9 @@ impl<'a> CellContact<'a> {
 
     /// The pressures, and the approach and the tilt at the depth of the roller's radius.
     ///
-    /// Far points tilt against those at this depth. Where the tilt is held, by how much is taken from the smooth surfaces: heights
-    /// change the load's distribution at their own scale, not along the contact.
+    /// Far points tilt against those at this depth. Where the tilt is held, by how much is taken
+    /// from the smooth surfaces: heights change the load's distribution at their own scale, not
+    /// along the contact.
     ///
     /// # Errors
     /// As [`CellProblem::solve`]; [`Error::NotConverged`] where a held tilt is not reached.
@@ -98,7 +99,8 @@ impl<'a> CellContact<'a> {
         }
     }
 
-    /// Mean gap (C^2 / (2 R)) under `pressure` over the cells within C of the line x = 0.
+    /// Mean gap (C^2 / (2 R)) under `pressure` over the cells within C of the line x = 0, or over
+    /// those next to it if they are wider.
     pub fn mean_gap(&self, pressure: &CellPressure) -> f64 {
         let grid = &pressure.grid;
         let problem = CellProblem { grid: *grid, ..self.problem.clone() };
@@ -109,16 +111,19 @@ impl<'a> CellContact<'a> {
                 problem.gaps(&gap.expect("the contact was solved with it"), pressure)
             }
         };
+        let next = (0..grid.nx).map(|i| grid.x(i).abs()).fold(f64::INFINITY, f64::min);
+        let within = (next * (1.0 + 1e-9)).max(1.0);
         let near: Vec<f64> = gaps
             .iter()
             .enumerate()
-            .filter(|(i, _)| grid.x(i % grid.nx).abs() <= 1.0)
+            .filter(|(i, _)| grid.x(i % grid.nx).abs() <= within)
             .map(|(_, gap)| gap.max(0.0))
             .collect();
         near.iter().sum::<f64>() / near.len() as f64
     }
 
-    /// The smooth contact whose tilt at the depth is `wanted`, and this tilt, from the tilt `first` of far points.
+    /// The smooth contact whose tilt at the depth is `wanted`, and this tilt, from the tilt `first`
+    /// of far points.
     fn held(
         &self,
         problem: &CellProblem,

@@ -1,7 +1,8 @@
 //! How far points and lines deep below a contact on cells have come.
 //!
-//! Cells are counted from points at infinity of half-spaces. What they and their images displace below the surface is known in
-//! closed form there; what free ends add is the displacement of the surface by them less the shortening above.
+//! Cells are counted from points at infinity of half-spaces. What they and their images displace
+//! below the surface is known in closed form there; what free ends add is the displacement of the
+//! surface by them less the shortening above.
 
 use super::cells::{contact_ends, line_loads};
 use super::deep::{self, Force, Places, Plate, Sunk, images};
@@ -35,8 +36,8 @@ impl DeepMotion {
     }
 }
 
-/// The displacement (C^2 / (2 R)) of points of both bodies together at `depth` (C) below each of the places `at` along the line, where the
-/// `pressure` makes these `forces`.
+/// The displacement (C^2 / (2 R)) of points of both bodies together at `depth` (C) below each of
+/// the places `at` along the line, where the `pressure` makes these `forces`.
 fn displaced(
     scene: &Scene,
     problem: &CellProblem,

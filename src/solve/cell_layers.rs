@@ -8,7 +8,8 @@ use crate::case::Case;
 use crate::cells::{CellPressure, EndLoads, Layer, add_ends, layer};
 use crate::host::check_memory;
 
-/// Arrays of a layer's size that it takes: kernels and transforms of six components, and those of all layers.
+/// Arrays of a layer's size that it takes: kernels and transforms of six components, and those of
+/// all layers.
 const WORK: f64 = 60.0;
 
 /// The stresses of one body at one depth.
@@ -45,8 +46,8 @@ pub fn check_layers(case: &Case, options: &Options, depths_m: &[f64], cells: usi
     check_memory(&what, 8.0 * cells as f64 * (WORK + 2.0 * kept), "ask for fewer layers or cells")
 }
 
-/// The stresses of the bodies of `options` at depths (m) under the `pressure` that [`super::solve_on_cells`] found for `case`, without what a
-/// round surface adds.
+/// The stresses of the bodies of `options` at depths (m) under the `pressure` that
+/// [`super::solve_on_cells`] found for `case`, without what a round surface adds.
 ///
 /// # Errors
 /// As [`check_layers`].

@@ -16,7 +16,8 @@ use rayon::prelude::*;
 /// Step of the difference quotient along x (C).
 const STEP: f64 = 1e-4;
 
-/// The curve under the largest pressure of a rough contact, how deep it goes (C), and its points less one.
+/// The curve under the largest pressure of a rough contact, how deep it goes (C), and its points
+/// less one.
 pub const PEAK_CURVE: &str = "depth-peak";
 const PEAK_DEPTH: f64 = 3.0;
 const PEAK_POINTS: i32 = 40;
@@ -159,7 +160,8 @@ fn sums(
 }
 
 impl Summed<'_> {
-    /// Stresses at points that differ in x only, with what a round surface adds in the local `contact`.
+    /// Stresses at points that differ in x only, with what a round surface adds in the local
+    /// `contact`.
     fn row(&self, points: &[[f64; 3]], contact: &LocalContact) -> Vec<RoundStress> {
         let [_, y, z] = points[0];
         // Nothing moves along x on the surface, nor where it is flat, nor in a plane of symmetry.
@@ -178,7 +180,8 @@ impl Summed<'_> {
         points.iter().zip(stresses.chunks_exact(3)).map(round).collect()
     }
 
-    /// The flat body's stresses at `y`, `z` for each x of `xs`, of which those in a row that are equal are computed once.
+    /// The flat body's stresses at `y`, `z` for each x of `xs`, of which those in a row that are
+    /// equal are computed once.
     fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let mut found: Vec<StressTensor> = Vec::with_capacity(xs.len());
         for (i, x) in xs.iter().enumerate() {

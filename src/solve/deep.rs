@@ -1,14 +1,18 @@
-//! How far points and lines at a depth below the surfaces have come: the approach and the tilt of the bodies.
+//! How far points and lines at a depth below the surfaces have come: the approach and the tilt of
+//! the bodies.
 //!
-//! Where the bodies touch they have closed the gap. What points below approach beyond that is the shortening of both bodies
-//! above them, the integral of the strain (sigma_zz - nu (sigma_xx + sigma_yy)) / E. No reference far away is needed, on which
-//! the result would depend. Deep below, stresses are those of waves so long that the equations of free faces are close to
-//! singular, and the displacement is known:
+//! Where the bodies touch they have closed the gap. What points below approach beyond that is the
+//! shortening of both bodies above them, the integral of the strain (sigma_zz - nu (sigma_xx +
+//! sigma_yy)) / E. No reference far away is needed, on which the result would depend. Deep below,
+//! stresses are those of waves so long that the equations of free faces are close to singular, and
+//! the displacement is known:
 //!
-//! - A body between two free faces is Kirchhoff's plate, loaded on its edge by the force and by the moment about its own middle:
-//!   it moves and turns by the logarithm of the depths' ratio ([`Shape::as_plate`] over the wavenumbers across the contact).
-//! - A half-space, with images or without, sinks at the depth z by (1 + nu) / (2 pi E) (2 (1 - nu) / r + z^2 / r^3) under a unit force at the
-//!   distance r (Boussinesq; Johnson, Contact Mechanics, 1985, Eq. 3.19).
+//! - A body between two free faces is Kirchhoff's plate, loaded on its edge by the force and by the
+//!   moment about its own middle: it moves and turns by the logarithm of the depths' ratio
+//!   ([`Shape::as_plate`] over the wavenumbers across the contact).
+//! - A half-space, with images or without, sinks at the depth z by
+//!   (1 + nu) / (2 pi E) (2 (1 - nu) / r + z^2 / r^3) under a unit force at the distance r
+//!   (Boussinesq; Johnson, Contact Mechanics, 1985, Eq. 3.19).
 
 use super::scene::{Scene, SceneBody};
 use crate::base::{BodyKind, Panels, StressTensor};
@@ -47,7 +51,8 @@ const ORDER: usize = 4;
 /// Depth, in half-lengths of a body, from which on its displacement is known.
 const DEEP: f64 = 5.0;
 
-/// The depth down to which stresses in a body of this half-length (C) are counted on the way to `deepest` (C).
+/// The depth down to which stresses in a body of this half-length (C) are counted on the way to
+/// `deepest` (C).
 pub(super) fn reach(half: f64, deepest: f64) -> f64 {
     deepest.min(DEEP * half)
 }
@@ -67,7 +72,8 @@ impl Places {
         self.0.nodes()
     }
 
-    /// The place nearest to y = 0 between the outermost ones: a contact's end itself may be an edge.
+    /// The place nearest to y = 0 between the outermost ones: a contact's end itself may be an
+    /// edge.
     pub fn nearest(&self) -> f64 {
         let all = self.all();
         0f64.clamp(all[0], all[all.len() - 1])
@@ -93,7 +99,8 @@ enum Far {
     HalfSpace(Sunk),
 }
 
-/// The shortening of a body between free faces deep below one place: per length it is `growth` / z + `rest` / z^3.
+/// The shortening of a body between free faces deep below one place: per length it is
+/// `growth` / z + `rest` / z^3.
 #[derive(Debug)]
 pub(super) struct Plate {
     growth: f64,
@@ -101,8 +108,8 @@ pub(super) struct Plate {
 }
 
 impl Plate {
-    /// That of the `body` below `y` under the `forces`, whose `strains` above are those of a column by a `rule`: the last panel tells how
-    /// far they still are from the plate's.
+    /// That of the `body` below `y` under the `forces`, whose `strains` above are those of a column
+    /// by a `rule`: the last panel tells how far they still are from the plate's.
     pub fn new(
         body: &SceneBody,
         y: f64,
@@ -136,7 +143,8 @@ pub(super) struct Sunk {
     forces: Vec<Force>,
 }
 
-/// What the load on a piece of the contact line displaces far from it: a force on either side of x = 0.
+/// What the load on a piece of the contact line displaces far from it: a force on either side of x
+/// = 0.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Force {
     /// Its place along the line (C).
@@ -148,7 +156,8 @@ pub(super) struct Force {
 }
 
 impl Sunk {
-    /// Below `y` in a body with this `share` of the compliance and Poisson's ratio, under the forces at places along the line.
+    /// Below `y` in a body with this `share` of the compliance and Poisson's ratio, under the
+    /// forces at places along the line.
     pub fn new(body: &SceneBody, y: f64, forces: impl Iterator<Item = Force>) -> Self {
         let forces = forces.map(|force| Force { y: force.y - y, ..force }).collect();
         Self { share: body.share, nu: body.nu, forces }
@@ -159,8 +168,9 @@ impl Sunk {
         self.sum(z, |r, part| (1.0 + part * self.constrained()) / r)
     }
 
-    /// At the surface, under Hertz's pressures across: the mean of 1 / r over them is (4 / pi) (K - E) / (k^2 sqrt(a^2 + u^2)) at the distance u
-    /// along the line, with the complete elliptic integrals of k^2 = a^2 / (a^2 + u^2).
+    /// At the surface, under Hertz's pressures across: the mean of 1 / r over them is (4 / pi) (K -
+    /// E) / (k^2 sqrt(a^2 + u^2)) at the distance u along the line, with the complete elliptic
+    /// integrals of k^2 = a^2 / (a^2 + u^2).
     fn at_surface(&self) -> f64 {
         let one = |Force { y, square, size }: &Force| {
             let wide = 4.0 * square;
@@ -200,7 +210,8 @@ impl Sunk {
     }
 }
 
-/// The forces of `body`'s images in both end faces, of the `weight` that an image has in the displacement.
+/// The forces of `body`'s images in both end faces, of the `weight` that an image has in the
+/// displacement.
 pub(super) fn images<'a>(
     body: &SceneBody,
     weight: f64,
@@ -215,7 +226,8 @@ pub(super) fn images<'a>(
     forces.iter().flat_map(move |force| faces.map(|face| image(force, face)))
 }
 
-/// How much `body` shortens per length along z (C / (2 R)) at the nodes of the depths of a `rule`, below `y` in its `field`.
+/// How much `body` shortens per length along z (C / (2 R)) at the nodes of the depths of a `rule`,
+/// below `y` in its `field`.
 pub(super) fn strains(body: &SceneBody, field: &Field, y: f64, rule: &Panels) -> Vec<f64> {
     // 1 / E in units of 1 / E*.
     let compliance = body.share / (1.0 - body.nu * body.nu);
@@ -236,8 +248,8 @@ struct Column {
 }
 
 impl Column {
-    /// That of a `body` with this treatment of its `end` below `y`, from its `field`, down to `deepest` (C) or to where the displacement
-    /// is known.
+    /// That of a `body` with this treatment of its `end` below `y`, from its `field`, down to
+    /// `deepest` (C) or to where the displacement is known.
     fn new(
         body: &SceneBody,
         end: End,
@@ -339,16 +351,16 @@ impl Closed {
     }
 }
 
-/// The tilt of the lines x = 0 at `depth` (C) below both surfaces, in units of C / (2 R), by least squares over the line where they touch, from the
-/// `fields` of the block and of the roller.
+/// The tilt of the lines x = 0 at `depth` (C) below both surfaces, in units of C / (2 R), by least
+/// squares over the line where they touch, from the `fields` of the block and of the roller.
 pub(super) fn tilt(scene: &Scene, fields: [&Field; 2], touch: &Touch, depth: f64) -> f64 {
     let places = Places::new(touch.ends);
     let closed = |y: &f64| Closed::new(scene, fields, touch, (*y, depth)).at(depth);
     places.slope(&places.all().iter().map(closed).collect::<Vec<_>>())
 }
 
-/// The approach of points at any depth below y = 0. Where the bodies do not touch there, it is that at the nearest place where they do and
-/// the tilt from there on.
+/// The approach of points at any depth below y = 0. Where the bodies do not touch there, it is that
+/// at the nearest place where they do and the tilt from there on.
 #[derive(Debug)]
 pub(super) struct Approaches {
     nearest: f64,

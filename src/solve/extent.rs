@@ -6,8 +6,8 @@ use crate::stress::BodyKind;
 /// Relative tolerance of a coordinate, which may have lost digits in a file.
 const ROUNDING: f64 = 1e-9;
 
-/// The extent of a body (m): y from end to end, z from its surface down. Across the contact the block has no
-/// end, and the roller its radius on either side.
+/// The extent of a body (m): y from end to end, z from its surface at the point's x down. Across
+/// the contact the block has no end, and the roller its radius on either side.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     body: BodyKind,
@@ -49,7 +49,19 @@ impl Extent {
     /// # Errors
     /// The first coordinate outside, with a remedy.
     pub fn check(&self, at_m: [f64; 3]) -> Result<(), Outside> {
-        (0..3).try_for_each(|axis| self.check_axis(axis, at_m[axis]))
+        (0..3).try_for_each(|axis| self.check_axis(axis, at_m[axis]))?;
+        let [x_m, _, z_m] = at_m;
+        // Across the round body, from its surface at this x.
+        let through_m = 2.0 * (self.half_width_m.powi(2) - x_m * x_m).max(0.0).sqrt();
+        if z_m <= through_m + ROUNDING * self.depth_m {
+            return Ok(());
+        }
+        Err(Outside {
+            axis: "z",
+            value_m: z_m,
+            reason: format!("is outside the {} at x = {x_m:e} m", self.body.name()),
+            remedy: format!("keep 0 <= z <= {through_m:e} m there"),
+        })
     }
 
     /// Whether one coordinate (m) lies within the body; `axis` is 0, 1 or 2 for x, y or z.

@@ -1,6 +1,6 @@
 //! Limits of grids of points.
 
-use super::extent::Extent;
+use super::extent::{Extent, Outside};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::stress::{BodyKind, Grid};
@@ -9,7 +9,10 @@ use crate::stress::{BodyKind, Grid};
 pub const MOST_GRID_POINTS: usize = 20_000_000;
 
 /// Refuses grids (C) that are empty, too large, or not within the body.
-pub(super) fn check_grid(case: &Case, body: BodyKind, grid: &Grid) -> Result<()> {
+///
+/// # Errors
+/// [`Error::Value`] with the axis and what to give instead.
+pub fn check_grid(case: &Case, body: BodyKind, grid: &Grid) -> Result<()> {
     let refuse = |axis: &str, value: String, reason: String, remedy: String| Error::Value {
         key: format!("grid {axis} ({})", body.name()),
         value,
@@ -24,15 +27,20 @@ pub(super) fn check_grid(case: &Case, body: BodyKind, grid: &Grid) -> Result<()>
         let reason = format!("a grid has 1 to {MOST_GRID_POINTS} points");
         return Err(refuse("size", value, reason, "choose other numbers of points".into()));
     }
+    let outside = |outside: Outside| {
+        let (value, reason) =
+            (format!("{:e} m", outside.value_m), format!("it {}", outside.reason));
+        refuse(outside.axis, value, reason, outside.remedy)
+    };
     let (extent, c_m) = (Extent::of(case, body), case.hertz().c_m);
     for (axis, values) in [&grid.x, &grid.y, &grid.z].into_iter().enumerate() {
         for v in values {
-            extent.check_axis(axis, v * c_m).map_err(|outside| {
-                let (value, reason) =
-                    (format!("{:e} m", outside.value_m), format!("it {}", outside.reason));
-                refuse(outside.axis, value, reason, outside.remedy)
-            })?;
+            extent.check_axis(axis, v * c_m).map_err(outside)?;
         }
     }
-    Ok(())
+    // A round body is less deep beside its middle.
+    let farthest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    extent
+        .check([farthest(&grid.x), grid.y[0], farthest(&grid.z)].map(|v| v * c_m))
+        .map_err(outside)
 }

@@ -23,8 +23,8 @@ pub fn solve_group(cases: &[Case], options: &Options) -> Vec<Result<Solution>> {
         .map(|case| {
             options.check_line(case)?;
             let key = Scene::new(case, options.method, options.psi).key();
-            // Extra points are in metres and therefore differ between cases; a force that has to be found is no
-            // other case's.
+            // Extra points are in metres and therefore differ between cases; a force that has to be
+            // found is no other case's.
             let own = !options.points.is_empty() || case.load.approach_m.is_some();
             let fits =
                 |(first, _): &&(SolvedCase, SharedStresses)| first.scene().scene.key() == key;

@@ -14,7 +14,8 @@ use crate::stress::{
     BodyKind, Critical, EDGE, RoundStress, away_from_edge, away_from_edges, curves,
 };
 
-/// Distances from the roller's end (C) at which [`KeyResults`] states the pressure.
+/// Distances from the contact's end at +y (C), that of the shorter body, at which [`KeyResults`]
+/// states the pressure.
 pub const END_DISTANCES: [f64; 8] = [0.1, 0.2, 0.3, 0.5, 1.0, 2.0, 3.0, 5.0];
 
 /// The main results of a case.
@@ -24,7 +25,7 @@ pub struct KeyResults {
     pub hertz: HertzScales,
     /// Load (N).
     pub load_n: f64,
-    /// Approach of the bodies' far points (m).
+    /// Approach of points one roller radius below the surfaces (m).
     pub approach_m: f64,
     /// Pressure at the contact's centre (p0).
     pub p_centre: f64,
@@ -32,20 +33,21 @@ pub struct KeyResults {
     pub p_max: f64,
     /// Its place x, y (C).
     pub p_max_at: [f64; 2],
-    /// Pressure (p0) at x = 0 and the [`END_DISTANCES`] from the roller's end; none beyond the
-    /// centre.
+    /// Pressure (p0) at x = 0 and the [`END_DISTANCES`] from the end at +y; none beyond the centre.
     pub p_at: [Option<f64>; END_DISTANCES.len()],
-    /// The most stressed place of both bodies outside 0.1 C of the roller's edge.
+    /// The most stressed place of both bodies outside 0.1 C of the contact's ends.
     pub critical: Critical,
 }
 
 /// A stress at a place, in units of C and p0.
 type Sample = (BodyKind, [f64; 3], RoundStress);
 
-/// Largest C / R for which samples are kept. Only closely conforming raceways under the largest loads exceed it.
+/// Largest C / R for which samples are kept. Only closely conforming raceways under the largest
+/// loads exceed it.
 const LARGEST_CURVATURE: f64 = 1.0;
 
-/// What the main results of all cases of one [`Scene`](super::Scene) are read from: small, so that many of them can be kept.
+/// What the main results of all cases of one [`Scene`](super::Scene) are read from: small, so that
+/// many of them can be kept.
 #[derive(Debug)]
 pub struct KeySolution {
     approaches: Approaches,
@@ -59,10 +61,11 @@ pub struct KeySolution {
 }
 
 impl KeySolution {
-    /// Solves the contact of `case` by `method`, and returns the case with its force, which is found first if the
-    /// approach is given in its place. The largest stress is sought on all standard
-    /// curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a search along the curves in the plane x = 0,
-    /// which finds it within 3e-3 p0 at 1e-2 and 2e-3 at 5e-3 (a test of this module checks that).
+    /// Solves the contact of `case` by `method`, and returns the case with its force, which is
+    /// found first if the approach is given in its place. The largest stress is sought on all
+    /// standard curves for tolerances below 5e-3 and where the bodies slide, and otherwise by a
+    /// search along the curves in the plane x = 0, which finds it within 3e-3 p0 at 1e-2 and 2e-3
+    /// at 5e-3 (a test of this module checks that).
     ///
     /// # Errors
     /// [`crate::base::Error::NotConverged`] when the contact does not settle.
@@ -196,8 +199,8 @@ fn every_point(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], all: &mut V
     }
 }
 
-/// A first pass over all standard curves, and then closer points around the largest stress, on one `side`
-/// of the overlap's middle, 1 or -1. Places here are distances from it.
+/// A first pass over all standard curves, and then closer points around the largest stress, on one
+/// `side` of the overlap's middle, 1 or -1. Places here are distances from it.
 fn search(solved: &SolvedScene, kind: BodyKind, ends: [f64; 2], side: f64, all: &mut Vec<Sample>) {
     let field = solved.field(kind);
     let (half_length, middle) = (solved.scene.half_length, solved.scene.middle);
@@ -279,7 +282,8 @@ mod tests {
             let factors = Factors { load: 5e-4, slenderness, length_ratio };
             let case = Case::from_factors("case", 0.01, material, material, factors);
             let method = EdgeModel::QuarterSpace;
-            // The curves' points are interpolated, the search's are not; both stay within the tolerance of the truth.
+            // The curves' points are interpolated, the search's are not; both stay within the
+            // tolerance of the truth.
             for (tolerance, limit) in [(1e-2, 3e-3), (5e-3, 2e-3)] {
                 let case = case.clone().with_tolerance(tolerance);
                 let whole = solve(&case, &Options::new(method)).unwrap();

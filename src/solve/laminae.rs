@@ -1,4 +1,5 @@
-//! The contact in equal slices, as programs for bearings exchange it, beside the slices of the standard.
+//! The contact in equal slices, as programs for bearings exchange it, beside the slices of the
+//! standard.
 
 use super::solved::SolvedCase;
 use crate::base::{BodyKind, HertzScales, Panels};
@@ -6,8 +7,8 @@ use crate::case::Case;
 use crate::stress::Load;
 use std::f64::consts::PI;
 
-/// The standard's spring constant of a line contact in series with another one like it, of steel, N and mm, and the powers
-/// of length and deflection (ISO/TS 16281:2008, after Palmgren).
+/// The standard's spring constant of a line contact in series with another one like it, of steel, N
+/// and mm, and the powers of length and deflection (ISO/TS 16281:2008, after Palmgren).
 const BOTH_CONTACTS: f64 = 35948.0;
 const LENGTH_POWER: f64 = 8.0 / 9.0;
 const POWER: f64 = 10.0 / 9.0;
@@ -34,12 +35,13 @@ pub struct Lamina {
     pub edge_factor: f64,
 }
 
-/// The contact of a solved case in `count` equal slices over the bodies' overlap, beside those of ISO/TS 16281 under the
-/// same force and, where the tilt is free, the same moment; where it is held, at that tilt.
+/// The contact of a solved case in `count` equal slices over the bodies' overlap, beside those of
+/// ISO/TS 16281 under the same force and, where the tilt is free, the same moment; where it is
+/// held, at that tilt.
 ///
-/// The standard gives a slice q = c d^(10/9), with d its deflection, which knows nothing of its neighbours, and c =
-/// 2^(10/9) 35948 L^(8/9) / n for one contact (N, mm). The constant is that of steel. Error of the own loads: the solution's
-/// tolerance; their sum is the force to rounding.
+/// The standard gives a slice q = c d^(10/9), with d its deflection, which knows nothing of its
+/// neighbours, and c = 2^(10/9) 35948 L^(8/9) / n for one contact (N, mm). The constant is that of
+/// steel. Error of the own loads: the solution's tolerance; their sum is the force to rounding.
 pub fn laminae(solved: &SolvedCase, count: usize) -> Vec<Lamina> {
     let case = solved.case();
     let hertz = *solved.hertz();
@@ -70,8 +72,9 @@ pub fn laminae(solved: &SolvedCase, count: usize) -> Vec<Lamina> {
     (0..count).map(lamina).collect()
 }
 
-/// The loads between the `edges` (C^2 p0). On each panel of its axis the load per length is a polynomial, so
-/// that Gauss's rule on the common parts of panels and slices is exact, and the sum is the force.
+/// The loads between the `edges` (C^2 p0). On each panel of its axis the load per length is a
+/// polynomial, so that Gauss's rule on the common parts of panels and slices is exact, and the sum
+/// is the force.
 fn own_loads(solved: &SolvedCase, edges: &[f64]) -> Vec<f64> {
     let pressure = &solved.scene().pressure;
     let axis = pressure.axis();
@@ -103,17 +106,20 @@ fn drop_at(case: &Case, y_m: f64) -> f64 {
     BodyKind::ALL.into_iter().map(drop).sum()
 }
 
-/// The standard's loads of slices at `places` (m), in equilibrium with the case's force, and with its moment if the tilt
-/// is free.
+/// The standard's loads of slices at `places` (m), in equilibrium with the case's force, and with
+/// its moment if the tilt is free.
 fn standard_loads(case: &Case, places: &[f64], drops: &[f64], length_m: f64) -> Vec<f64> {
     let count = places.len() as f64;
+    // A table of drops may be counted from anywhere: the approach follows it.
+    let least = drops.iter().copied().fold(f64::INFINITY, f64::min);
+    let drops: Vec<f64> = drops.iter().map(|drop| drop - least).collect();
     // N and m in place of N and mm.
     let spring = 2f64.powf(POWER) * BOTH_CONTACTS * (1e3 * length_m).powf(LENGTH_POWER) / count
         * 1e3f64.powf(POWER);
     let loads = |approach: f64, tilt: f64| -> Vec<f64> {
         let slice =
             |(y, drop): (&f64, &f64)| spring * (approach + tilt * y - drop).max(0.0).powf(POWER);
-        places.iter().zip(drops).map(slice).collect()
+        places.iter().zip(&drops).map(slice).collect()
     };
     let force = case.load.force_n;
     // The deflection of all slices alike, and what profile and tilt may add.
@@ -149,7 +155,8 @@ fn bisect([mut low, mut high]: [f64; 2], value: impl Fn(f64) -> f64) -> f64 {
     0.5 * (low + high)
 }
 
-/// The standard's factor of the pressure of slice `k` of `count`, from 1: f = 1 - 0.01 / ln(1.985 |2k - n - 1| / (2n - 2)).
+/// The standard's factor of the pressure of slice `k` of `count`, from 1:
+/// f = 1 - 0.01 / ln(1.985 |2k - n - 1| / (2n - 2)).
 fn edge_factor(k: usize, count: usize) -> f64 {
     let (k, n) = (k as f64, count as f64);
     1.0 - 0.01 / (1.985 * (2.0 * k - n - 1.0).abs() / (2.0 * n - 2.0)).ln()
@@ -199,7 +206,8 @@ mod tests {
         let all = laminae(&solved(None, false), 41);
         let ratio = |k: usize| all[k].load_n / all[k].standard_load_n;
         assert!((ratio(20) - 1.0).abs() < 0.05, "{}", ratio(20));
-        // The outermost slice of a flush end carries less by the true contact of nu = 0.3; the standard's slices are alike.
+        // The outermost slice of a flush end carries less by the true contact of nu = 0.3; the
+        // standard's slices are alike.
         assert!(
             (ratio(0) - ratio(40)).abs() < 1e-9 && (ratio(0) - 1.0).abs() > 0.02,
             "{}",

@@ -39,7 +39,7 @@ pub use cell_layers::{CellLayer, check_layers, layers_on_cells};
 pub use cell_stress::PEAK_CURVE;
 pub use cells::PressureCell;
 pub use extent::{Extent, Outside};
-pub use grid::MOST_GRID_POINTS;
+pub use grid::{MOST_GRID_POINTS, check_grid};
 pub use group::{solve, solve_group};
 pub use key_results::{END_DISTANCES, KeyResults, KeySolution};
 pub use laminae::{Lamina, laminae};

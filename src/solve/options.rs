@@ -43,26 +43,22 @@ impl Options {
         }
     }
 
-    /// Whether the curve called `name` is wanted; one at -x or at the -y end is with its twin on the other
-    /// side.
+    /// Whether the curve called `name` is wanted; one at -x or at the -y end is with its twin on
+    /// the other side.
     pub fn wants(&self, name: &str) -> bool {
         let twin = curves::twin(name);
         self.curves.iter().any(|wanted| wanted == name || wanted == twin)
     }
 
-    /// Refuses what the line engine does not take: a rough surface, and what [`Options::check`] refuses.
+    /// Refuses what the line engine does not take: a rough surface, and what [`Options::check`]
+    /// refuses.
     ///
     /// # Errors
     /// [`Error::Value`].
     pub fn check_line(&self, case: &Case) -> Result<()> {
-        if let Some(surface) = &case.surface {
-            return Err(Error::Value {
-                key: "surface.heights".into(),
-                value: format!("{:?}", surface.heights.display()),
-                reason: "contacts along a line are smooth; only cells carry heights".into(),
-                remedy: "solve this case on cells (`edgeline solve --engine cells`), or remove [surface]".into(),
-            });
-        }
+        let remedy =
+            "solve this case on cells (`edgeline solve --engine cells`), or remove [surface]";
+        case.check_smooth("contacts along a line are smooth; only cells carry heights", remedy)?;
         self.check(case)
     }
 

@@ -1,5 +1,5 @@
-//! What the material of a body goes through as the contact passes it: at a place (y, z) it sees the stresses
-//! along x, one after the other.
+//! What the material of a body goes through as the contact passes it: at a place (y, z) it sees the
+//! stresses along x, one after the other.
 
 use super::extent::Extent;
 use super::shaping::Shaping;
@@ -18,7 +18,8 @@ const REACH: f64 = 10.0;
 const STEP: f64 = 0.025;
 const BEYOND: i32 = 20;
 
-/// Largest depth of the places, and distance beyond the other body's end, in half-widths of the contact.
+/// Largest depth of the places, and distance beyond the other body's end, in half-widths of the
+/// contact.
 const DEPTH: f64 = 3.0;
 
 /// The measures of fatigue at places over the length and the depth of a body.
@@ -26,9 +27,11 @@ const DEPTH: f64 = 3.0;
 pub struct Passage {
     /// The body.
     pub body: BodyKind,
-    /// Where the contact's middle is seen from the place, negated: the x of the history, ascending (C).
+    /// Where the contact's middle is seen from the place, negated: the x of the history, ascending
+    /// (C).
     pub x: Vec<f64>,
-    /// Places along the body, ascending (C); of a contact that is symmetric about y = 0 those from there on.
+    /// Places along the body, ascending (C); of a contact that is symmetric about y = 0 those from
+    /// there on.
     pub y: Vec<f64>,
     /// Depths, ascending from 0 (C).
     pub z: Vec<f64>,
@@ -38,8 +41,8 @@ pub struct Passage {
 }
 
 impl Passage {
-    /// The passage of `body` in a solved case, at `counts` places along y and down z, at least 2 each. Runs
-    /// on all threads of the current pool.
+    /// The passage of `body` in a solved case, at `counts` places along y and down z, at least 2
+    /// each. Runs on all threads of the current pool.
     pub fn new(solved: &SolvedCase, body: BodyKind, counts: [usize; 2]) -> Self {
         let scene = solved.scene();
         let lines = scene.pressure.line_loads();
@@ -60,7 +63,8 @@ impl Passage {
         Self::at(solved, body, [x, y, z])
     }
 
-    /// The passage of the same body at the same places of the same case, as another model has solved it.
+    /// The passage of the same body at the same places of the same case, as another model has
+    /// solved it.
     #[must_use]
     pub fn by(&self, solved: &SolvedCase) -> Self {
         Self::at(solved, self.body, [&self.x, &self.y, &self.z].map(Clone::clone))
@@ -85,7 +89,8 @@ impl Passage {
         Self { body, x, y, z, measures, ends: scene.scene.overlap() }
     }
 
-    /// Whether a place counts: not within 0.1 C of the overlap's edges, where stresses may have no limit.
+    /// Whether a place counts: not within 0.1 C of the overlap's edges, where stresses may have no
+    /// limit.
     pub fn counts(&self, place: usize) -> bool {
         let [y, z] = self.place(place);
         away_from_edges([0.0, y, z], self.ends, EDGE)
@@ -96,7 +101,8 @@ impl Passage {
         [self.y[place % self.y.len()], self.z[place / self.y.len()]]
     }
 
-    /// The place with the largest value of a measure, among those that count; none without the measure.
+    /// The place with the largest value of a measure, among those that count; none without the
+    /// measure.
     pub fn critical(&self, of: impl Fn(&Measures) -> Option<f64>) -> Option<Extreme> {
         let all = self.measures.iter().enumerate().filter(|(i, _)| self.counts(*i));
         let values = all.filter_map(|(at, m)| of(m).map(|value| Extreme { value, at }));
@@ -106,11 +112,7 @@ impl Passage {
 
 /// Shear modulus of a body (p0).
 fn body_modulus(solved: &SolvedCase, body: BodyKind) -> f64 {
-    let case = solved.case();
-    let material = match body {
-        BodyKind::Block => case.block.material,
-        BodyKind::Roller => case.roller.material,
-    };
+    let material = solved.case().material(body);
     0.5 * material.young_pa / (1.0 + material.poisson) / solved.hertz().p0_pa
 }
 
@@ -136,8 +138,9 @@ fn positive_steps(width: f64) -> Vec<f64> {
     near.chain(far).map(|x| width * x).collect()
 }
 
-/// Places along a body with the ends `own`: `count` on the overlap, from its middle if it is `symmetric`, closer
-/// towards its ends, and half as many up to `reach` beyond an end that the body goes past.
+/// Places along a body with the ends `own`: `count` on the overlap, from its middle if it is
+/// `symmetric`, closer towards its ends, and half as many up to `reach` beyond an end that the body
+/// goes past.
 fn along(overlap: [f64; 2], own: [f64; 2], symmetric: bool, reach: f64, count: usize) -> Vec<f64> {
     let (middle, half) = (0.5 * (overlap[0] + overlap[1]), 0.5 * (overlap[1] - overlap[0]));
     let from = if symmetric { 0.0 } else { -1.0 };
@@ -188,7 +191,8 @@ impl Place<'_> {
     }
 }
 
-/// A stress in axes turned by `angle` from x towards z: those of a surface that falls by this slope.
+/// A stress in axes turned by `angle` from x towards z: those of a surface that falls by this
+/// slope.
 fn turned(s: &StressTensor, angle: f64) -> StressTensor {
     let (sin, cos) = angle.sin_cos();
     StressTensor {

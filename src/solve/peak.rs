@@ -10,8 +10,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Places along the contact, closer towards its ends.
 const PLACES: usize = 33;
 
-/// Depths, in the largest half-widths of the contact: where von Mises stress and shear are largest at a plane strain, and
-/// at the narrower contact of a loaded end.
+/// Depths, in the largest half-widths of the contact: where von Mises stress and shear are largest
+/// at a plane strain, and at the narrower contact of a loaded end.
 const DEPTHS: [f64; 8] = [0.0, 0.15, 0.3, 0.4, 0.5, 0.6, 0.7, 0.85];
 
 /// Places across the contact where the shear stress is largest, in half-widths.
@@ -20,9 +20,10 @@ const ACROSS: [f64; 5] = [0.5, 0.65, 0.8, 0.9, 1.0];
 /// Halvings of the distances around the largest value.
 const HALVINGS: usize = 4;
 
-/// The largest value (p0) of `objective` in both bodies and its place (C), more than `excluded` (C) from the edges of the
-/// bodies' overlap. Von Mises stress is sought in the plane x = 0, where that of a frictionless contact is largest below the
-/// surface; the range of tau_xz is twice its largest size, as the passage sees both signs.
+/// The largest value (p0) of `objective` in both bodies and its place (C), more than `excluded` (C)
+/// from the edges of the bodies' overlap. Von Mises stress is sought in the plane x = 0, where that
+/// of a frictionless contact is largest below the surface; the range of tau_xz is twice its largest
+/// size, as the passage sees both signs.
 ///
 /// Error: the search meets the largest value within 1e-3 of it (a test checks that).
 pub fn peak(solved: &SolvedCase, objective: Objective, excluded: f64) -> Critical {
@@ -41,7 +42,8 @@ pub fn peak(solved: &SolvedCase, objective: Objective, excluded: f64) -> Critica
     if roller.value > block.value { roller } else { block }
 }
 
-/// The largest value of a function along a line, on `count` places and then closer about the largest.
+/// The largest value of a function along a line, on `count` places and then closer about the
+/// largest.
 fn highest(
     ends: [f64; 2],
     symmetric: bool,
@@ -91,7 +93,8 @@ fn of_body(solved: &SolvedCase, body: BodyKind, objective: Objective, excluded: 
     let depths = DEPTHS.map(|z| z * width);
     let symmetric = scene.scene.is_symmetric();
     highest(scene.ends(), symmetric, PLACES, |y| search.at(y, &across, &depths));
-    // Closer in all directions: between the depths of the first search the largest value may lie at another place.
+    // Closer in all directions: between the depths of the first search the largest value may lie at
+    // another place.
     let (mut step, [from, to]) = (0.075 * width, scene.ends());
     let mut along = FRAC_PI_2 * 0.5 * (to - from) / (PLACES - 1) as f64;
     for _ in 0..HALVINGS {

@@ -42,9 +42,9 @@ pub enum Tilt {
     Free(f64),
 }
 
-/// A dimensionless contact. The load factor W is not in it, unless a profile or a tilt needs it: only the
-/// approach's reference depth and the roller's diametral tension know the radius. y is counted from the
-/// roller's middle.
+/// A dimensionless contact. The load factor W is not in it, unless a profile or a tilt needs it:
+/// only the approach's reference depth and the roller's diametral tension know the radius. y is
+/// counted from the roller's middle.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Half-length of the bodies' overlap (C).
@@ -57,10 +57,11 @@ pub struct Scene {
     pub load: f64,
     /// The tilt.
     pub tilt: Tilt,
-    /// Whether the contact carries a traction along x. Of which friction does not matter: the stresses under
-    /// a traction equal to the pressure are kept by themselves.
+    /// Whether the contact carries a traction along x. Of which friction does not matter: the
+    /// stresses under a traction equal to the pressure are kept by themselves.
     pub slides: bool,
-    /// Whether measured heights come on top of the surfaces: nothing is symmetric then. Only the engine on cells takes them.
+    /// Whether measured heights come on top of the surfaces: nothing is symmetric then. Only the
+    /// engine on cells takes them.
     pub rough: bool,
     /// 2 R / C, R the equivalent radius, where a profile or a held tilt needs it, otherwise zero.
     pub steepness: f64,
@@ -76,15 +77,16 @@ pub struct Scene {
 }
 
 impl SceneBody {
-    /// A straight body of half-length `half` (C) with its middle at y = 0, of Poisson's ratio `nu` and
-    /// `share` of the compliance.
+    /// A straight body of half-length `half` (C) with its middle at y = 0, of Poisson's ratio `nu`
+    /// and `share` of the compliance.
     pub fn straight(half: f64, nu: f64, share: f64) -> Self {
         Self { half, middle: 0.0, nu, share, profile: None }
     }
 }
 
 impl Scene {
-    /// The scene of parallel `bodies` with their middles at one place, by default edge models' own psi.
+    /// The scene of parallel `bodies` with their middles at one place, by default edge models' own
+    /// psi.
     pub fn symmetric(bodies: PerBody<SceneBody>, model: EdgeModel, tolerance: f64) -> Self {
         let half_length = bodies.block.half.min(bodies.roller.half);
         Self {
@@ -179,8 +181,8 @@ impl Scene {
         }
     }
 
-    /// The same scene in a unit of length that is 1 / `factor` of the present one; the units of pressure,
-    /// of load and of displacement follow, so that the gap stays x^2.
+    /// The same scene in a unit of length that is 1 / `factor` of the present one; the units of
+    /// pressure, of load and of displacement follow, so that the gap stays x^2.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let body = |body: &SceneBody| SceneBody {
@@ -232,7 +234,8 @@ impl Scene {
         self.is_aligned() && self.tilt == Tilt::Held(0.0)
     }
 
-    /// Whether the contact may end before the bodies do; between straight and parallel ones it does not.
+    /// Whether the contact may end before the bodies do; between straight and parallel ones it does
+    /// not.
     pub fn may_end(&self) -> bool {
         self.steepness != 0.0 || !self.is_symmetric()
     }
@@ -302,7 +305,8 @@ impl Scene {
         self.model.end(self.bodies[kind].nu, self.psi)
     }
 
-    /// The exponents m > 0 of the pressure s^-m at the overlap's ends; none where it is not singular.
+    /// The exponents m > 0 of the pressure s^-m at the overlap's ends; none where it is not
+    /// singular.
     pub fn corner_exponents(&self) -> [Option<f64>; 2] {
         let overlap = self.overlap();
         [0, 1].map(|side| {

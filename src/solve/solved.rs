@@ -68,11 +68,10 @@ impl SolvedCase {
     /// Solves the contact of `case`.
     ///
     /// # Errors
-    /// [`Error::Value`] when `options` name an unknown curve or a point outside its body, or where no legal
-    /// force causes the approach that the case asks for; [`Error::NotConverged`] and [`Error::Unsound`] as
-    /// [`SolvedScene::new`].
+    /// [`Error::Value`] when `options` name an unknown curve or a point outside its body, or where
+    /// no legal force causes the approach that the case asks for; [`Error::NotConverged`] and
+    /// [`Error::Unsound`] as [`SolvedScene::new`].
     pub fn new(case: &Case, options: &Options) -> Result<Self> {
-        options.check_line(case)?;
         let (case, scene) = with_force(case, options)?;
         Ok(Self::of_scene(&case, options, Arc::new(scene)))
     }

@@ -31,16 +31,17 @@ const SEARCH: f64 = 3e-2;
 /// Most contacts that are solved until the ends are found, or the tilt that is held.
 const MOST_TRIALS: usize = 10;
 
-/// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser tolerances. Below,
-/// it falls with the tolerance, as the pressure is steep beside an end, to the part `CLOSEST` of this.
+/// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser
+/// tolerances. Below, it falls with the tolerance, as the pressure is steep beside an end, to the
+/// part `CLOSEST` of this.
 const END_ERROR: f64 = 2e-3;
 const CLOSEST: f64 = 0.1;
 
 /// How far beyond a first guess the axis reaches, in half-lengths of the contact.
 const MARGIN: f64 = 0.15;
 
-/// Largest width, in its lengths, of a contact that ends before its bodies do: a wider one asks for nodes across, not along. The same in a
-/// first guess, where no solution is found.
+/// Largest width, in its lengths, of a contact that ends before its bodies do: a wider one asks for
+/// nodes across, not along. The same in a first guess, where no solution is found.
 const WIDEST: f64 = 3.0;
 const WIDEST_GUESS: f64 = 2.0;
 
@@ -53,8 +54,9 @@ const WIDER: f64 = 1.4;
 /// Tolerance of a contact whose tilt is sought, in those of others.
 const FOLLOWS: f64 = 0.1;
 
-/// Most tilts between the surfaces that are tried for one that is held at a depth, and those after which the contact's own
-/// error is allowed: two solutions, as far apart as that, may follow each other from the same tilt.
+/// Most tilts between the surfaces that are tried for one that is held at a depth, and those after
+/// which the contact's own error is allowed: two solutions, as far apart as that, may follow each
+/// other from the same tilt.
 const MOST_TILTS: usize = 20;
 const PATIENCE: usize = 10;
 
@@ -90,9 +92,12 @@ pub struct SolvedScene {
     pub contact: ContactSolution,
     /// Whether the contact ends before its bodies do, at either end.
     pub open: [bool; 2],
+    /// Whether the search for the contact's ends came to an end.
+    is_settled: bool,
     /// Run times of set-up and contact.
     pub seconds: Seconds,
-    /// The largest condition number of the bodies' equations, see [`crate::body::Layer::condition`].
+    /// The largest condition number of the bodies' equations, see
+    /// [`crate::body::Layer::condition`].
     pub condition: f64,
     /// The scene, the contact and its pressure in the solution's own unit.
     own: Own,
@@ -119,7 +124,11 @@ impl SolvedScene {
     pub fn new(scene: &Scene) -> Result<Self> {
         let soundness = soundness(scene);
         let first = Self::within(scene, None, soundness);
-        let failed = matches!(&first, Err(Error::Unsound { .. } | Error::NotConverged { .. }));
+        let failed = match &first {
+            Err(Error::Unsound { law, .. }) => *law != WIDTH,
+            Err(Error::NotConverged { .. }) => true,
+            _ => false,
+        };
         if !failed || !scene.may_end() {
             return first;
         }
@@ -149,13 +158,14 @@ impl SolvedScene {
     /// Solves a scene on the way to another one: it need not be sound.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`], but for the laws of contact.
+    /// [`Error::NotConverged`] and [`Error::Unsound`] as [`SolvedScene::new`], but for the laws of
+    /// contact.
     pub(super) fn roughly(scene: &Scene) -> Result<Self> {
         Self::within(scene, None, f64::INFINITY)
     }
 
-    /// Solves a scene that may violate the laws of contact by `soundness`, at the resolution for its tolerance
-    /// unless one is given.
+    /// Solves a scene that may violate the laws of contact by `soundness`, at the resolution for
+    /// its tolerance unless one is given.
     fn within(scene: &Scene, given: Option<&Resolution>, soundness: f64) -> Result<Self> {
         let start = Instant::now();
         let unit = scene.own_unit();
@@ -176,7 +186,7 @@ impl SolvedScene {
         let resolution = given.copied().unwrap_or_else(of_tolerance);
         let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
         let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
-        let Settled { line, parts, contact, setup, .. } = trial.settled(line, known)?;
+        let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let open = left_open(scene, &line, &contact);
         if soundness.is_finite() && open == [true; 2] {
@@ -196,6 +206,7 @@ impl SolvedScene {
             scene: asked.clone(),
             unit,
             resolution,
+            is_settled,
             wavenumbers,
             pressure: pressure.scaled(unit),
             contact: contact.scaled(unit),
@@ -217,9 +228,10 @@ impl SolvedScene {
         }
     }
 
-    /// Whether the contact iteration reached its tolerance.
+    /// Whether the contact iteration reached its tolerance, and the search for the contact's ends
+    /// its own.
     pub fn converged(&self) -> bool {
-        self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
+        self.is_settled && self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
     }
 
     /// Whether both bodies share one computation.
@@ -336,8 +348,8 @@ fn soundness(scene: &Scene) -> f64 {
 }
 
 impl Scene {
-    /// The resolution for a tolerance (p0), where `slices` are what is known of a contact that may end before its
-    /// bodies do.
+    /// The resolution for a tolerance (p0), where `slices` are what is known of a contact that may
+    /// end before its bodies do.
     pub(super) fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
         let overlap = self.overlap();
         if slices.is_some_and(|slices| self.ends_inside(slices)) {
@@ -361,8 +373,9 @@ impl Scene {
         slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
     }
 
-    /// The unit of length, in C, in which the contact has a half-width of about 1, or a half-length where that is shorter. That of
-    /// Hertz's line contact is left as it is where the contact is not much wider.
+    /// The unit of length, in C, in which the contact has a half-width of about 1, or a half-length
+    /// where that is shorter. That of Hertz's line contact is left as it is where the contact is
+    /// not much wider.
     fn own_unit(&self) -> f64 {
         if !self.may_end() {
             return 1.0;
@@ -390,8 +403,8 @@ impl Scene {
     }
 }
 
-/// Whether the contact ends before its bodies do, at either end: its axis does, or the last nodes carry no
-/// load.
+/// Whether the contact ends before its bodies do, at either end: its axis does, or the last nodes
+/// carry no load.
 fn left_open(scene: &Scene, line: &Line, contact: &ContactSolution) -> [bool; 2] {
     let last = contact.coefficients.len() - 1;
     let outermost = [if scene.is_symmetric() { last } else { 0 }, last];
@@ -437,8 +450,8 @@ impl Line {
     }
 }
 
-/// The search for the zero of a function whose slope is about 1, or at least of one sign: by secants, and within two
-/// arguments whose values are of different signs as soon as both are known.
+/// The search for the zero of a function whose slope is about 1, or at least of one sign: by
+/// secants, and within two arguments whose values are of different signs as soon as both are known.
 #[derive(Debug, Default)]
 struct Secants {
     /// The argument and the value before.
@@ -449,7 +462,8 @@ struct Secants {
 }
 
 impl Secants {
-    /// Distance of two arguments with values of different signs; infinite as long as one is unknown.
+    /// Distance of two arguments with values of different signs; infinite as long as one is
+    /// unknown.
     fn width(&self) -> f64 {
         match (self.below, self.above) {
             (Some(one), Some(other)) => (other - one).abs(),
@@ -510,6 +524,8 @@ struct Settled {
     parts: Parts,
     contact: ContactSolution,
     known: Known,
+    /// Whether the ends no longer moved.
+    is_settled: bool,
     /// Time spent on the bodies (s).
     setup: f64,
 }
@@ -539,8 +555,8 @@ struct Accuracy {
 struct Trial<'a> {
     scene: &'a Scene,
     resolution: &'a Resolution,
-    /// Whether the pressure has the power of an end that it reaches. Before the contact's ends are known it may carry
-    /// nothing there.
+    /// Whether the pressure has the power of an end that it reaches. Before the contact's ends are
+    /// known it may carry nothing there.
     powers: bool,
     accuracy: Accuracy,
     gap: &'a Shaped,
@@ -560,7 +576,7 @@ impl Trial<'_> {
             let close = |(a, b): (&f64, &f64)| (a - b).abs() <= self.end_error() * line.half();
             let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
             if same || trial == MOST_TRIALS {
-                return Ok(Settled { line, parts, contact, known, setup });
+                return Ok(Settled { line, parts, contact, known, is_settled: same, setup });
             }
             line = found;
         }
@@ -644,8 +660,8 @@ impl Trial<'_> {
             Tilt::Held(wanted) if scene.depth != 0.0 => wanted,
             Tilt::Held(_) | Tilt::Free(_) => return solved(problem.rotation, known, &settings),
         };
-        // Between the surfaces the tilt is another one than at the depth where it is held, by what the load
-        // tilts the bodies up to there: nearly a multiple of its moment.
+        // Between the surfaces the tilt is another one than at the depth where it is held, by what
+        // the load tilts the bodies up to there: nearly a multiple of its moment.
         let mut secants = Secants::default();
         let mut off = f64::INFINITY;
         // A pressure within the tolerance does not follow a change of the tilt below it.
@@ -658,7 +674,8 @@ impl Trial<'_> {
             let solution = solved(rotation, known, &rough)?;
             let deep = self.tilt(parts, &solution);
             off = (deep - wanted) * scene.half_length;
-            // Solutions from different guesses differ by less than their error, and so do their tilts.
+            // Solutions from different guesses differ by less than their error, and so do their
+            // tilts.
             let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
             let exhausted = secants.width() * scene.half_length <= error || trial >= PATIENCE;
             if off.abs() <= error || exhausted && off.abs() <= self.accuracy.tolerance {
@@ -698,14 +715,18 @@ impl Trial<'_> {
     }
 }
 
-/// Refuses a contact of the largest half-width `widest` that is wider than `limit` times its `length`.
+/// The law that a contact wider than long does not hold.
+const WIDTH: &str = "the contact's width over its length along y";
+
+/// Refuses a contact of the largest half-width `widest` that is wider than `limit` times its
+/// `length`.
 fn check_length(widest: f64, length: f64, limit: f64) -> Result<()> {
     let value = 2.0 * widest / length;
     if value <= limit {
         return Ok(());
     }
     Err(Error::Unsound {
-        law: "the contact's width over its length along y",
+        law: WIDTH,
         value,
         limit,
         remedy: "take the longer direction as y (exchange the radii of roller and profile), or --engine cells"

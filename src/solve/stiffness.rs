@@ -12,9 +12,9 @@ const PLACE_STEP: f64 = 5e-3;
 
 /// The stiffnesses of a solved case.
 ///
-/// Approach and tilt are solved for at forces and moments a step to either side, with the tilt free; the matrix of their
-/// central differences is inverted. The error is that of a difference: about the square of the step, and the solution's
-/// tolerance.
+/// Approach and tilt are solved for at forces and moments a step to either side, with the tilt
+/// free; the matrix of their central differences is inverted. The error is that of a difference:
+/// about the square of the step, and the solution's tolerance.
 ///
 /// # Errors
 /// As [`SolvedCase::new`].
@@ -51,8 +51,8 @@ pub fn stiffness(solved: &SolvedCase, options: &Options) -> Result<Stiffness> {
     let determinant = by_force[0] * by_moment[1] - by_force[1] * by_moment[0];
     if determinant.is_nan() || determinant <= 0.0 {
         return Err(Error::Unsound {
-            law: "the determinant of the contact's compliance",
-            value: determinant,
+            law: "the determinant of the contact's compliance, its sign changed,",
+            value: -determinant,
             limit: 0.0,
             remedy: "take a finer [accuracy] tolerance".into(),
         });

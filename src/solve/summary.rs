@@ -19,10 +19,10 @@ pub struct Summary<D = Details> {
     pub hertz: HertzScales,
     /// Load (N).
     pub load_n: f64,
-    /// Approach of the bodies' far points that the model implies (m).
+    /// Approach (m) of the points one roller radius below both surfaces at y = 0.
     pub approach_m: f64,
-    /// Tilt of the lines x = 0 one roller radius below the surfaces, by least squares over the contact
-    /// (rad); positive where the side of larger y is pressed deeper.
+    /// Tilt of the lines x = 0 one roller radius below the surfaces, by least squares over the
+    /// contact (rad); positive where the side of larger y is pressed deeper.
     pub tilt_rad: f64,
     /// Pressure at the contact's centre (Pa).
     pub p_centre_pa: f64,
@@ -42,7 +42,8 @@ pub struct Summary<D = Details> {
     pub load_error_rel: f64,
     /// Time spent.
     pub seconds: Seconds,
-    /// The most stressed place of the curves, more than 0.1 C from the roller's edge.
+    /// The most stressed place of the curves, more than 0.1 C from the surface's edges at the ends
+    /// of the bodies' overlap.
     pub critical: Option<CriticalSummary>,
     /// The resolution and the work.
     pub details: D,
@@ -143,9 +144,9 @@ pub struct Details {
     pub stiffness: Option<Stiffness>,
 }
 
-/// The stiffnesses of a contact at its load: how force and moment about the roller's middle grow with the approach there
-/// and with the tilt. They are those between points and lines one roller radius below the surfaces, as are approach and
-/// tilt.
+/// The stiffnesses of a contact at its load: how force and moment about the roller's middle grow
+/// with the approach there and with the tilt. They are those between points and lines one roller
+/// radius below the surfaces, as are approach and tilt.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Stiffness {
@@ -155,8 +156,9 @@ pub struct Stiffness {
     pub moment_by_tilt_nm_per_rad: f64,
     /// Force by tilt at constant approach (N/rad); zero where the contact is symmetric.
     pub force_by_tilt_n_per_rad: f64,
-    /// Moment by approach at constant tilt (N); zero where the contact is symmetric. It differs a little from the force by
-    /// tilt, as approach and tilt are those of points and lines at a depth.
+    /// Moment by approach at constant tilt (N); zero where the contact is symmetric. It differs a
+    /// little from the force by tilt, as approach and tilt are those of points and lines at a
+    /// depth.
     pub moment_by_approach_n: f64,
 }
 

@@ -5,9 +5,9 @@ use super::flat::FlatStress;
 use super::round::{DIAMETRAL_TENSION, RoundStress};
 use crate::base::StressTensor;
 
-/// A [`Field`] that is computed in a unit of length of its own, and so with a unit of pressure of its own:
-/// both are `unit` times C and p0. A contact much wider than C is then one of half-width 1, to which all
-/// resolutions belong.
+/// A [`Field`] that is computed in a unit of length of its own, and so with a unit of pressure of
+/// its own: both are `unit` times C and p0. A contact much wider than C is then one of half-width
+/// 1, to which all resolutions belong.
 #[derive(Debug)]
 pub struct BodyField<'a> {
     field: Field<'a>,
@@ -75,8 +75,8 @@ impl<'a> BodyField<'a> {
     }
 
     fn round(&self, stresses: Vec<RoundStress>) -> Vec<RoundStress> {
-        // What the round shape adds is stated per C / R. The tension of the squeezed roller is that of the
-        // mean load, whatever the unit.
+        // What the round shape adds is stated per C / R. The tension of the squeezed roller is that
+        // of the mean load, whatever the unit.
         let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
         let square = self.unit * self.unit;
         let of = |RoundStress { flat, round }| RoundStress {

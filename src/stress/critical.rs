@@ -21,8 +21,8 @@ pub const EDGE: f64 = 0.1;
 /// Relative tolerance for rounding of a distance from the edge.
 const SLACK: f64 = 1e-9;
 
-/// Whether the point `at` (C) is at least `distance` (C) away from the edges of an overlap with these
-/// `ends` (C), see [`away_from_edge`].
+/// Whether the point `at` (C) is at least `distance` (C) away from the edges of an overlap with
+/// these `ends` (C), see [`away_from_edge`].
 pub fn away_from_edges(at: [f64; 3], ends: [f64; 2], distance: f64) -> bool {
     let [from, to] = ends;
     let [x, y, z] = at;

@@ -1,6 +1,7 @@
 //! The standard curves: the points at which all models and FEM are compared.
 //!
-//! All coordinates here are in units of C; `half_length` is S_l = L1 / (2 C).
+//! All coordinates here are in units of C; `half_length` is S_l = L / (2 C), L the length of the
+//! shorter body.
 
 use crate::base::BodyKind;
 
@@ -32,8 +33,8 @@ pub const CURVE_NAMES: [&str; 13] = [
     "depth-end-x1.4",
 ];
 
-/// The curves that name an end, at the +y end of the contact and at the -y end of a contact that is not
-/// symmetric.
+/// The curves that name an end, at the +y end of the contact and at the -y end of a contact that is
+/// not symmetric.
 pub const END_CURVES: [[&str; 2]; 6] = [
     ["depth-0.9", "depth-0.9-neg"],
     ["depth-end", "depth-end-neg"],
@@ -43,8 +44,8 @@ pub const END_CURVES: [[&str; 2]; 6] = [
     ["depth-end-x1.4", "depth-end-x1.4-neg"],
 ];
 
-/// The curves off the plane x = 0, at their own x and at -x. The latter exist where the bodies slide on each
-/// other: only then do both differ.
+/// The curves off the plane x = 0, at their own x and at -x. The latter exist where the bodies
+/// slide on each other: only then do both differ.
 pub const OFF_PLANE_CURVES: [[&str; 2]; 10] = [
     ["depth-centre-x0.7", "depth-centre-x0.7-xneg"],
     ["depth-0.9-x0.7", "depth-0.9-x0.7-xneg"],
@@ -64,8 +65,8 @@ pub fn every_name() -> impl Iterator<Item = &'static str> {
     CURVE_NAMES.into_iter().chain(others)
 }
 
-/// The standard curve of which the one called `name` is the twin on the other side, at -x or at the -y end;
-/// itself if it is none.
+/// The standard curve of which the one called `name` is the twin on the other side, at -x or at the
+/// -y end; itself if it is none.
 pub fn twin(name: &str) -> &str {
     let ahead = name.strip_suffix("-xneg").unwrap_or(name);
     ahead.strip_suffix("-neg").unwrap_or(ahead)
@@ -98,7 +99,8 @@ impl Span {
         0.5 * (self.ends[1] - self.ends[0])
     }
 
-    /// y of the curves in the middle: the roller's middle, or that of the overlap if it lies elsewhere.
+    /// y of the curves in the middle: the roller's middle, or that of the overlap if it lies
+    /// elsewhere.
     pub fn centre(&self) -> f64 {
         if self.ends[0] < 0.0 && 0.0 < self.ends[1] { 0.0 } else { self.middle() }
     }
@@ -197,9 +199,9 @@ pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) 
 }
 
 /// The standard curves of one body with these `ends` (C), on any contact line. Curves along y of a
-/// contact that is not symmetric go over all of it, and each of [`END_CURVES`] stands at both ends. Of bodies
-/// that slide, the curve across the contact goes over both signs of x, and each of [`OFF_PLANE_CURVES`] stands
-/// at both.
+/// contact that is not symmetric go over all of it, and each of [`END_CURVES`] stands at both ends.
+/// Of bodies that slide, the curve across the contact goes over both signs of x, and each of
+/// [`OFF_PLANE_CURVES`] stands at both.
 pub fn curves_on(body: BodyKind, span: &Span, ends: [f64; 2]) -> Vec<CurveSpec> {
     let y = span.both_sides([span.ends[0] - ends[0], ends[1] - span.ends[1]]);
     let (middle, centre, half_length) = (span.middle(), span.centre(), span.half_length());

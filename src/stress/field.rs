@@ -2,10 +2,10 @@
 //!
 //! Conventions: lengths in units of C, stresses in units of p0. A stress is (1/pi) int_0^inf A(k)
 //! cos(k x) dk, or sin(k x) for the shears xy and xz, with the amplitude A the sum over the loads
-//! of the kernels of [`crate::kernels::wave`]; under a traction along x it is the other way round. The stress under an endless contact with the local
-//! pressure is subtracted from A and added in closed form ([`crate::kernels::strip`]). The
-//! remainder decays with k, so the steep edge of the pressure across the contact needs no
-//! additional wavenumbers.
+//! of the kernels of [`crate::kernels::wave`]; under a traction along x it is the other way round.
+//! The stress under an endless contact with the local pressure is subtracted from A and added in
+//! closed form ([`crate::kernels::strip`]). The remainder decays with k, so the steep edge of the
+//! pressure across the contact needs no additional wavenumbers.
 
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
@@ -71,8 +71,8 @@ const SMOOTH_DEPTH: f64 = 0.14;
 /// where the pressure's panels grow with the distance from the end.
 const SMOOTH_DISTANCE: f64 = 1.0;
 
-/// The bound r^-n of the interpolation along a line, in tolerances. Its unknown factor makes errors of some tenths of a
-/// tolerance of it; 0.02 made up to 1.5 tolerances, at the lines' ends.
+/// The bound r^-n of the interpolation along a line, in tolerances. Its unknown factor makes errors
+/// of some tenths of a tolerance of it; 0.02 made up to 1.5 tolerances, at the lines' ends.
 const INTERPOLATION: f64 = 0.004;
 
 /// Negligible contribution of one wavenumber to a stress, in tolerances; some twenty may be
@@ -128,8 +128,8 @@ const KEPT_PLATES: usize = 128;
 const FADED: usize = 8;
 
 impl<'a> Field<'a> {
-    /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure` with its
-    /// [`Load::moments`]. Wavenumbers that change no stress by more than about a tenth of
+    /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure`
+    /// with its [`Load::moments`]. Wavenumbers that change no stress by more than about a tenth of
     /// `tolerance` (p0) are neglected.
     pub fn new(
         stack: &'a Stack,
@@ -161,15 +161,15 @@ impl<'a> Field<'a> {
         }
     }
 
-    /// The same field with the stresses under a `traction` along x, which is the pressure of the field. The
-    /// stack has to be one that slides.
+    /// The same field with the stresses under a `traction` along x, which is the pressure of the
+    /// field. The stack has to be one that slides.
     #[must_use]
     pub fn with_traction(self, traction: &'a dyn Traction) -> Self {
         Self { traction: Some(traction), ..self }
     }
 
-    /// The same field, where what a round surface adds follows the local contact, not that of the mean
-    /// load all along the line.
+    /// The same field, where what a round surface adds follows the local contact, not that of the
+    /// mean load all along the line.
     #[must_use]
     pub fn following_contact(self, follows_contact: bool) -> Self {
         Self { follows_contact, ..self }
@@ -196,8 +196,8 @@ impl<'a> Field<'a> {
         Work { done, beyond_reach, ends, faded }
     }
 
-    /// The plate's kernels in the plane x = 0 at the distance `eta` from the body's middle, shared by
-    /// all points with that distance.
+    /// The plate's kernels in the plane x = 0 at the distance `eta` from the body's middle, shared
+    /// by all points with that distance.
     fn plates(&self, eta: f64) -> Plates {
         let kept = |plates: &[(f64, Plates)]| {
             plates.iter().find(|(at, _)| *at == eta).map(|(_, plates)| plates.clone())
@@ -313,8 +313,8 @@ impl<'a> Field<'a> {
 
     /// Stresses at the points (`x`, y, `z`) for each y of `ys`, in their order. They equal
     /// [`Field::at`], interpolated if the points are closer together than the field's length of
-    /// variation. Each side of the contact is sampled by itself. Between shaped bodies the field varies along the
-    /// contact as their profiles do, and nothing is interpolated.
+    /// variation. Each side of the contact is sampled by itself. Between shaped bodies the field
+    /// varies along the contact as their profiles do, and nothing is interpolated.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<FlatStress> {
         if self.follows_contact {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
@@ -338,9 +338,9 @@ impl<'a> Field<'a> {
 
     /// [`Field::along`] on the surface, on one side.
     fn along_surface(&self, line: &Side, ys: &[f64]) -> Vec<FlatStress> {
-        // The smooth part varies over the distances from the two ends of the contact, and is analytic in
-        // ln((end - u) / (end + u)) within imaginary parts of pi; if it is even, it is so in
-        // ln((end - u) (end + u)), too, which needs the one half alone.
+        // The smooth part varies over the distances from the two ends of the contact, and is
+        // analytic in ln((end - u) / (end + u)) within imaginary parts of pi; if it is even, it is
+        // so in ln((end - u) (end + u)), too, which needs the one half alone.
         let (x, end, even) = (line.x, line.end, self.pressure.is_symmetric());
         let place = |y: f64| {
             let u = line.off_middle(y);
@@ -368,10 +368,10 @@ impl<'a> Field<'a> {
             .collect()
     }
 
-    /// [`Field::along`] below the surface, on one side. At a depth z below a corner, of the contact at
-    /// u = `end` from its middle or of the body, the field has poles at the distances +-i z from the
-    /// corner. With u = end + z sinh t the points are dense where the field varies, and the poles of
-    /// the contact's end are at t = +-i pi/2.
+    /// [`Field::along`] below the surface, on one side. At a depth z below a corner, of the contact
+    /// at u = `end` from its middle or of the body, the field has poles at the distances +-i z from
+    /// the corner. With u = end + z sinh t the points are dense where the field varies, and the
+    /// poles of the contact's end are at t = +-i pi/2.
     fn along_below(&self, line: &Side, ys: &[f64]) -> Vec<FlatStress> {
         let (x, z, end) = (line.x, line.z, line.end);
         let face = self.stack.body().half + line.side * (self.stack.middle - line.middle);
@@ -532,8 +532,8 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times `shears`, all
-/// others times `others`.
+/// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times
+/// `shears`, all others times `others`.
 fn add_wave(sum: &mut [f64; 6], weight: f64, amplitudes: &[f64; 6], others: f64, shears: f64) {
     for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
         *s += weight * a * if StressTensor::ODD_IN_X[i] { shears } else { others };
@@ -595,7 +595,8 @@ struct PartTarget<'a> {
     /// that the stress correction subtracts at the point.
     correction: Option<(Influence, f64)>,
     plate: Option<PlateAt>,
-    /// The influence of a traction on the surface, if the point lies on it; else that of the pressure.
+    /// The influence of a traction on the surface, if the point lies on it; else that of the
+    /// pressure.
     under: Option<Influence>,
     /// The stresses of the most recent [`WAVES`] wavenumbers.
     stresses: BlockStress,
@@ -605,8 +606,8 @@ struct PartTarget<'a> {
     scratch: Vec<[f32; WAVES]>,
 }
 
-/// The plate's remainder at a point: its kernels, if they are kept with the number of the part of the
-/// load that they belong to, and its phases.
+/// The plate's remainder at a point: its kernels, if they are kept with the number of the part of
+/// the load that they belong to, and its phases.
 struct PlateAt {
     kernels: Option<(Plates, usize)>,
     phases: Vec<(f64, f64)>,
@@ -684,8 +685,9 @@ impl<'a> Target<'a> {
     }
 }
 
-/// The depth at which the stress of a traction less that of an endless contact is computed for a point at
-/// the depth `z`: on the surface itself the stress beside a line load is infinite, in mean value it is not.
+/// The depth at which the stress of a traction less that of an endless contact is computed for a
+/// point at the depth `z`: on the surface itself the stress beside a line load is infinite, in mean
+/// value it is not.
 fn below(z: f64) -> f64 {
     z.max(UNDER_SURFACE)
 }
@@ -767,8 +769,8 @@ impl<'a> PartTarget<'a> {
         }
     }
 
-    /// [`PartTarget::sum_block`] of the loads under the traction. In the plane x = 0 all but the shears
-    /// vanish.
+    /// [`PartTarget::sum_block`] of the loads under the traction. In the plane x = 0 all but the
+    /// shears vanish.
     fn sum_traction(&mut self, first: usize, along: &WaveTable, loads: &TractionLoads) {
         let (body, scratch) = (self.body, &mut self.scratch);
         let wanted = if self.central { Wanted::SHEARS } else { Wanted::ALL };
@@ -804,7 +806,8 @@ impl<'a> PartTarget<'a> {
         if self.body.end.freed && i < self.loads.ends {
             let mut pressed = in_body(&freeing.surface[wave].0);
             self.add_faces(i, &freeing.faces, &loads.plate[i], &mut pressed);
-            // These loads are sin(k x): a quarter of a wave behind, where their shears are - cos(k x).
+            // These loads are sin(k x): a quarter of a wave behind, where their shears are - cos(k
+            // x).
             for (component, (sum, own)) in amplitudes.iter_mut().zip(pressed).enumerate() {
                 *sum += if StressTensor::ODD_IN_X[component] { -own } else { own };
             }
@@ -837,8 +840,8 @@ impl<'a> PartTarget<'a> {
         amplitudes
     }
 
-    /// Adds the stresses of the loads on either of the end `faces` and of the plate's remainder under
-    /// their `transform`; returns the number of loads within reach.
+    /// Adds the stresses of the loads on either of the end `faces` and of the plate's remainder
+    /// under their `transform`; returns the number of loads within reach.
     fn add_faces(
         &self,
         i: usize,
@@ -874,8 +877,8 @@ fn in_body(stress: &WaveStress) -> [f64; 6] {
 }
 
 /// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
-/// gives those of the flat body at each of `zs` for a list of x, under the plane `contact`. The slopes along x are difference
-/// quotients, whose points share all sums.
+/// gives those of the flat body at each of `zs` for a list of x, under the plane `contact`. The
+/// slopes along x are difference quotients, whose points share all sums.
 fn rounded(
     xs: &[f64],
     zs: &[f64],

@@ -13,7 +13,8 @@ pub struct FlatStress {
 }
 
 impl FlatStress {
-    /// The stress at the mirror image in the plane x = 0, in which a traction changes its direction.
+    /// The stress at the mirror image in the plane x = 0, in which a traction changes its
+    /// direction.
     #[must_use]
     pub fn mirrored_in_x(&self) -> Self {
         Self {

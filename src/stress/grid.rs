@@ -105,11 +105,12 @@ impl Mirrored {
 
 /// Stresses of `field` on `grid`, in units of p0, computed on all threads of the current pool.
 ///
-/// A line of points along x costs little more than one of its points, because [`BodyField::at`] shares
-/// the kernels over x; lines are computed in parallel. The contact is even in x, and may be so in y: points
-/// that are exact mirror images of other points of the grid are not computed again. `shaped` says what becomes of the stress of a
-/// round body or under a traction; none for a flat one under pressure alone. The memory is that of the
-/// result, 48 bytes per point, and one line for each thread.
+/// A line of points along x costs little more than one of its points, because [`BodyField::at`]
+/// shares the kernels over x; lines are computed in parallel. The contact is even in x, and may be
+/// so in y: points that are exact mirror images of other points of the grid are not computed again.
+/// `shaped` says what becomes of the stress of a round body or under a traction; none for a flat
+/// one under pressure alone. The memory is that of the result, 48 bytes per point, and one line for
+/// each thread.
 pub fn on_grid(
     field: &BodyField,
     grid: &Grid,

@@ -5,7 +5,8 @@ use crate::base::{Panels, Parity, Wavenumbers};
 use nalgebra::DMatrix;
 use std::fmt::Debug;
 
-/// A pressure (p0) that is even in x, unless it says otherwise, with a profile across the contact at each node of an axis along it.
+/// A pressure (p0) that is even in x, unless it says otherwise, with a profile across the contact
+/// at each node of an axis along it.
 pub trait Load: Debug + Sync {
     /// Axis along the contact: all of it, or the half from its middle to its end.
     fn axis(&self) -> &Panels;
@@ -20,7 +21,8 @@ pub trait Load: Debug + Sync {
         if self.is_symmetric() { y.abs() } else { y }
     }
 
-    /// Whether the pressure is even or odd in x; the transforms of an odd one are those with sin(k x).
+    /// Whether the pressure is even or odd in x; the transforms of an odd one are those with sin(k
+    /// x).
     fn parity_across(&self) -> Parity {
         Parity::Even
     }
@@ -31,7 +33,8 @@ pub trait Load: Debug + Sync {
         if self.is_symmetric() { [-to, to] } else { [from, to] }
     }
 
-    /// The plane contact with the load at `y`; that of the mean load if it is much the same everywhere.
+    /// The plane contact with the load at `y`; that of the mean load if it is much the same
+    /// everywhere.
     fn local_contact(&self, _y: f64) -> LocalContact {
         LocalContact::HERTZ
     }
@@ -62,7 +65,7 @@ pub trait Load: Debug + Sync {
 
 /// A [`Load`] whose pressure may act as a traction along x instead.
 pub trait Traction: Load {
-    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y` as a traction
-    /// along +x.
+    /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y` as a
+    /// traction along +x.
     fn endless_along(&self, y: f64, x: f64, z: f64) -> [f64; 3];
 }

@@ -30,8 +30,9 @@ pub struct LineLoad {
     pub half_width: f64,
 }
 
-/// Change of the phase of the pressure's transform over half a panel, per node, that a polynomial through the nodes
-/// still follows; and the least wavenumber that is faded out, in lengths of the panel.
+/// Change of the phase of the pressure's transform over half a panel, per node, that a polynomial
+/// through the nodes still follows; and the least wavenumber that is faded out, in lengths of the
+/// panel.
 const PHASE: f64 = 0.3;
 const SHORTEST: f64 = 20.0;
 
@@ -40,10 +41,11 @@ const LEVEL: f64 = 1e-9;
 
 /// The wavenumber at each node from which the pressure's transform is faded out.
 ///
-/// Towards the contact's edge the transform turns by the phase k a(y). Where the half-width changes over a panel, the
-/// polynomial through the nodes cannot follow it for short waves, and would make loads that vary along the line
-/// from node to node. The field of such waves is the endless contact's, which is known without them. At a panel's ends the
-/// wavenumber is the geometric mean of both panels'.
+/// Towards the contact's edge the transform turns by the phase k a(y). Where the half-width changes
+/// over a panel, the polynomial through the nodes cannot follow it for short waves, and would make
+/// loads that vary along the line from node to node. The field of such waves is the endless
+/// contact's, which is known without them. At a panel's ends the wavenumber is the geometric mean
+/// of both panels'.
 fn fading(axis: &Panels, half_widths: &[f64]) -> Vec<f64> {
     let order = axis.order();
     let panels: Vec<f64> = (0..axis.panel_count())
@@ -69,7 +71,8 @@ fn fading(axis: &Panels, half_widths: &[f64]) -> Vec<f64> {
 
 impl Pressure {
     /// The pressure from the half-widths and the coefficients of the modes at the nodes of `axis`;
-    /// missing modes of a node are zero. The axis of a `symmetric` pressure holds its half at y >= 0.
+    /// missing modes of a node are zero. The axis of a `symmetric` pressure holds its half at y >=
+    /// 0.
     pub fn new(
         axis: Panels,
         symmetric: bool,
@@ -81,7 +84,8 @@ impl Pressure {
         Self { axis, symmetric, half_widths, coefficients }
     }
 
-    /// The same pressure in units of length and of pressure that are 1 / `factor` of the present ones.
+    /// The same pressure in units of length and of pressure that are 1 / `factor` of the present
+    /// ones.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();
@@ -132,8 +136,9 @@ impl Pressure {
 
     /// The stresses `of` a plane contact with the half-width and the modes at `y`.
     ///
-    /// Between nodes with different half-widths, polynomials through the stresses of the nodes would not follow the
-    /// vertical tangent at the contact's edge. Next to a singular end they are what the rest of the field has as its load.
+    /// Between nodes with different half-widths, polynomials through the stresses of the nodes
+    /// would not follow the vertical tangent at the contact's edge. Next to a singular end they are
+    /// what the rest of the field has as its load.
     fn plane(&self, y: f64, of: impl Fn(f64, &[f64]) -> [f64; 3]) -> [f64; 3] {
         let singular = self.axis.corner_of(self.axis.panel_of(self.on_axis(y))).is_some();
         if !singular {
@@ -219,7 +224,8 @@ mod tests {
 
     #[test]
     fn stresses_on_the_surface_are_those_of_the_local_pressure() {
-        // Half-widths that fall along the line: x = 0.95 is inside the contact at some nodes of a panel, not at others.
+        // Half-widths that fall along the line: x = 0.95 is inside the contact at some nodes of a
+        // panel, not at others.
         let axis = Panels::new(vec![0.0, 3.0, 6.0], 5);
         let half_widths: Vec<f64> = axis.nodes().iter().map(|y| 1.05 - 0.03 * y).collect();
         let coefficients = half_widths.iter().map(|a| vec![*a, -0.02]).collect();

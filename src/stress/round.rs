@@ -16,22 +16,23 @@
 //! from the load's tilt u / R and from the drop u^2 / (2 R) of the surface. The uniform tension
 //! thus vanishes on the surface itself, and some C below it alone remains.
 //!
-//! A traction q ds along the surface has the radial field of a force along its own tangent. It leaves a uniform shear
-//! q ds / (pi R) on the surface beside it, which an opposite one removes. To first order this adds
+//! A traction q ds along the surface has the radial field of a force along its own tangent. It
+//! leaves a uniform shear q ds / (pi R) on the surface beside it, which an opposite one removes. To
+//! first order this adds
 //!
 //! - xx: (2 q ds / (pi R)) (u^3 z / r^4) (1 - 2 u^2 / r^2),
 //! - zz: (2 q ds / (pi R)) (u z / r^2) (1 - 2 u^2 z^2 / r^4),
 //! - xz: -(q ds / (pi R)) (4 u^4 z^2 / r^6 + z^4 / r^4).
 //!
-//! These terms are those of a plane contact. Along a straight, parallel line it is everywhere that of
-//! Hertz; with a profile or a tilt it is the local one, [`LocalContact`]. What the ends make of them is neglected,
-//! see the limits in `docs/theory.md`. No stress along y belongs to them; under plane strain this
-//! neglects some 0.1 C / R.
+//! These terms are those of a plane contact. Along a straight, parallel line it is everywhere that
+//! of Hertz; with a profile or a tilt it is the local one, [`LocalContact`]. What the ends make of
+//! them is neglected, see the limits in `docs/theory.md`. No stress along y belongs to them; under
+//! plane strain this neglects some 0.1 C / R.
 //!
 //! The frame of the surface above the point is rotated by x / R, and a point at the vertical depth
 //! z lies x z / R farther out along the surface than x. Rotation and shift apply to the whole flat
-//! field, including its free ends. On the surface itself the tractions are those of its own frame, so that the
-//! fixed axes have shears there.
+//! field, including its free ends. On the surface itself the tractions are those of its own frame,
+//! so that the fixed axes have shears there.
 
 use super::flat::FlatStress;
 use crate::base::StressTensor;
@@ -77,21 +78,23 @@ impl LocalContact {
     /// The Hertz contact of the mean load.
     pub const HERTZ: LocalContact = LocalContact { half_width: 1.0, peak: 1.0 };
 
-    /// The place whose load counts at `y`, in a contact that has these `ends`: what is added depends on the loads within
-    /// C, of which the steep ends themselves are no measure.
+    /// The place whose load counts at `y`, in a contact that has these `ends`: what is added
+    /// depends on the loads within C, of which the steep ends themselves are no measure.
     pub fn place(y: f64, [from, to]: [f64; 2]) -> f64 {
         let inset = END_REACH.min(0.5 * (to - from));
         // Where they leave no room, the two may differ by rounding, in either order.
         y.max(from + inset).min(to - inset)
     }
 
-    /// The Hertz contact of a `load` per length (C p0), its half-width in units of C its pressure in units of p0; none pulls.
+    /// The Hertz contact of a `load` per length (C p0), its half-width in units of C its pressure
+    /// in units of p0; none pulls.
     pub fn carrying(load: f64) -> Self {
         let half_width = (2.0 / PI * load.max(0.0)).sqrt();
         Self { half_width, peak: half_width }
     }
 
-    /// Contributions of the loads' tilt and of the surface's drop, by one of [`Kernel`]s, at (`x`, `z`) (C).
+    /// Contributions of the loads' tilt and of the surface's drop, by one of [`Kernel`]s, at (`x`,
+    /// `z`) (C).
     fn tilted(&self, sums: Kernel, x: f64, z: f64) -> StressTensor {
         let Self { half_width, peak } = *self;
         if half_width <= 0.0 {
@@ -154,8 +157,8 @@ impl RoundStress {
         Self { flat: self.flat.mirrored_in_x(), round: self.round.mirrored_in_x() }
     }
 
-    /// [`RoundStress::at`] without the diametral tension, which only a disc has that is squeezed between
-    /// two loads.
+    /// [`RoundStress::at`] without the diametral tension, which only a disc has that is squeezed
+    /// between two loads.
     pub fn on_one_side(&self, curvature: f64) -> StressTensor {
         let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
         self.flat.pressure + (self.round.pressure - tension) * curvature
@@ -249,8 +252,9 @@ mod tests {
         [x, radius - (radius * radius - x * x).sqrt() + depth]
     }
 
-    /// A disc under a semi-elliptic traction of half-width 1 along the surface: the sum of the radial fields of forces
-    /// along the tangents and of the shear that frees the surface beside them, in the frame of the axes.
+    /// A disc under a semi-elliptic traction of half-width 1 along the surface: the sum of the
+    /// radial fields of forces along the tangents and of the shear that frees the surface beside
+    /// them, in the frame of the axes.
     fn disc_along(radius: f64, x: f64, depth: f64) -> [f64; 3] {
         let at = below(radius, x, depth);
         let mut sum = [0.0; 3];

@@ -35,7 +35,8 @@ pub(super) struct PartLoads {
     /// Transform of q for the plate, and the plate's remainder at its wavenumbers.
     pub plate: Vec<Vec<f64>>,
     pub plate_waves: Vec<Vec<Remainder>>,
-    /// The loads under the pressure as a traction along x instead; none where the contact carries none.
+    /// The loads under the pressure as a traction along x instead; none where the contact carries
+    /// none.
     pub traction: Option<TractionLoads>,
 }
 
@@ -44,7 +45,8 @@ pub(super) struct PartLoads {
 pub(super) struct TractionLoads {
     /// The traction itself, on the surface.
     pub own: Vec<LoadBlock>,
-    /// The pressures that free the end faces of its normal stress, see [`crate::body::TractionLayer`].
+    /// The pressures that free the end faces of its normal stress, see
+    /// [`crate::body::TractionLayer`].
     pub freeing: Vec<LoadBlock>,
     /// Transform of these on the end faces, for the plate.
     pub plate: Vec<Vec<f64>>,
@@ -154,8 +156,8 @@ impl PartLoads {
     }
 }
 
-/// The loads in blocks, from those on the surface and on the end faces at the wavenumbers `k`, a column for
-/// each; the end faces carry loads at the first `ends` of them.
+/// The loads in blocks, from those on the surface and on the end faces at the wavenumbers `k`, a
+/// column for each; the end faces carry loads at the first `ends` of them.
 fn blocks(
     body: &Body,
     (k, ends): (&[f64], usize),
@@ -310,8 +312,9 @@ impl Influence {
         }
     }
 
-    /// The `wanted` stresses of each wavenumber of `block`, loads of `kernel` on this `body`, in the
-    /// frame of the loaded surface, and the number of loads within its reach. `loads` is scratch space.
+    /// The `wanted` stresses of each wavenumber of `block`, loads of `kernel` on this `body`, in
+    /// the frame of the loaded surface, and the number of loads within its reach. `loads` is
+    /// scratch space.
     pub fn stresses(
         &self,
         (body, kernel): (&Body, &WaveTable),

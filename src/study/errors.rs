@@ -1,15 +1,14 @@
 //! Error measures of a source against a reference on the same points.
 //!
-//! Lengths are in units of C, stresses and pressures in units of p0. The edges of the contact are the
-//! lines y = either end of the bodies' overlap, z = 0 (any x): stress and pressure are singular or very
-//! steep there. Points nearer to one than a given distance are excluded. The distance is measured in
-//! space; on `depth-end` it is the depth.
+//! Lengths are in units of C, stresses and pressures in units of p0. The edges of the contact are
+//! the lines y = either end of the bodies' overlap, z = 0 (any x): stress and pressure are singular
+//! or very steep there. Points nearer to one than a given distance are excluded. The distance is
+//! measured in space; on `depth-end` it is the depth.
 //!
 //! With e the difference at the retained points and w trapezoid weights of the curve's arc length
-//! (segments with a point left out do not count), the measures are
-//! max |e|, RMS = sqrt(sum w e^2 / sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1
-//! properties of the curve, not of how densely it was sampled. [`POINTS`] are on no curve: each counts
-//! alike.
+//! (segments with a point left out do not count), the measures are max |e|, RMS = sqrt(sum w e^2 /
+//! sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1 properties of the curve, not of
+//! how densely it was sampled. [`POINTS`] are on no curve: each counts alike.
 
 use super::source::Source;
 use crate::base::{Error, Result};
@@ -100,7 +99,8 @@ fn weights(at: &[[f64; 3]], kept: &[bool]) -> Vec<f64> {
     w
 }
 
-/// Measures of `difference` with weights `w`; `None` when these are zero: no segment of the curve is kept.
+/// Measures of `difference` with weights `w`; `None` when these are zero: no segment of the curve
+/// is kept.
 fn measure(w: &[f64], difference: &[f64], kept: &[bool]) -> Option<Measures> {
     let total: f64 = w.iter().sum();
     if total <= 0.0 {
@@ -209,9 +209,9 @@ impl Pair<'_> {
 /// Errors of `candidate`, the curves of `source`, against `reference`: one row for each quantity of
 /// each curve of the reference, and one for each pressure line and range.
 ///
-/// `ends` are those of the bodies' overlap (C). Curves of the reference that the candidate does not have
-/// are left out, and so is a quantity that the reference does not state (NaN at all points); a curve on
-/// other points is an error.
+/// `ends` are those of the bodies' overlap (C). Curves of the reference that the candidate does not
+/// have are left out, and so is a quantity that the reference does not state (NaN at all points); a
+/// curve on other points is an error.
 ///
 /// # Errors
 /// [`Error::Value`] when a point of the reference is missing from the candidate's curve.

@@ -20,8 +20,8 @@ pub struct Effect {
     pub factors: Vec<usize>,
     /// Its value, in the response's unit; the sum of it and its aliases.
     pub value: f64,
-    /// The effects that it cannot be told from, with the signs in which they stand in the sum; short
-    /// ones first. None in a full design.
+    /// The effects that it cannot be told from, with the signs in which they stand in the sum;
+    /// short ones first. None in a full design.
     pub aliases: Vec<Word>,
 }
 
@@ -30,8 +30,8 @@ pub struct Effect {
 pub struct Analysis {
     /// Mean of the response over the corners.
     pub mean: f64,
-    /// One effect for each product of basic factors in standard order (A, B, AB, C, AC, BC, ABC): in a
-    /// full design all 2^k - 1 effects, else the shortest of each set of aliases.
+    /// One effect for each product of basic factors in standard order (A, B, AB, C, AC, BC, ABC):
+    /// in a full design all 2^k - 1 effects, else the shortest of each set of aliases.
     pub effects: Vec<Effect>,
     /// Lenth's limits; `None` for fewer than three effects.
     pub lenth: Option<Lenth>,

@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// The thresholds that are built into the program, by the name of their study; the default one's first.
+/// The thresholds that are built into the program, by the name of their study; the default one's
+/// first.
 const BUILTIN_GATES: [(&str, &str); 3] = [
     ("factorial", include_str!("gates/factorial.toml")),
     ("profiled", include_str!("gates/profiled.toml")),
@@ -44,8 +45,8 @@ impl Gates {
         Self::built_in_for(BUILTIN_GATES[0].0)
     }
 
-    /// The thresholds that are built into the program for the built-in `study`, and the default study's for any
-    /// other.
+    /// The thresholds that are built into the program for the built-in `study`, and the default
+    /// study's for any other.
     ///
     /// # Errors
     /// As [`parse`].
@@ -388,6 +389,12 @@ impl Gate {
     }
 }
 
+/// Whether a place of accepted numbers is one of a model in a study.
+fn is_of(place: &str, study: &str, method: EdgeModel) -> bool {
+    let mut words = place.split(' ');
+    words.next() == Some(study) && words.nth(1) == Some(method.name())
+}
+
 impl Baseline {
     /// The accepted numbers that are built into the program.
     ///
@@ -417,13 +424,20 @@ impl Baseline {
         Self { version: other.version, ..self }
     }
 
+    /// All but the numbers of the models of `run` in its study.
+    #[must_use]
+    pub fn without(mut self, run: &StudyRun) -> Self {
+        let sources = || run.cases.iter().flat_map(|case| case.methods.iter().map(|m| &m.source));
+        let of_run = |place: &str| {
+            sources().any(|s| matches!(s, Source::Model(m) if is_of(place, &run.study, *m)))
+        };
+        self.numbers.retain(|place, _| !of_run(place));
+        self
+    }
+
     /// The numbers of one model in one study.
     fn of_model(&self, study: &str, method: EdgeModel) -> Self {
-        let own = |place: &str| {
-            let mut words = place.split(' ');
-            words.next() == Some(study) && words.nth(1) == Some(method.name())
-        };
-        let numbers = self.numbers.iter().filter(|(place, _)| own(place));
+        let numbers = self.numbers.iter().filter(|(place, _)| is_of(place, study, method));
         Self {
             version: self.version.clone(),
             numbers: numbers.map(|(place, values)| (place.clone(), values.clone())).collect(),
@@ -566,8 +580,8 @@ pub fn evaluate(run: &StudyRun, gates: &Gates, baseline: Option<&Baseline>) -> V
     outcomes
 }
 
-/// Every corner and the centre of the study must have a reference to be compared with; in a study without
-/// a design every case.
+/// Every corner and the centre of the study must have a reference to be compared with; in a study
+/// without a design every case.
 fn coverage(run: &StudyRun) -> GateOutcome {
     let designed = run.cases.iter().any(|c| c.role != Role::Extra);
     let design: Vec<_> = run.cases.iter().filter(|c| !designed || c.role != Role::Extra).collect();

@@ -30,8 +30,8 @@ const SAMPLES: usize = 6;
 /// Size of a search's first simplex, a part of the bounds.
 const SIMPLEX: f64 = 0.15;
 
-/// Spread of the objective in a simplex, relative to the first sample's best, at which a search has ended, and its most
-/// steps.
+/// Spread of the objective in a simplex, relative to the first sample's best, at which a search has
+/// ended, and its most steps.
 const SPREAD: f64 = 3e-4;
 const STEPS: u64 = 30;
 
@@ -82,22 +82,25 @@ pub struct Optimum {
     pub scans: Vec<Vec<(f64, f64)>>,
     /// What each load makes of the best profile.
     pub loads: Vec<LoadResult>,
-    /// What each load makes of the case's own profile: its objective (Pa), none where it could not be solved.
+    /// What each load makes of the case's own profile: its objective (Pa), none where it could not
+    /// be solved.
     pub before: Vec<Option<f64>>,
     /// Number of contacts solved.
     pub solves: usize,
 }
 
-/// Seeks the profile of `design`; tells `progress` of each trial and the best objective (Pa) so far.
+/// Seeks the profile of `design`; tells `progress` of each trial and the best objective (Pa) so
+/// far.
 ///
-/// A Latin hypercube of the bounds is tried first. From its best points Nelder and Mead's simplex descends (Computer
-/// Journal 7, 1965, by argmin), which needs no derivatives: the largest of several maxima has none where two are equal.
-/// Points beyond the bounds count as the nearest ones within, plus a penalty. No search proves that there is no better
-/// profile; several starts that end alike are the evidence.
+/// A Latin hypercube of the bounds is tried first. From its best points Nelder and Mead's simplex
+/// descends (Computer Journal 7, 1965, by argmin), which needs no derivatives: the largest of
+/// several maxima has none where two are equal. Points beyond the bounds count as the nearest ones
+/// within, plus a penalty. No search proves that there is no better profile; several starts that
+/// end alike are the evidence.
 ///
 /// # Errors
-/// The first error of a solution if no profile of the first sample could be solved under all loads, or the best one could
-/// not at the case's own tolerance.
+/// The first error of a solution if no profile of the first sample could be solved under all loads,
+/// or the best one could not at the case's own tolerance.
 pub fn seek(
     design: &Design,
     settings: &Settings,
@@ -132,10 +135,13 @@ pub fn seek(
         .into_par_iter()
         .map(|load| desk.load(&design.loaded(&values, load)?))
         .collect::<Result<_>>()?;
-    let before = count.into_par_iter().map(|load| desk.peak_pa(&design.before(load).ok()?).ok());
     let own = Objective::ALL.iter().position(|o| *o == design.objective).expect("one of all");
-    let objectives = loads.iter().map(|load| load.peaks[own].value * load.hertz.p0_pa);
-    let confirmed_pa = objectives.fold(0.0, f64::max);
+    let objective_pa = |load: &LoadResult| load.peaks[own].value * load.hertz.p0_pa;
+    let before = count.into_par_iter().map(|load| {
+        let found = design.before(load).and_then(|case| desk.load(&case)).ok()?;
+        Some(objective_pa(&found))
+    });
+    let confirmed_pa = loads.iter().map(objective_pa).fold(0.0, f64::max);
     let before = before.collect();
     let state = desk.state.into_inner().unwrap_or_else(|e| e.into_inner());
     Ok(Optimum {
@@ -217,7 +223,8 @@ impl Desk<'_> {
         found
     }
 
-    /// Lines through the best place along each parameter. A point that cannot be solved is left out.
+    /// Lines through the best place along each parameter. A point that cannot be solved is left
+    /// out.
     fn scans(&self, best: &[f64]) -> Vec<Vec<(f64, f64)>> {
         let line = |i: usize| {
             let mut parts: Vec<f64> = (0..SCAN).map(|j| j as f64 / (SCAN - 1) as f64).collect();
@@ -258,7 +265,8 @@ impl Desk<'_> {
     }
 }
 
-/// The objective of one search as argmin takes it: relative to `unit`, places beyond the bounds with a penalty.
+/// The objective of one search as argmin takes it: relative to `unit`, places beyond the bounds
+/// with a penalty.
 struct Cost<'a> {
     desk: &'a Desk<'a>,
     search: usize,
@@ -311,7 +319,8 @@ mod tests {
     use super::*;
     use std::path::Path;
 
-    /// A crown for a load in the middle and one beside it: one parameter, which can be tried all along.
+    /// A crown for a load in the middle and one beside it: one parameter, which can be tried all
+    /// along.
     #[test]
     fn the_search_meets_the_best_crown_of_a_dense_line() {
         let text = "case = \"flush-short\"\nobjective = \"pressure\"\n[profile]\nkind = \"crown\"\n\

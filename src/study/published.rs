@@ -1,11 +1,13 @@
-//! The published method as it was published: `guilbault` on uniform cells, beside the models on the line.
+//! The published method as it was published: `guilbault` on uniform cells, beside the models on the
+//! line.
 
 use super::timing::Timing;
 use crate::base::Result;
 use crate::case::Case;
 use crate::solve::{CellDetails, Solution};
 
-/// Solves a case by the published method on so many cells across and along, or on as many as its shape asks for.
+/// Solves a case by the published method on so many cells across and along, or on as many as its
+/// shape asks for.
 pub type Published<'a> =
     dyn Fn(&Case, Option<[usize; 2]>) -> Result<Solution<CellDetails>> + Sync + 'a;
 
@@ -16,7 +18,8 @@ pub const GRIDS: [[usize; 2]; 5] = [[64, 64], [64, 128], [128, 256], [256, 512],
 pub(super) struct PublishedAttempt {
     /// Its solution.
     pub solution: Result<Solution<CellDetails>>,
-    /// Its time on one thread, where times are asked for: of the solve itself, which is too slow to be repeated.
+    /// Its time on one thread, where times are asked for: of the solve itself, which is too slow to
+    /// be repeated.
     pub timing: Option<Timing>,
 }
 

@@ -1,11 +1,12 @@
-//! A run over any number of cases, of which a block is in memory at a time. Similar cases are solved once. A case that
-//! fails has a row like any other. The rows can be divided into shards, and a stopped run can be continued.
+//! A run over any number of cases, of which a block is in memory at a time. Similar cases are
+//! solved once. A case that fails has a row like any other. The rows can be divided into shards,
+//! and a stopped run can be continued.
 
 use super::groups::groups as scenes;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
-use crate::solve::{KeyResults, KeySolution, Scene, SceneKey};
+use crate::solve::{KeyResults, KeySolution, Options, Scene, SceneKey};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::hash_map::{DefaultHasher, Entry, HashMap};
@@ -106,6 +107,14 @@ pub trait Rows<Cells>: Send {
     /// When something else is there in its place.
     fn has(&mut self, row: usize, cells: &Cells) -> Result<bool>;
 
+    /// Compares the row that was just found there with its `outcome` of this run.
+    ///
+    /// # Errors
+    /// When they are not the same: rows of another run must not stand beside those of this one.
+    fn check(&mut self, _row: usize, _outcome: &Outcome) -> Result<()> {
+        Ok(())
+    }
+
     /// Adds a row.
     ///
     /// # Errors
@@ -131,7 +140,8 @@ struct Row<Cells> {
     key: Option<SceneKey>,
 }
 
-/// Chooses the rows of a shard: every n-th problem with all of its rows, so that no two shards solve the same problem.
+/// Chooses the rows of a shard: every n-th problem with all of its rows, so that no two shards
+/// solve the same problem.
 struct Selection {
     shard: Option<Shard>,
     /// The places of the problems, in the order of their first rows, by the hash of their keys.
@@ -202,6 +212,8 @@ fn case_of<C: Cases>(
     settings: &Settings,
 ) -> std::result::Result<Case, String> {
     let case = cases.row(i, cells).map_err(|e| e.to_string())?;
+    // Its scene may be known from a smooth case.
+    Options::new(settings.method).check_line(&case).map_err(|e| e.to_string())?;
     Ok(match settings.tolerance {
         Some(tolerance) => case.with_tolerance(tolerance),
         None => case,
@@ -222,13 +234,15 @@ pub fn count<C: Cases>(cases: &C, settings: &Settings, shard: Option<Shard>) -> 
     blocks(cases, settings, shard)?.map(|block| Ok(block?.len())).sum()
 }
 
-/// Solves the rows of a shard on `jobs` threads and hands them to `rows` in their order, each as soon as it and all before it
-/// are known. One thread solves one problem: with many problems no thread is idle. Memory does not grow with the number
-/// of rows: a block of them is read at a time, and solutions are kept for later blocks up to a limit.
+/// Solves the rows of a shard on `jobs` threads and hands them to `rows` in their order, each as
+/// soon as it and all before it are known. The first row that is there from an earlier run is
+/// solved again and compared. One thread solves one problem: with many problems no thread is idle.
+/// Memory does not grow with the number of rows: a block of them is read at a time, and solutions
+/// are kept for later blocks up to a limit.
 ///
 /// # Errors
-/// The first error of the input or of `rows`, which also stops the run; or [`Error::Io`] when no thread can be
-/// started.
+/// The first error of the input or of `rows`, which also stops the run; or [`Error::Io`] when no
+/// thread can be started.
 pub fn run<C: Cases>(
     cases: &C,
     settings: &Settings,
@@ -238,6 +252,7 @@ pub fn run<C: Cases>(
 ) -> Result<Done> {
     let mut done = Done::default();
     let known = Known::default();
+    let mut compared = false;
     for block in blocks(cases, settings, shard)? {
         let mut todo = block?;
         done.rows += todo.len();
@@ -245,6 +260,14 @@ pub fn run<C: Cases>(
         while let Some(row) = todo.get(kept)
             && rows.has(row.index, &row.cells)?
         {
+            // The values that rows share, a base's for example, are none of their cells.
+            if !compared && let Ok(case) = &row.case {
+                let outcome = known.alone(case, settings.method);
+                if outcome.is_ok() {
+                    rows.check(row.index, &outcome)?;
+                    compared = true;
+                }
+            }
             kept += 1;
         }
         todo.drain(..kept);
@@ -299,8 +322,8 @@ impl Known {
         Ok((case, results))
     }
 
-    /// The solution of a contact, and the case with its force. A panic in one case must not end the run: it becomes the
-    /// error of that case.
+    /// The solution of a contact, and the case with its force. A panic in one case must not end the
+    /// run: it becomes the error of that case.
     fn solve(
         &self,
         case: &Case,
@@ -514,7 +537,8 @@ mod tests {
                 self.sweep.case(i, cells)
             }
         }
-        /// Checks that rows come in their order, and never more than a block behind those that are read.
+        /// Checks that rows come in their order, and never more than a block behind those that are
+        /// read.
         struct Watched<'a> {
             next: usize,
             read: &'a AtomicUsize,
@@ -533,7 +557,8 @@ mod tests {
         }
         let mut watched = Watched { next: 0, read: &read };
         let done = run(&counted, &SETTINGS, None, 2, &mut watched).unwrap();
-        assert_eq!((done, watched.next), (Done { rows: sweep.len(), problems: 2 }, sweep.len()));
+        // Two problems, and the first row that was there, once more.
+        assert_eq!((done, watched.next), (Done { rows: sweep.len(), problems: 3 }, sweep.len()));
     }
 
     #[test]

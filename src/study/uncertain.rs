@@ -1,10 +1,11 @@
 //! What uncertain inputs make of a solution: first-order propagation, and a seeded Latin hypercube.
 //!
-//! Inputs are normal and independent, given by their standard deviations. To first order the standard
-//! deviation of a result is the root of the sum of (df/dx_i s_i)^2, the derivatives taken over one deviation to
-//! both sides (JCGM 100:2008, 5.1.2). A Latin hypercube (McKay, Beckman and Conover, Technometrics 21 (1979) 239)
-//! has one sample in each of equally likely strata of every input; it sees what is not linear, too. Both use
-//! places in metres that do not move with the inputs.
+//! Inputs are normal and independent, given by their standard deviations. To first order the
+//! standard deviation of a result is the root of the sum of (df/dx_i s_i)^2, the derivatives taken
+//! over one deviation to both sides (JCGM 100:2008, 5.1.2). A Latin hypercube (McKay, Beckman and
+//! Conover, Technometrics 21 (1979) 239) has one sample in each of equally likely strata of every
+//! input; it sees what is not linear, too. Both use places in metres that do not move with the
+//! inputs.
 
 use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
@@ -35,8 +36,8 @@ const MOST_RELATIVE: f64 = 0.5;
 const OTHERS: [&str; 3] = ["accuracy", "cells", "fatigue"];
 
 impl Input {
-    /// Reads `load_n=5%` (a part of the value) or `roller.radius_m=1e-5` (in the number's unit): a number of `case` by
-    /// its path, its column or its own name.
+    /// Reads `load_n=5%` (a part of the value) or `roller.radius_m=1e-5` (in the number's unit): a
+    /// number of `case` by its path, its column or its own name.
     ///
     /// # Errors
     /// [`Error::Value`] with what to write.
@@ -135,12 +136,14 @@ pub struct Uncertain {
 /// Names of the results of the whole contact.
 const WHOLE: [&str; 4] = ["p_centre_pa", "p_max_pa", "approach_m", "critical_pa"];
 
-/// Propagates `inputs` through the solution of `case` by `method`, with `samples` of a Latin hypercube from `seed`.
+/// Propagates `inputs` through the solution of `case` by `method`, with `samples` of a Latin
+/// hypercube from `seed`.
 ///
 /// `nominal` has the curves whose points the results are at.
 ///
 /// # Errors
-/// [`Error::Value`] for no or too many samples, or where a sample is no legal case; as [`SolvedCase::new`].
+/// [`Error::Value`] for no or too many samples, or where a sample is no legal case; as
+/// [`SolvedCase::new`].
 pub fn propagate(
     case: &Case,
     method: EdgeModel,
@@ -230,8 +233,8 @@ fn places(nominal: &Curves) -> Vec<Place> {
     lines.chain(curves).collect()
 }
 
-/// All results of `case` at the points of `nominal` in SI units: those of [`WHOLE`], then those of [`places`]. Points
-/// that a shorter body does not reach are those of its end.
+/// All results of `case` at the points of `nominal` in SI units: those of [`WHOLE`], then those of
+/// [`places`]. Points that a shorter body does not reach are those of its end.
 fn results(case: &Case, method: EdgeModel, nominal: &Curves) -> Result<Vec<f64>> {
     let options = Options { curves: vec!["depth-centre".to_string()], ..Options::new(method) };
     let solved = SolvedCase::new(case, &options)?;
@@ -240,8 +243,10 @@ fn results(case: &Case, method: EdgeModel, nominal: &Curves) -> Result<Vec<f64>>
     let critical = summary.critical.map_or(f64::NAN, |c| c.value_pa);
     let mut all = vec![summary.p_centre_pa, summary.p_max_pa, summary.approach_m, critical];
     let scaled = |v: f64| v * from / to.c_m;
+    let [low, high] = case.overlap();
     for line in &nominal.pressure {
-        all.extend(line.at.iter().map(|[x, y]| solved.pressure(scaled(*x), scaled(*y)) * to.p0_pa));
+        let at = line.at.iter().map(|[x, y]| [scaled(*x), scaled(*y).clamp(low, high)]);
+        all.extend(at.map(|[x, y]| solved.pressure(x, y) * to.p0_pa));
     }
     for curve in &nominal.stress {
         let [low, high] = case.ends_m(curve.body).map(|y| y / to.c_m);
@@ -317,8 +322,8 @@ mod tests {
         assert_ne!(points, latin_hypercube(3, 50, 8));
     }
 
-    /// In a line contact the pressure goes with the root of the load and of the modulus: 5 % and 4 % make
-    /// 2.5 % and 2 %, and 3.2 % together.
+    /// In a line contact the pressure goes with the root of the load and of the modulus: 5 % and 4
+    /// % make 2.5 % and 2 %, and 3.2 % together.
     #[test]
     fn the_pressure_of_a_line_contact_spreads_as_the_root_of_load_and_modulus() {
         let mut case = case();

@@ -1,25 +1,28 @@
 //! Numerical uncertainty of both sides of a comparison, in the terms of ASME V&V 20-2009.
 //!
 //! The difference E of a model's solution and a code's data is set against what both do not know of
-//! themselves: u_num of the code by the grid convergence index of Roache (J. Fluids Eng. 116 (1994) 405),
-//! Fs |f1 - f2| / (r^p - 1), and that of the model by its own refinement. |E| beyond
-//! sqrt(u_code^2 + u_model^2) is a difference of the models; below, nothing can be said but that they
-//! agree. All are root mean squares over the same points, with equal weights for all curves.
+//! themselves: u_num of the code by the grid convergence index of Roache (J. Fluids Eng. 116 (1994)
+//! 405), Fs |f1 - f2| / (r^p - 1), and that of the model by its own refinement. |E| beyond
+//! sqrt(u_code^2 + u_model^2) is a difference of the models; below, nothing can be said but that
+//! they agree. All are root mean squares over the same points, with equal weights for all curves.
 //!
-//! Places are kept apart: more than 1 C from the ends of the contact, where solutions are regular, and 0.1
-//! to 1 C from one, where gradients are steep and the pressure of a longer body grows without bound. Nearer,
-//! a singular value belongs to its mesh, and nothing is compared.
+//! Places are kept apart: more than 1 C from the ends of the contact, where solutions are regular,
+//! and 0.1 to 1 C from one, where gradients are steep and the pressure of a longer body grows
+//! without bound. Nearer, a singular value belongs to its mesh, and nothing is compared.
 
-use super::brought::{BroughtFile, FileRun, OnPoints};
+use super::brought::{BroughtFile, FileRun, GATED, OnPoints};
 use super::run::Reference;
 use super::source::{Engine, Source};
+use crate::body::Resolution;
 use crate::case::Case;
 use crate::stress::{Curves, PressureLine, Quantity, StressCurve, away_from_edges};
 use serde::{Deserialize, Serialize};
 
-/// The tolerance of the solution that says how uncertain a model's solution of `case` is.
-pub fn refined_tolerance(case: &Case) -> f64 {
-    0.1 * case.accuracy.tolerance
+/// The tolerance of the solution that says how uncertain a model's solution of `case` is; `None`
+/// where that is the finest there is.
+pub fn refined_tolerance(case: &Case) -> Option<f64> {
+    let own = case.accuracy.tolerance;
+    (own > Resolution::FINEST).then_some(0.1 * own)
 }
 
 /// A place on the curves.
@@ -129,8 +132,8 @@ pub struct GridIndex {
     pub index: f64,
 }
 
-/// The grid convergence index of the finest of meshes: `sizes` fine to coarse, and `changes`, the norms of the
-/// differences of neighbouring ones, the finest first. `None` for one mesh.
+/// The grid convergence index of the finest of meshes: `sizes` fine to coarse, and `changes`, the
+/// norms of the differences of neighbouring ones, the finest first. `None` for one mesh.
 pub fn grid_index(sizes: &[f64], changes: &[f64]) -> Option<GridIndex> {
     let (&[fine, middle, ..], &[last, ..]) = (sizes, changes) else { return None };
     let index = |order: f64, safety: f64| safety * last / ((middle / fine).powf(order) - 1.0);
@@ -147,8 +150,8 @@ pub fn grid_index(sizes: &[f64], changes: &[f64]) -> Option<GridIndex> {
     }
 }
 
-/// The order q for which errors that are multiples of size^q change so from mesh to mesh; `None` if no order
-/// from 0.001 to 12 does.
+/// The order q for which errors that are multiples of size^q change so from mesh to mesh; `None` if
+/// no order from 0.001 to 12 does.
 fn order([coarse, middle, fine]: [f64; 3], [first, last]: [f64; 2]) -> Option<f64> {
     let ratio = |q: f64| (coarse.powf(q) - middle.powf(q)) / (middle.powf(q) - fine.powf(q));
     let (mut low, mut high) = (1e-3, 12.0);
@@ -170,7 +173,8 @@ struct Part<'a> {
     zone: Zone,
     /// The ends of the case's overlap (C).
     ends: [f64; 2],
-    /// The reference. Its curves are compared, and of a file's curves the components that it states.
+    /// The reference. Its curves are compared, and of a file's curves the components that it
+    /// states.
     reference: &'a Curves,
 }
 
@@ -218,8 +222,8 @@ impl Part<'_> {
 
 /// What says how uncertain one side is.
 enum Own<'a> {
-    /// The refined solution of a model.
-    Refined(&'a Curves),
+    /// The refined solution of a model, if there is one.
+    Refined(Option<&'a Curves>),
     /// Relative sizes of the meshes and the coarser of them, finest first.
     Meshes(Vec<f64>, Vec<&'a Curves>),
     /// The error that a file states, if any.
@@ -250,10 +254,11 @@ impl<'a> Side<'a> {
         Self { source: engine.clone().into(), curves: &reference.curves, own }
     }
 
-    /// A source at the points of a file; `None` for a model of unknown uncertainty.
+    /// A source at the points of a file; `None` for a model that is not compared.
     fn of_points(on: &'a OnPoints) -> Option<Self> {
         let own = match on.source {
-            Source::Model(_) => Own::Refined(on.others.first()?),
+            Source::Model(model) if model != GATED => return None,
+            Source::Model(_) => Own::Refined(on.others.first()),
             Source::Engine(_) => Own::Meshes(on.sizes.clone(), on.others.iter().collect()),
         };
         Some(Self { source: on.source.clone(), curves: &on.curves, own })
@@ -275,7 +280,7 @@ impl<'a> Side<'a> {
     /// What it does not know of itself.
     fn uncertainty(&self, part: Part) -> Option<f64> {
         match &self.own {
-            Own::Refined(refined) => part.difference(self.curves, refined),
+            Own::Refined(refined) => part.difference(self.curves, (*refined)?),
             Own::Meshes(..) => Some(self.grid_index(part)?.index),
             Own::Stated(error) => *error,
         }
@@ -288,12 +293,12 @@ impl<'a> Side<'a> {
     }
 }
 
-/// All differences of a case: of a model, whose `refined` solution says how uncertain it is, from every reference, and of
-/// every further reference from the first.
+/// All differences of a case: of a model, whose `refined` solution, if any, says how uncertain it
+/// is, from every reference, and of every further reference from the first.
 pub fn rows(
     case: &Case,
     held_back: bool,
-    (model, curves, refined): (Source, &Curves, &Curves),
+    (model, curves, refined): (Source, &Curves, Option<&Curves>),
     references: &[(Engine, &Reference)],
 ) -> Vec<VerificationRow> {
     let ends = case.overlap();
@@ -306,8 +311,8 @@ pub fn rows(
     pairs.flat_map(row).collect()
 }
 
-/// The differences of quarter-space and of codes from the curves of a file, at its points; `ends` are those of the
-/// case's overlap (C).
+/// The differences of quarter-space and of codes from the curves of a file, at its points; `ends`
+/// are those of the case's overlap (C).
 pub fn of_file(run: &FileRun, ends: [f64; 2]) -> Vec<VerificationRow> {
     let brought = Side::of_file(&run.file);
     let sides = run.sources.iter().filter_map(Side::of_points);
@@ -359,7 +364,8 @@ fn compared(
 mod tests {
     use super::*;
 
-    /// Errors 0.1 size^q on sizes 1, 1.4 and 2: the order is found, and the index is the safety times the error.
+    /// Errors 0.1 size^q on sizes 1, 1.4 and 2: the order is found, and the index is the safety
+    /// times the error.
     #[test]
     fn known_orders_are_found() {
         let sizes = [1.0, 1.4, 2.0];

@@ -26,9 +26,10 @@ fn solved(case: &Case, method: EdgeModel) -> Result<Solution> {
     solve(case, &Options { curves: Vec::new(), ..Options::new(method) })
 }
 
-/// The approach of a force gives the force: straight, longer than the block, crowned with ends inside, eccentric, tilted,
-/// offset, sliding, by several models and tolerances. Where rounding decides between two solutions of the contact, they
-/// are up to 3e-8 apart; where one end is sought inside, the axis is laid anew, and its solutions are up to 2e-6 apart.
+/// The approach of a force gives the force: straight, longer than the block, crowned with ends
+/// inside, eccentric, tilted, offset, sliding, by several models and tolerances. Where rounding
+/// decides between two solutions of the contact, they are up to 3e-8 apart; where one end is sought
+/// inside, the axis is laid anew, and its solutions are up to 2e-6 apart.
 #[test]
 fn the_approach_of_a_force_gives_the_force() {
     let quarter = EdgeModel::QuarterSpace;
@@ -70,8 +71,9 @@ fn the_approach_of_a_force_gives_the_force() {
     }
 }
 
-/// Hertz's elliptic contact far from the ends: the approach of its bodies grows with the force to the power 2/3, and a
-/// line contact's with nearly its first power. Between points at one depth the exponent is a little more.
+/// Hertz's elliptic contact far from the ends: the approach of its bodies grows with the force to
+/// the power 2/3, and a line contact's with nearly its first power. Between points at one depth the
+/// exponent is a little more.
 #[test]
 fn a_given_approach_is_met_over_decades() {
     let case = crowned(plain(5e-4, 5.0, 1.0).with_tolerance(1e-2), 0.05);
@@ -131,8 +133,9 @@ fn the_approach_is_one_at_all_tolerances() {
     }
 }
 
-/// Cells count to the same points by the closed form of their displacement, the line engine by strains: straight, on a longer block, offset,
-/// with ends inside, lifted off at one end, and where the contact has left y = 0.
+/// Cells count to the same points by the closed form of their displacement, the line engine by
+/// strains: straight, on a longer block, offset, with ends inside, lifted off at one end, and where
+/// the contact has left y = 0.
 #[test]
 fn both_engines_count_the_approach_and_the_tilt_to_the_same_points() {
     let held = |tilt_rad: f64, offset_m: f64| {
@@ -166,7 +169,8 @@ fn both_engines_count_the_approach_and_the_tilt_to_the_same_points() {
             let [from, to] = line.contact_y_m;
             let turned = (cells.tilt_rad - line.tilt_rad) / slope * 0.5 * (to - from);
             println!("{name} {method}: approach {off:.1e}, tilt {:.1e} C", turned / line.hertz.c_m);
-            // The pressure of a half-space is singular at all ends, which uniform cells follow least.
+            // The pressure of a half-space is singular at all ends, which uniform cells follow
+            // least.
             let limit = if method == EdgeModel::HalfSpace { 5e-3 } else { 2e-3 };
             small(&format!("{name}, {method}: approach"), off.abs(), limit);
             small(&format!("{name}, {method}: tilt"), turned.abs() / line.hertz.c_m, limit);

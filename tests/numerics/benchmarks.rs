@@ -5,9 +5,9 @@ use edgeline::case::Case;
 use edgeline::solve::{Options, Scene, SolvedCase, SolvedScene};
 use std::f64::consts::PI;
 
-/// NAFEMS, Advanced Finite Element Contact Benchmarks (2006), benchmark 1: a steel cylinder of 50 mm radius on an
-/// aluminium block in plane strain, 35 kN per mm. By Hertz: 3585 MPa and a half-width of 6.215 mm. Between mirrors a
-/// finite line is a part of that endless one.
+/// NAFEMS, Advanced Finite Element Contact Benchmarks (2006), benchmark 1: a steel cylinder of 50
+/// mm radius on an aluminium block in plane strain, 35 kN per mm. By Hertz: 3585 MPa and a
+/// half-width of 6.215 mm. Between mirrors a finite line is a part of that endless one.
 #[test]
 fn the_cylinder_of_nafems_has_its_pressure_and_half_width() {
     let text = "name = \"nafems-1\"
@@ -34,7 +34,8 @@ force_n = 8.75e6
         assert!((mirrored.pressure(x, y) - wanted).abs() < 5e-3, "at {x}, {y}");
     }
     assert_eq!(mirrored.pressure(1.01, 0.0), 0.0);
-    // Plane strain on the axis: the largest shear stress, 0.300 p0, lies 0.786 C deep (Johnson, 1985, Eq. 4.46).
+    // Plane strain on the axis: the largest shear stress, 0.300 p0, lies 0.786 C deep (Johnson,
+    // 1985, Eq. 4.46).
     let block = edgeline::stress::BodyKind::Block;
     let found = mirrored.stress(block, &[[0.0, 0.0, 0.786]]).unwrap()[0];
     assert!((0.5 * (found.xx - found.zz) - 0.300).abs() < 3e-3, "{found:?}");
@@ -44,16 +45,19 @@ force_n = 8.75e6
     assert!(middle > 1.01 && middle < 1.03 && end < 0.8, "{middle}, {end}");
 }
 
-/// A steel roller, D = L = 10 mm, pressed on a plate by 0.01 mm at its middle plane (R. Teutsch and B. Sauer, J. Tribol.,
-/// 2004): 4219, 3939, 3678 and 3435 N for plates 0.5, 1, 2 and 4 D thick, by a fit within 1.5 % of finite
-/// elements.
+/// A steel roller, D = L = 10 mm, pressed on a plate by 0.01 mm at its middle plane (R. Teutsch and
+/// B. Sauer, J. Tribol., 2004): 4219, 3939, 3678 and 3435 N for plates 0.5, 1, 2 and 4 D thick, by
+/// a fit within 1.5 % of finite elements.
 ///
-/// How long their plate is, is not known here: from 2 to 4 D it yields by 1.92e-10 m/N more, where one as long as the roller does by
-/// F ln 2 / (pi E H), 2.12e-10, and a far longer one by 0.58e-10. So their forces lie between those on both. Here plates are infinitely deep, and
-/// their approach is counted to their thickness, beyond one roller radius below a far longer one by the displacement below a line of
-/// equal forces on a half-space (Boussinesq; Johnson, 1985, Eq. 3.18). The roller is a disc squeezed across, which is softer than a
-/// deep body down to its centre by F / (pi E L) (2 ln 2 - 1 + nu) in plane stress and by
-/// F (1 - nu^2) / (pi E L) (2 ln 2 - 1 + nu / (1 - nu)) in plane strain (Eqs. 5.57 and 5.58): their mean is taken.
+/// How long their plate is, is not known here: from 2 to 4 D it yields by 1.92e-10 m/N more, where
+/// one as long as the roller does by F ln 2 / (pi E H), 2.12e-10, and a far longer one by 0.58e-10.
+/// So their forces lie between those on both. Here plates are infinitely deep, and their approach is
+/// counted to their thickness, beyond one roller radius below a far longer one by the displacement
+/// below a line of equal forces on a half-space (Boussinesq; Johnson, 1985, Eq. 3.18). The roller is
+/// a disc squeezed across, which is softer than a deep body down to its centre by
+/// F / (pi E L) (2 ln 2 - 1 + nu) in plane stress and by
+/// F (1 - nu^2) / (pi E L) (2 ln 2 - 1 + nu / (1 - nu)) in plane strain (Eqs. 5.57 and 5.58): their
+/// mean is taken.
 #[test]
 fn the_roller_on_plates_of_teutsch_and_sauer_takes_forces_between_those_on_short_and_long_plates() {
     const MODULUS: f64 = 208e9;
@@ -63,7 +67,8 @@ fn the_roller_on_plates_of_teutsch_and_sauer_takes_forces_between_those_on_short
     let log = 2.0 * 2f64.ln() - 1.0;
     let strain = (1.0 - POISSON * POISSON) * (log + POISSON / (1.0 - POISSON));
     let disc = 0.5 * (log + POISSON + strain) / (PI * MODULUS * LENGTH);
-    // Displacement along z at a depth below the middle of the line on a half-space, for a force of one newton.
+    // Displacement along z at a depth below the middle of the line on a half-space, for a force of
+    // one newton.
     let below = |z: f64| {
         let half = 0.5 * LENGTH;
         let line = LENGTH / z.hypot(half) + 4.0 * (1.0 - POISSON) * (half / z).asinh();

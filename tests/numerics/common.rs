@@ -20,8 +20,8 @@ pub fn worse(a: f64, b: f64) -> f64 {
     if a.is_nan() || b.is_nan() { f64::NAN } else { a.max(b) }
 }
 
-/// The `index`-th point in D dimensions of Kronecker's sequence for the powers of the root of x^(D + 1) = x + 1, which
-/// leaves no large holes in any dimension.
+/// The `index`-th point in D dimensions of Kronecker's sequence for the powers of the root of
+/// x^(D + 1) = x + 1, which leaves no large holes in any dimension.
 pub fn sequence<const D: usize>(index: usize) -> [f64; D] {
     let mut root = 1.5f64;
     for _ in 0..60 {
@@ -77,8 +77,8 @@ pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
     Case::from_factors("case", 0.01, steel, steel, factors)
 }
 
-/// Asserts that tractions of `stress` (y, z and all x) vanish on the end faces of both bodies, at 40 x 40
-/// points of each.
+/// Asserts that tractions of `stress` (y, z and all x) vanish on the end faces of both bodies, at
+/// 40 x 40 points of each.
 pub fn free_ends(
     solved: &SolvedScene,
     what: &str,

@@ -1,5 +1,5 @@
-//! A load beside the middle, a block beside the roller's middle, a roller longer than the block: even and
-//! odd parts of both bodies.
+//! A load beside the middle, a block beside the roller's middle, a roller longer than the block:
+//! even and odd parts of both bodies.
 
 use crate::common::{apart, scene, small};
 use edgeline::base::{PerBody, StressTensor};
@@ -14,8 +14,8 @@ fn eccentric(arm: f64, model: EdgeModel, tolerance: f64) -> SolvedScene {
     SolvedScene::new(&Scene { tilt: Tilt::Free(arm), tolerance, ..plain }).unwrap()
 }
 
-/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an independent
-/// calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
+/// S_l = 5, flush ends, nu = 0.3, the load 0.08 L1 off the middle: pressures at x = 0 of an
+/// independent calculation, which finite elements (230,000 unknowns) confirm to 0.0035 p0 RMS.
 #[test]
 fn an_eccentric_load_has_the_pressures_of_an_independent_calculation() {
     for tolerance in [5e-3, 1e-3] {
@@ -51,7 +51,8 @@ fn stress(solved: &SolvedScene, body: BodyKind, [x, y, z]: [f64; 3]) -> StressTe
     solved.field(body).at(y, z, &[x])[0]
 }
 
-/// Where the bodies have left each other the surface is free, and its stresses are those just below it.
+/// Where the bodies have left each other the surface is free, and its stresses are those just below
+/// it.
 #[test]
 fn surfaces_beside_a_contact_on_one_side_of_the_middle_are_free() {
     for model in EdgeModel::ALL {
@@ -86,9 +87,9 @@ fn loads_on_either_side_are_mirror_images() {
     }
 }
 
-/// Far below, both bodies are plates that a moment on their edge bends: their lines x = 0 tilt by 3 M ln(z2 / z1) / (pi H^3
-/// (1 - nu)(3 + nu)) between two depths, and by a part (H / z)^2 more nearer to the edge. Here stresses are summed down to
-/// both depths, the deeper one 8 H.
+/// Far below, both bodies are plates that a moment on their edge bends: their lines x = 0 tilt by 3
+/// M ln(z2 / z1) / (pi H^3 (1 - nu)(3 + nu)) between two depths, and by a part (H / z)^2 more
+/// nearer to the edge. Here stresses are summed down to both depths, the deeper one 8 H.
 #[test]
 fn lines_below_an_eccentric_load_tilt_as_those_of_plates() {
     let solved = eccentric(0.8, EdgeModel::QuarterSpace, 1e-3);
@@ -103,8 +104,9 @@ fn lines_below_an_eccentric_load_tilt_as_those_of_plates() {
     assert!((0.0..0.15).contains(&deep) && (3.0..5.0).contains(&(near / deep)), "{near} {deep}");
 }
 
-/// Bodies that are many times shorter than the depth of the tilt: from 8 half-lengths on it is that of plates. By stresses
-/// summed down to such depths, tilts were up to 41 % off at 5e-3 and of the other sign at 1e-2.
+/// Bodies that are many times shorter than the depth of the tilt: from 8 half-lengths on it is that
+/// of plates. By stresses summed down to such depths, tilts were up to 41 % off at 5e-3 and of the
+/// other sign at 1e-2.
 #[test]
 fn tilts_deep_below_short_bodies_keep_their_accuracy() {
     let plain = scene(6.0, 2.0, 0.3, EdgeModel::QuarterSpace);
@@ -118,8 +120,8 @@ fn tilts_deep_below_short_bodies_keep_their_accuracy() {
     small("1e-2", (coarse / fine - 1.0).abs(), 1e-2);
 }
 
-/// Below both ends of an eccentric roller on a longer block the pressure has its power, as it has in the middle of it:
-/// plain polynomials were up to 30 tolerances off there.
+/// Below both ends of an eccentric roller on a longer block the pressure has its power, as it has
+/// in the middle of it: plain polynomials were up to 30 tolerances off there.
 #[test]
 fn singular_ends_under_an_eccentric_load_keep_the_tolerance() {
     let plain = scene(10.0, 0.4, 0.1, EdgeModel::QuarterSpace);
@@ -144,8 +146,8 @@ fn singular_ends_under_an_eccentric_load_keep_the_tolerance() {
     }
 }
 
-/// Both ways to the same contact: one half of it by the even parts alone, and all of it by even and odd
-/// ones.
+/// Both ways to the same contact: one half of it by the even parts alone, and all of it by even and
+/// odd ones.
 #[test]
 fn the_odd_part_of_what_is_symmetric_vanishes() {
     for (length_ratio, model) in [

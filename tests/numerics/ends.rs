@@ -70,8 +70,9 @@ fn strengths_do_not_depend_on_the_mesh() {
 
 #[test]
 fn a_narrow_ledge_is_free_of_stress_at_its_corner() {
-    // The block ends 0.27 and 0.11 C beyond the roller. At a corner of 90 degrees between free faces stresses vanish
-    // like the 1.7th power of the distance (Williams, Journal of Applied Mechanics 19, 1952).
+    // The block ends 0.27 and 0.11 C beyond the roller. At a corner of 90 degrees between free
+    // faces stresses vanish like the 1.7th power of the distance (Williams, Journal of Applied
+    // Mechanics 19, 1952).
     for (slenderness, length_ratio) in [(2.53, 0.903), (2.164, 0.9535)] {
         let scene = Scene {
             tolerance: 1e-3,

@@ -1,5 +1,5 @@
-//! Modules import only modules above them in the list of layers at the head of `src/lib.rs`, and no
-//! two files import each other, directly or in a circle.
+//! Modules import only modules above them in the list of layers at the head of `src/lib.rs`, no two
+//! files import each other, directly or in a circle, and comments fit the page.
 
 use crate::imports::Sources;
 use std::collections::{BTreeMap, BTreeSet};
@@ -97,6 +97,26 @@ fn no_files_import_each_other() {
         }
     }
     assert!(found.is_empty(), "files that import each other: {found:#?}");
+}
+
+/// The formatter breaks code, and no comments.
+#[test]
+fn comments_keep_to_the_width_of_the_code() {
+    const WIDTH: usize = 100;
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut all = BTreeMap::new();
+    for folder in ["src", "tests", "benches", "examples", "python/src"] {
+        texts(&root.join(folder), root, &mut all);
+    }
+    assert!(all.len() > 300, "{} files", all.len());
+    let is_long = |line: &&str| line.trim_start().starts_with("//") && line.chars().count() > WIDTH;
+    let long: Vec<String> = all
+        .iter()
+        .flat_map(|(path, text)| {
+            text.lines().filter(is_long).map(move |line| format!("{path:?}: {line}"))
+        })
+        .collect();
+    assert!(long.is_empty(), "comments beyond {WIDTH} characters: {long:#?}");
 }
 
 /// Sources from pairs of path and text; a file that no text of them declares is not read.

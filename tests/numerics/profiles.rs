@@ -11,8 +11,8 @@ use std::f64::consts::PI;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Complete elliptic integrals K and E of the modulus `e`, by the arithmetic-geometric mean (Abramowitz
-/// and Stegun 1964, section 17.6).
+/// Complete elliptic integrals K and E of the modulus `e`, by the arithmetic-geometric mean
+/// (Abramowitz and Stegun 1964, section 17.6).
 fn elliptic(e: f64) -> [f64; 2] {
     let (mut a, mut b, mut c) = (1.0, (1.0 - e * e).sqrt(), e);
     let (mut sum, mut power) = (0.5 * c * c, 0.5);
@@ -25,15 +25,15 @@ fn elliptic(e: f64) -> [f64; 2] {
     [k, k * (1.0 - sum)]
 }
 
-/// Ratio of the radii of curvature, along the long axis to along the short one, of a contact with this
-/// ratio of axes (Johnson, Contact Mechanics, 1985, Eq. 4.28).
+/// Ratio of the radii of curvature, along the long axis to along the short one, of a contact with
+/// this ratio of axes (Johnson, Contact Mechanics, 1985, Eq. 4.28).
 fn radii_of(axes: f64) -> f64 {
     let [k, e] = elliptic((1.0 - axes.powi(-2)).sqrt());
     (axes * axes * e - k) / (k - e)
 }
 
-/// Largest pressure and both half-axes, the short one first, of the contact with this ratio of axes and
-/// the radius of curvature `long_m` along the long axis (Johnson 1985, Eqs. 4.25 and 4.26).
+/// Largest pressure and both half-axes, the short one first, of the contact with this ratio of axes
+/// and the radius of curvature `long_m` along the long axis (Johnson 1985, Eqs. 4.25 and 4.26).
 fn ellipse(axes: f64, long_m: f64, e_star_pa: f64, force_n: f64) -> [f64; 3] {
     let square = 1.0 - axes.powi(-2);
     let [k, e] = elliptic(square.sqrt());
@@ -44,8 +44,8 @@ fn ellipse(axes: f64, long_m: f64, e_star_pa: f64, force_n: f64) -> [f64; 3] {
     [1.5 * force_n / (PI * short * long), short, long]
 }
 
-/// A crown of `ratio` roller radii on a long roller, so that the contact ends far from the ends of the
-/// bodies: a roller of 20 mm radius and 30 mm length under `force_n`.
+/// A crown of `ratio` roller radii on a long roller, so that the contact ends far from the ends of
+/// the bodies: a roller of 20 mm radius and 30 mm length under `force_n`.
 fn crowned(ratio: f64, force_n: f64, tolerance: f64) -> Case {
     let steel = Material { young_pa: 210e9, poisson: 0.3 };
     let factors = Factors { load: 1e-5, slenderness: 20.0, length_ratio: 1.0 };
@@ -87,7 +87,8 @@ fn a_strong_crown_makes_an_elliptic_contact() {
     }
 }
 
-/// Crowns that curve more than the roller: contacts that are nearly as long as wide, or shorter, and one that is too short.
+/// Crowns that curve more than the roller: contacts that are nearly as long as wide, or shorter,
+/// and one that is too short.
 #[test]
 fn a_contact_that_is_shorter_than_wide_is_hertzs_or_refused() {
     let crowned = |axes: f64, tolerance: f64| {
@@ -128,8 +129,8 @@ fn a_contact_that_is_shorter_than_wide_is_hertzs_or_refused() {
     assert!(said.contains("width over its length") && said.contains("--engine cells"), "{said}");
 }
 
-/// A straight and a crowned roller, flush with a block, under loads in and beside the middle, for the
-/// program's whole way.
+/// A straight and a crowned roller, flush with a block, under loads in and beside the middle, for
+/// the program's whole way.
 fn case(profile: Option<ProfileSpec>, eccentricity_m: Option<f64>) -> Case {
     let steel = Material { young_pa: 210e9, poisson: 0.3 };
     let factors = Factors { load: 5e-4, slenderness: 5.0, length_ratio: 0.8 };
@@ -162,7 +163,8 @@ fn a_line_added_to_a_profile_changes_the_tilt_and_nothing_else() {
         SolvedCase::new(&case, &options).unwrap().solution()
     });
     let turned = other.summary.tilt_rad - one.summary.tilt_rad;
-    // Where the drop is least, a monotone curve through the points is flat: another one with another line.
+    // Where the drop is least, a monotone curve through the points is flat: another one with
+    // another line.
     small("tilt", (turned / 3e-4 - 1.0).abs(), 1e-3);
     let [one_line, other_line] = [&one, &other].map(|s| &s.curves.pressure[0]);
     let half = 0.5 * plain.roller.length_m / one.curves.hertz.c_m;
@@ -212,8 +214,9 @@ fn a_contact_ends_where_the_pressure_does() {
     }
 }
 
-/// Steep profiles under light loads, off the middle of blocks of other lengths: ends at kinks of a profile, just before
-/// a body's end, and where two gradings of panels meet. Each once ended in a panic, unsound or not at all.
+/// Steep profiles under light loads, off the middle of blocks of other lengths: ends at kinks of a
+/// profile, just before a body's end, and where two gradings of panels meet. Each once ended in a
+/// panic, unsound or not at all.
 #[test]
 fn steep_profiles_off_the_middle_end_in_sound_answers() {
     let logarithmic = |amplitude: f64, k: f64| {

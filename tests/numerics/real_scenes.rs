@@ -1,8 +1,9 @@
-//! Real rollers over the legal range: profiles of every kind on either body, raceways, loads and blocks beside the
-//! middle, held tilts, rollers longer than the block, by all four models.
+//! Real rollers over the legal range: profiles of every kind on either body, raceways, loads and
+//! blocks beside the middle, held tilts, rollers longer than the block, by all four models.
 //!
-//! `EDGELINE_SCENES=5000 cargo test --release --test numerics real_scenes -- --nocapture` runs 5,000 and prints the
-//! worst of each law and every scene without an answer. Without the variable a hundred run.
+//! `EDGELINE_SCENES=5000 cargo test --release --test numerics real_scenes -- --nocapture` runs
+//! 5,000 and prints the worst of each law and every scene without an answer. Without the variable a
+//! hundred run.
 
 use crate::common::{sequence, worse};
 use edgeline::base::profile::Table;
@@ -146,8 +147,9 @@ fn draw(index: usize) -> (EdgeModel, Case) {
     (EdgeModel::ALL[index % EdgeModel::ALL.len()], case.with_tolerance(tolerance))
 }
 
-/// What the laws of contact are broken by at most: load and moment (relative), the traction that is left on the end
-/// faces (tolerances and largest pressures), and the pressure inside against that of a tighter tolerance (the same).
+/// What the laws of contact are broken by at most: load and moment (relative), the traction that is
+/// left on the end faces (tolerances and largest pressures), and the pressure inside against that
+/// of a tighter tolerance (the same).
 type Broken = [f64; 4];
 const LIMITS: Broken = [1e-9, 1e-9, 10.0, 6.0];
 

@@ -8,8 +8,8 @@ use edgeline::solve::{Options, Scene, SolvedScene, solve};
 use edgeline::stress::curves::standard_curves;
 use edgeline::stress::{BodyKind, away_from_edge};
 
-/// Whether a point of the surface in the middle lies within 0.03 C of the contact's edge, where stresses have a
-/// vertical tangent.
+/// Whether a point of the surface in the middle lies within 0.03 C of the contact's edge, where
+/// stresses have a vertical tangent.
 fn on_the_rim(solved: &SolvedScene, [x, y, z]: [f64; 3]) -> bool {
     z == 0.0 && y == 0.0 && (x - solved.contact.half_widths[0]).abs() < 0.03
 }

@@ -1,6 +1,6 @@
-//! Stresses under a traction along x: known solutions, and the laws of any stress field. Lengths are in
-//! units of C, stresses in units of p0; the traction on the block is the pressure along +x unless a friction
-//! is named.
+//! Stresses under a traction along x: known solutions, and the laws of any stress field. Lengths
+//! are in units of C, stresses in units of p0; the traction on the block is the pressure along +x
+//! unless a friction is named.
 
 use crate::common::{apart, case, free_ends, half_of, near, scene, small, worse};
 use crate::fields::{LIMITS, Random, SCENES, imbalance};
@@ -27,8 +27,8 @@ fn dragged(field: &BodyField, [x, y, z]: [f64; 3]) -> StressTensor {
 /// Mechanics, 1985, section 7.1; McEwen, Philosophical Magazine 40, 1949).
 #[test]
 fn long_contact_is_plane_strain_with_friction() {
-    // In the middle the load per length is 0.4 % below its mean. Without Poisson's effect plane strain has no
-    // stress on the end faces of a flush body, of any length, and holds everywhere.
+    // In the middle the load per length is 0.4 % below its mean. Without Poisson's effect plane
+    // strain has no stress on the end faces of a flush body, of any length, and holds everywhere.
     let cases = [
         (200.0, 0.3, EdgeModel::Mirror, &[0.0][..]),
         (5.0, 0.0, EdgeModel::QuarterSpace, &[0.0, 4.5, 5.0]),
@@ -54,8 +54,9 @@ fn long_contact_is_plane_strain_with_friction() {
     }
 }
 
-/// A contact that a strong crown makes a circle: Hamilton's surface stresses within it (Proceedings of the
-/// Institution of Mechanical Engineers 197C, 1983) and below it the sum of Cerruti's point loads.
+/// A contact that a strong crown makes a circle: Hamilton's surface stresses within it (Proceedings
+/// of the Institution of Mechanical Engineers 197C, 1983) and below it the sum of Cerruti's point
+/// loads.
 #[test]
 fn a_circular_contact_has_hamiltons_stresses() {
     let mut case = case(1e-5, 20.0, 1.0).with_tolerance(1e-3);
@@ -171,8 +172,8 @@ fn end_faces_are_free_under_a_traction() {
     }
 }
 
-/// The force along x through a plane below the contact is that on the surface. Beyond X it is that of a line
-/// load's x^2 z / r^4, 2 z / (pi X) of the whole.
+/// The force along x through a plane below the contact is that on the surface. Beyond X it is that
+/// of a line load's x^2 z / r^4, 2 z / (pi X) of the whole.
 #[test]
 fn planes_carry_the_tangential_load() {
     const FAR: f64 = 100.0;
@@ -202,8 +203,8 @@ fn planes_carry_the_tangential_load() {
     }
 }
 
-/// A friction of the other sign is the mirror image, both bodies see opposite tractions, and what is added is
-/// in proportion to the friction.
+/// A friction of the other sign is the mirror image, both bodies see opposite tractions, and what
+/// is added is in proportion to the friction.
 #[test]
 fn frictions_mirror_and_superpose() {
     let solved = |friction: f64| {
@@ -250,7 +251,8 @@ fn fields_of_tractions_are_in_equilibrium_and_compatible() {
     }
 }
 
-/// The stresses of a load off the middle are those of a symmetric one where both are the same scene.
+/// The stresses of a load off the middle are those of a symmetric one where both are the same
+/// scene.
 #[test]
 fn a_whole_line_and_its_half_agree() {
     let symmetric = sliding(5.0, 0.6, 0.3, EdgeModel::QuarterSpace);

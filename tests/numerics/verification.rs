@@ -86,9 +86,10 @@ fn long_contact_is_plane_strain() {
     }
 }
 
-/// The approach of points at a depth in plane strain, the strain below Hertz's pressure integrated (Johnson, Contact Mechanics, 1985,
-/// Eq. 4.45; for large depths his Eq. 5.57): arsinh d - nu / (1 - nu) (d sqrt(1 + d^2) - d^2). One image in each face leaves the middle
-/// 1.5e-3 less pressure.
+/// The approach of points at a depth in plane strain, the strain below Hertz's pressure integrated
+/// (Johnson, Contact Mechanics, 1985, Eq. 4.45; for large depths his Eq. 5.57):
+/// arsinh d - nu / (1 - nu) (d sqrt(1 + d^2) - d^2). One image in each face leaves the middle 1.5e-3
+/// less pressure.
 #[test]
 fn approach_of_a_long_contact_is_that_of_plane_strain() {
     for (tolerance, limit) in [(1e-2, 1e-2), (1e-3, 3e-3)] {
@@ -163,8 +164,8 @@ fn stresses_of_cells() {
     for model in [EdgeModel::HalfSpace, EdgeModel::Mirror] {
         let scene = Scene::new(&case, model, None);
         let solved = SolvedScene::new(&scene).unwrap();
-        // Cells of the pressure: 0.05 wide, graded towards the end of the line. The first one is the panel at the end,
-        // whose weights integrate a pressure that grows without bound.
+        // Cells of the pressure: 0.05 wide, graded towards the end of the line. The first one is
+        // the panel at the end, whose weights integrate a pressure that grows without bound.
         let axis = solved.pressure.axis();
         let last = axis.len() - axis.order();
         let mut ends = vec![0.0f64, 5.0 - axis.panel(axis.panel_count() - 1)[0]];

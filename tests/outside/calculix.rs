@@ -1,5 +1,5 @@
-//! Decks, and CalculiX as a child: missing, hanging, killed. How it fails otherwise is tested beside its
-//! reader, in `fem/tests/test_calculix.py`.
+//! Decks, and CalculiX as a child: missing, hanging, killed. How it fails otherwise is tested
+//! beside its reader, in `fem/tests/test_calculix.py`.
 
 use crate::support::{Bench, edgeline, files, kill, refused, start, succeeded, wait_for};
 use std::fs;

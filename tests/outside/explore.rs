@@ -316,7 +316,8 @@ fn two_hundred_moves_are_quick_and_leave_nothing_behind() {
         medians.push(moves[moves.len() / 2]);
     }
     eprintln!("from a move to the screen: {medians:?} ms in the median, flush and longer");
-    // Half of that at the pace of a hand (docs/performance.md); tests share their machine with others.
+    // Half of that at the pace of a hand (docs/performance.md); tests share their machine with
+    // others.
     assert!(medians.iter().all(|median| *median < 400.0), "{medians:?}");
     let (after, ticks) = usage(pid);
     assert!(after < before + 50.0, "{before} MB before, {after} MB after");

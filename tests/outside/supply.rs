@@ -19,7 +19,8 @@ fn packages() -> Vec<Value> {
     };
     let rustc = run("rustc", &["-vV"]);
     let host = rustc.lines().find_map(|l| l.strip_prefix("host: ")).unwrap();
-    // Those of the Python package, which other tests do not need, are fetched where they are missing.
+    // Those of the Python package, which other tests do not need, are fetched where they are
+    // missing.
     let arguments = ["metadata", "--format-version", "1", "--locked"];
     let text = run(env!("CARGO"), &[&arguments[..], &["--filter-platform", host]].concat());
     let metadata: Value = serde_json::from_str(&text).unwrap();

@@ -1,4 +1,5 @@
-//! `edgeline compare`: brought curves in any units and axes, shifted curves, and files that cannot be used.
+//! `edgeline compare`: brought curves in any units and axes, shifted curves, and files that cannot
+//! be used.
 
 use crate::support::{edgeline, files, number, refused, rows, said};
 use serde_json::Value;
@@ -26,8 +27,8 @@ pub(crate) fn record() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("results/reference/w1e-3_sl5_lr0.5")
 }
 
-/// A folder with the case, the record's curves in SI units, the same in mm and MPa in other axes at y < 0,
-/// and the same with one curve 2 % too large.
+/// A folder with the case, the record's curves in SI units, the same in mm and MPa in other axes at
+/// y < 0, and the same with one curve 2 % too large.
 pub(crate) fn bench() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("case.toml"), CASE).unwrap();
@@ -137,6 +138,14 @@ fn records_solutions_and_given_limits_are_taken() {
     let (code, text) = run(&["compare", "case.toml", "m/pressure.csv"]);
     assert_eq!(code, Some(1), "{text}");
     assert!(text.contains("contact, points, pressure"), "{text}");
+    // The program's own cells are means, and are compared as such: at the contact's edge, too.
+    let (code, text) = run(&["solve", "case.toml", "--out", "q"]);
+    assert_eq!(code, Some(0), "{text}");
+    let (code, text) = run(&["compare", "case.toml", "q/pressure.csv", "--out", "c"]);
+    assert_eq!(code, Some(0), "{text}");
+    let own = errors(&folder.path().join("c/errors.csv"));
+    let own = own.iter().find(|(place, _)| place.starts_with("quarter-space")).unwrap();
+    assert!(own.1 < 1e-3, "{own:?}");
     // Given limits are not widened, and one that selects nothing fails.
     let gate = |measure: &str, limit: f64| {
         format!(
@@ -175,6 +184,7 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         ("x_m,y_m\n".into(), "has no column of a stress or a pressure"),
         ("x_m,y_m,p_pa,cpress_pa\n".into(), "columns 'p_pa' and 'cpress_pa' are the same thing"),
         ("x_m,y_m,p_pa\n".into(), "holds no points"),
+        ("x_m,y_m,p_pa\n0,7,0\n".into(), "has no point on the contact"),
         ("# length_unit: ft\nx,y,p_pa\n".into(), ":1: length_unit cannot be 'ft': give m, cm, mm"),
         (
             "# lenght_unit: mm\nx,y,p_pa\n".into(),
@@ -188,8 +198,10 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         let message = refused(&mut command);
         assert!(message.contains("bad.csv") && message.contains(wanted), "{text}{message}");
     }
+    fs::copy(folder.path().join("si.csv"), folder.path().join("mirror.csv")).unwrap();
     for (arguments, wanted) in [
         (["si.csv", "si.csv"].to_vec(), "name = si is not valid"),
+        (["mirror.csv"].to_vec(), "is called like a model or a code"),
         (["si.csv", "--axes", "x y"].to_vec(), "--axes = x y is not valid"),
     ] {
         let all = [&["compare", "case.toml"], &arguments[..]].concat();

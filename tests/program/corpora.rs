@@ -7,7 +7,8 @@ mod targets;
 use proptest::test_runner::{RngAlgorithm, TestRng};
 use std::path::{Path, PathBuf};
 
-/// The inputs of one target, by name: those that were found, and the project's own files of this kind.
+/// The inputs of one target, by name: those that were found, and the project's own files of this
+/// kind.
 fn corpus(target: &str) -> Vec<(PathBuf, Vec<u8>)> {
     let own = match target {
         "case" | "study" => "cases",

@@ -1,5 +1,5 @@
-//! The documentation: commands of the first steps and of the how-to pages run as they stand, those of all other
-//! pages exist, and the reference has every key and option.
+//! The documentation: commands of the first steps and of the how-to pages run as they stand, those
+//! of all other pages exist, and the reference has every key and option.
 
 use crate::support::{edgeline, files, said};
 use std::path::Path;

@@ -1,4 +1,5 @@
-//! `edgeline explore`: who is answered, and what ends it. The page itself is tested in `tests/outside/`.
+//! `edgeline explore`: who is answered, and what ends it. The page itself is tested in
+//! `tests/outside/`.
 
 use crate::support::{Explorer, edgeline, files, kill, refused};
 use serde_json::Value;

@@ -417,6 +417,13 @@ fn children_that_write_garbage_are_refused() {
             succeeded(&mut bench.fake(""));
         }
     }
+    // A folder of the name that it would work in is somebody else's.
+    let bench = Bench::new();
+    let own = bench.out().join("work/mine.txt");
+    fs::create_dir_all(own.parent().unwrap()).unwrap();
+    fs::write(&own, "mine").unwrap();
+    let said = refused(&mut bench.fake(""));
+    assert!(said.contains("work: was not made by this program") && own.exists(), "{said}");
     // A program that fails, dies or prints nothing is not gmsh.
     let bench = Bench::new();
     for script in ["exit 3", "kill -9 $$", "exit 0", "printf '\\377\\376'"] {

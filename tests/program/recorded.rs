@@ -1,5 +1,5 @@
-//! Scenes beyond the default study against recorded finite elements, without the places where these are known to err. The
-//! gates hold the same scenes everywhere.
+//! Scenes beyond the default study against recorded finite elements, without the places where these
+//! are known to err. The gates hold the same scenes everywhere.
 
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study};
@@ -12,8 +12,8 @@ use std::path::Path;
 /// Distance (C) from where the contact ends by itself within which meshes differ among themselves.
 const TIP: f64 = 0.7;
 
-/// Distance (C) on the surface from the contact's edge, where the pressure has a vertical tangent and an element is partly
-/// in contact.
+/// Distance (C) on the surface from the contact's edge, where the pressure has a vertical tangent
+/// and an element is partly in contact.
 const RIM: f64 = 0.03;
 
 /// Largest of some differences (p0), and where it is.
@@ -37,8 +37,9 @@ fn rms(differences: &[f64]) -> f64 {
     (sum / differences.len() as f64).sqrt()
 }
 
-/// What quarter-space is off by, outside 0.1 C of the overlap's ends: the pressure on a line and the components on a
-/// curve of the block and of the roller, RMS; and the largest difference of a stress. Also left out is [`RIM`].
+/// What quarter-space is off by, outside 0.1 C of the overlap's ends: the pressure on a line and
+/// the components on a curve of the block and of the roller, RMS; and the largest difference of a
+/// stress. Also left out is [`RIM`].
 fn compared(case: &Case) -> ([Worst; 3], Worst) {
     let name = &case.name;
     let recorded = FemResults::embedded_of(case).unwrap().expect(name);
@@ -47,7 +48,8 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
     let c_m = solved.hertz().c_m;
     let [roller, block] = [BodyKind::Roller, BodyKind::Block].map(|kind| case.ends_m(kind));
     let overlap = [roller[0].max(block[0]) / c_m, roller[1].min(block[1]) / c_m];
-    // Where the contact ends by itself, an element of these meshes is as long as what is left of it.
+    // Where the contact ends by itself, an element of these meshes is as long as what is left of
+    // it.
     let tips = solution.summary.contact_y_m.map(|y| y / c_m);
     let tips: Vec<f64> =
         (0..2).filter(|i| (tips[*i] - overlap[*i]).abs() > 0.01).map(|i| tips[i]).collect();
@@ -99,7 +101,8 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
     (found, largest)
 }
 
-/// Asserts that all is within the limits: pressure, block, roller, RMS, and the largest difference of a stress.
+/// Asserts that all is within the limits: pressure, block, roller, RMS, and the largest difference
+/// of a stress.
 fn within(case: &Case, limits: [f64; 3], most: f64) {
     let name = &case.name;
     let (found, largest) = compared(case);
@@ -109,8 +112,9 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
     assert!(largest.value <= most, "{name}: {largest:?} > {most}");
 }
 
-/// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric` drops most within 0.1 C of the
-/// end, where its meshes differ by 0.03 p0; in `designed-roller` it is what the curved gap adds (`docs/fem.md`).
+/// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric`
+/// drops most within 0.1 C of the end, where its meshes differ by 0.03 p0; in `designed-roller` it
+/// is what the curved gap adds (`docs/fem.md`).
 #[test]
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
@@ -136,9 +140,11 @@ fn profiled_rollers_have_the_stresses_of_finite_elements() {
     }
 }
 
-/// The approach of finite elements is that of the roller's mid-plane and the block's base, 640 C deep. The roller is a disc squeezed
-/// across, softer than a deep body down to its centre by F / (pi E L) (2 ln 2 - 1 + nu) in plane stress (Johnson, Contact Mechanics, 1985,
-/// Eqs. 5.57 and 5.58). So is the block, a box as wide to either side as deep, whose own constant is not known; a disc's is taken.
+/// The approach of finite elements is that of the roller's mid-plane and the block's base, 640 C
+/// deep. The roller is a disc squeezed across, softer than a deep body down to its centre by F /
+/// (pi E L) (2 ln 2 - 1 + nu) in plane stress (Johnson, Contact Mechanics, 1985, Eqs. 5.57 and
+/// 5.58). So is the block, a box as wide to either side as deep, whose own constant is not known; a
+/// disc's is taken.
 #[test]
 fn the_approach_of_recorded_finite_elements_is_that_of_the_same_points() {
     const BASE: f64 = 640.0;

@@ -53,10 +53,10 @@ fn a_table_is_swept_from_its_file() {
     assert_eq!((&first["rows"], &first["problems_solved"]), (&20_000.into(), &1.into()));
     let table = rows(&path.join("sweep.csv"));
     assert_eq!((table.len(), table[19_999]["name"].as_str()), (20_000, "c19999"));
-    // Again: all rows are there.
+    // Again: all rows are there, and the first of them is solved to see whether it is this sweep's.
     let again = succeeded(&mut sweep);
     let again: serde_json::Value = serde_json::from_slice(&again.stdout).unwrap();
-    assert_eq!((&again["rows_kept"], &again["problems_solved"]), (&20_000.into(), &0.into()));
+    assert_eq!((&again["rows_kept"], &again["problems_solved"]), (&20_000.into(), &1.into()));
     // A shorter table is another sweep.
     fs::write(path.join("t.csv"), "name,W\nc0,1e-4\n").unwrap();
     let said = refused(&mut sweep);
@@ -64,6 +64,38 @@ fn a_table_is_swept_from_its_file() {
         said.contains("sweep.csv:3: has more rows than this sweep; give another --out"),
         "{said}"
     );
+}
+
+#[test]
+fn rows_of_another_base_are_no_part_of_a_sweep_and_a_rough_base_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let body = "young_pa = 210e9\npoisson = 0.3\nlength_m = 0.01\n";
+    let base = |crown: f64, load: &str, more: &str| {
+        let text = format!(
+            "name = \"base\"\n[roller]\nradius_m = 10e-3\n{body}[roller.profile]\nkind = \"crown\"\n\
+             radius_m = {crown}\n[block]\n{body}{load}\n[accuracy]\ntolerance = 3e-2\n{more}"
+        );
+        fs::write(path.join("base.toml"), text).unwrap();
+    };
+    let load = "[load]\nforce_n = 2000.0";
+    fs::write(path.join("t.csv"), "radius_m\n0.01\n0.012\n").unwrap();
+    let sweep = || edgeline(path, &["sweep", "t.csv", "--base", "base.toml"]);
+    base(10.0, load, "");
+    succeeded(&mut sweep());
+    // The base's force and lengths are kept where a radius varies.
+    let table = rows(&path.join("sweep.csv"));
+    assert!(table.iter().all(|row| row["load_n"].parse::<f64>().unwrap() == 2000.0), "{table:?}");
+    // A crown of another radius makes other rows, though no column says so.
+    base(8.0, load, "");
+    let before = fs::read(path.join("sweep.csv")).unwrap();
+    let said = refused(&mut sweep());
+    assert!(said.contains("sweep.csv:2: row 1 has ") && said.contains("another base"), "{said}");
+    assert_eq!(fs::read(path.join("sweep.csv")).unwrap(), before);
+    fs::write(path.join("h.csv"), "0,0\n0,1e-7\n").unwrap();
+    base(10.0, load, "[surface]\nheights = \"h.csv\"\ndx_m = 1e-5\ndy_m = 1e-5\n");
+    let said = refused(&mut sweep());
+    assert!(said.contains("surface.heights") && said.contains("a sweep solves contacts"), "{said}");
 }
 
 #[cfg(not(feature = "parquet"))]

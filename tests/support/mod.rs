@@ -95,7 +95,9 @@ impl Bench {
 
     /// Processes of the runs in this folder and below it, without zombies.
     pub fn processes(&self) -> Vec<i32> {
-        let mark = format!("EDGELINE_RUN={}", self.out().canonicalize().unwrap().display());
+        // A run that was refused at once has made no folder.
+        let Ok(out) = self.out().canonicalize() else { return Vec::new() };
+        let mark = format!("EDGELINE_RUN={}", out.display());
         let pids = fs::read_dir("/proc").unwrap().flatten();
         pids.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
             .filter(|pid| {

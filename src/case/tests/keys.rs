@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// A case whose numbers all differ. It is written out so that a new field does not compile before it
-/// is here, and with that in the tests below.
+/// A case whose numbers all differ. It is written out so that a new field does not compile before
+/// it is here, and with that in the tests below.
 fn every_field() -> Case {
     Case {
         name: "all".into(),

@@ -23,7 +23,7 @@ fn case(sweep: &Sweep, i: usize) -> Result<Case> {
 }
 
 fn table(text: &str, base: Option<&str>) -> Result<Sweep> {
-    let base = base.map(|name| crate::case::builtin_case(name).unwrap().unwrap());
+    let base = base.map(|name| Draft::find(Path::new(name)).unwrap());
     Sweep::parse_csv(text, Path::new("s.csv"), base.as_ref())
 }
 
@@ -175,7 +175,7 @@ fn a_table_is_read_again_from_its_file_and_must_not_change() {
     let write =
         |rows: usize| std::fs::write(&file, "force_n\n".to_string() + &"100\n".repeat(rows));
     write(3).unwrap();
-    let base = crate::case::builtin_case("half-short").unwrap().unwrap();
+    let base = Draft::find(Path::new("half-short")).unwrap();
     let sweep = Sweep::read(&file, Some(&base)).unwrap();
     assert_eq!((sweep.len(), cells(&sweep).len()), (3, 3));
     for rows in [2, 4] {

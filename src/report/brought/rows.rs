@@ -1,4 +1,5 @@
-//! The rows of tables about brought curves: those of a study, with the name of the file's curves in front.
+//! The rows of tables about brought curves: those of a study, with the name of the file's curves in
+//! front.
 
 use crate::report::study_rows::{CurveRow, PressureRow};
 use crate::report::table::{Layout, Row};

@@ -102,8 +102,8 @@ impl Map {
     /// The rings around all that lies at or above a level, in the pixels that `place` gives.
     ///
     /// Pieces of cells are run through the same way round, so an edge that two of them share is
-    /// there in both directions and cancels; the rest is the border. Where pieces are smaller than a pixel an edge may be
-    /// there more than once.
+    /// there in both directions and cancels; the rest is the border. Where pieces are smaller than
+    /// a pixel an edge may be there more than once.
     pub fn rings_above(&self, level: f64, place: impl Fn(f64, f64) -> Point) -> Vec<Vec<Point>> {
         let [xs, ys] = &self.axes;
         let n = xs.len();
@@ -226,7 +226,8 @@ mod tests {
 
     #[test]
     fn pieces_below_a_pixel_leave_no_ring_open() {
-        // Steps of a border in tenths of a pixel: a ring that closes over a gap would have a long one.
+        // Steps of a border in tenths of a pixel: a ring that closes over a gap would have a long
+        // one.
         let axis: Vec<f64> = (0..60).map(f64::from).collect();
         let values = (0..3600u64).map(|i| ((i * i * 7919 + i * 104_729) % 1000) as f64).collect();
         let map = Map { label: String::new(), axes: [axis.clone(), axis], down: false, values };

@@ -230,7 +230,8 @@ impl<'a> Plot<'a> {
         if !series.markers {
             return;
         }
-        // On a line as near as they can be without touching each other; points that are not joined are data.
+        // On a line as near as they can be without touching each other; points that are not joined
+        // are data.
         let mut last: Option<Point> = None;
         for p in points.filter(|p| self.x.shows(p.0) && self.y.shows(p.1)) {
             let at = (self.x.at(p.0), self.y.at(p.1));

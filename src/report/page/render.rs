@@ -17,8 +17,9 @@ const SCRIPT: &str = include_str!("page.js");
 
 /// Limits that hold for every study.
 const CAVEATS: [&str; 5] = [
-    "W, S_l and L_r are defined here as W = w / (E* R L1), S_l = L1 / (2 C) and L_r = L1 / L2; the \
-     paper names the factors, its formulas and levels are not in the text that we have.",
+    "W, S_l and L_r are defined here as W = w / (E* R L), S_l = L / (2 C) and L_r = L1 / L2, L the length \
+     of the shorter body; the published study names the factors, its formulas and levels are not in the text \
+     that we have.",
     "The stress correction of guilbault is a reconstruction: the formula of its transition factor \
      is not in the text that we have.",
     "For L_r < 1 the pressure grows without bound towards the roller's edge. Peaks there are those \

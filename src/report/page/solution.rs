@@ -34,8 +34,8 @@ pub struct Label {
     pub date: String,
 }
 
-/// The pictures of `solution`, `plot-<name>.svg` and `.png`, and `summary.html`, which shows them beside the
-/// case and the results.
+/// The pictures of `solution`, `plot-<name>.svg` and `.png`, and `summary.html`, which shows them
+/// beside the case and the results.
 ///
 /// # Errors
 /// [`crate::base::Error::File`] when the page cannot be made.

@@ -1,4 +1,5 @@
-//! The page's data on verification: differences beside the uncertainty of both sides, and the box of scenes.
+//! The page's data on verification: differences beside the uncertainty of both sides, and the box
+//! of scenes.
 
 use crate::report::study_files::StudyFiles;
 use crate::report::table::name;

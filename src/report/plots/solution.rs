@@ -1,4 +1,5 @@
-//! The plots of one solution: pressure, and stresses of both bodies on the standard curves, in mm and MPa.
+//! The plots of one solution: pressure, and stresses of both bodies on the standard curves, in mm
+//! and MPa.
 
 use super::symbol::symbol;
 use crate::base::{BodyKind, HertzScales};
@@ -44,8 +45,8 @@ struct Plots<'a, D> {
     ends: [f64; 2],
 }
 
-/// The plots of `solution` by the names of their files: pressure, its map, and for each body that has
-/// curves its stresses. `by` names what solved the case.
+/// The plots of `solution` by the names of their files: pressure, its map, and for each body that
+/// has curves its stresses. `by` names what solved the case.
 pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(String, Figure)> {
     let hertz = solution.curves.hertz;
     let [block, roller] = BodyKind::ALL.map(|body| case.ends_m(body));
@@ -73,8 +74,8 @@ pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(Str
 /// Points of a profile's line.
 const PROFILE_POINTS: usize = 201;
 
-/// The profiles of both bodies, and the gap between them before they are loaded but tilted as they are then; none
-/// between straight and parallel bodies.
+/// The profiles of both bodies, and the gap between them before they are loaded but tilted as they
+/// are then; none between straight and parallel bodies.
 fn profile<D>(case: &Case, title: &str, solution: &Solution<D>) -> Option<Figure> {
     const UM: f64 = 1e6;
     let summary = &solution.summary;

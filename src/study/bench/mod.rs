@@ -7,8 +7,8 @@
 //! discretisation. Equal error is therefore stated twice: each side against its own limit, and both
 //! against FEM.
 //!
-//! Several FEM codes may run. Errors are taken against the finest mesh of the first one, and at each error the
-//! fastest mesh of any code is what the models are compared with.
+//! Several FEM codes may run. Errors are taken against the finest mesh of the first one, and at
+//! each error the fastest mesh of any code is what the models are compared with.
 
 mod point;
 mod record;

@@ -52,8 +52,8 @@ pub fn speedups(cases: &[CaseBench], levels: &[f64]) -> Vec<Speedup> {
     all
 }
 
-/// FEM against the published method on cells at the error that it reaches in each case, timed in one
-/// run.
+/// FEM against the published method on cells at the error that it reaches in each case, timed in
+/// one run.
 pub fn published_speedups(cases: &[CaseBench]) -> Vec<Speedup> {
     let of_case = |case: &CaseBench| {
         let own = case.points.iter().filter(|p| p.origin == Origin::Cells);

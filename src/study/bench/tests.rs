@@ -101,7 +101,8 @@ fn only_times_of_this_run_are_divided_and_only_within_the_level() {
     assert!(speedups(&cases, &[1.0]).is_empty());
 }
 
-/// A second code twice as fast and one with a larger error: the faster one within the level is the opponent.
+/// A second code twice as fast and one with a larger error: the faster one within the level is the
+/// opponent.
 #[test]
 fn the_faster_code_is_the_opponent() {
     let mut cases = bench();
@@ -132,7 +133,8 @@ fn the_faster_code_is_the_opponent() {
     }
 }
 
-/// `results/bench-codes.json`: FEniCSx is the opponent, because at equal error it is the faster of the two.
+/// `results/bench-codes.json`: FEniCSx is the opponent, because at equal error it is the faster of
+/// the two.
 #[test]
 fn in_the_record_of_both_codes_the_first_is_faster() {
     let text = include_str!("../../../results/bench-codes.json");

@@ -1,8 +1,9 @@
-//! What brought curves are compared with: the models at their points, and recorded FEM where its lines pass.
+//! What brought curves are compared with: the models at their points, and recorded FEM where its
+//! lines pass.
 
 use super::between::Between;
 use super::file::BroughtFile;
-use crate::base::{BodyKind, Result, StressTensor};
+use crate::base::{BodyKind, Result, StressTensor, gauss_legendre};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::{Options, Scene, SolvedCase};
@@ -11,8 +12,12 @@ use crate::study::errors::{ErrorRow, Range, compare};
 use crate::study::run::Reference;
 use crate::study::source::{Engine, Source};
 
+/// Nodes of a mean over a cell. In the cell at the contact's edge the pressure ends like a square
+/// root.
+const MEAN_NODES: usize = 48;
+
 /// The model whose difference to FEM is interpolated, and that comparisons hold to limits.
-pub(super) const GATED: EdgeModel = EdgeModel::QuarterSpace;
+pub const GATED: EdgeModel = EdgeModel::QuarterSpace;
 
 /// A model or recorded FEM on the points of a file.
 #[derive(Debug, Clone)]
@@ -23,8 +28,8 @@ pub struct OnPoints {
     pub curves: Curves,
     /// Relative sizes of its meshes, finest first; empty for a model.
     pub sizes: Vec<f64>,
-    /// What shows how uncertain it is, at the same points: its coarser meshes, finest first; of a model its
-    /// solution at a tighter tolerance, where there is one.
+    /// What shows how uncertain it is, at the same points: its coarser meshes, finest first; of a
+    /// model its solution at a tighter tolerance, where there is one.
     pub others: Vec<Curves>,
 }
 
@@ -63,12 +68,22 @@ impl Model {
         Ok(Self { method, solved: SolvedCase::new(case, &Options { psi, ..none })? })
     }
 
-    /// Its pressures and stresses on the points of `brought`.
-    fn on(&self, brought: &Curves) -> Result<Curves> {
-        let pressure = brought.pressure.iter().map(|line| PressureLine {
-            p: line.at.iter().map(|[x, y]| self.solved.pressure(*x, *y)).collect(),
-            own_error: None,
-            ..line.clone()
+    /// Its pressures and stresses on the points of `brought`; with `widths`, pressures are means
+    /// over them, see [`BroughtFile::widths`].
+    fn on(&self, brought: &Curves, widths: &[Vec<f64>]) -> Result<Curves> {
+        let (nodes, weights) = gauss_legendre(MEAN_NODES);
+        let mean = |[x, y]: [f64; 2], width: f64| -> f64 {
+            let parts = nodes.iter().zip(&weights);
+            parts.map(|(t, w)| 0.5 * w * self.solved.pressure(x + 0.5 * width * t, y)).sum()
+        };
+        let pressure = brought.pressure.iter().enumerate().map(|(i, line)| {
+            let width = |j: usize| widths.get(i).map_or(0.0, |own| own[j]);
+            let at = line.at.iter().enumerate().map(|(j, at)| (*at, width(j)));
+            let p = at.map(|(at, width)| match width > 0.0 {
+                true => mean(at, width),
+                false => self.solved.pressure(at[0], at[1]),
+            });
+            PressureLine { p: p.collect(), own_error: None, ..line.clone() }
         });
         // All points of a body at once: they share the layers of a column.
         let mut stress = brought.stress.clone();
@@ -106,7 +121,8 @@ pub struct Beside {
 }
 
 impl Beside {
-    /// Solves `case` by `methods`, `psi` being the weight of guilbault's images, see [`Options::psi`].
+    /// Solves `case` by `methods`, `psi` being the weight of guilbault's images, see
+    /// [`Options::psi`].
     ///
     /// # Errors
     /// As [`SolvedCase::new`].
@@ -146,7 +162,8 @@ impl Beside {
         self.gated().solved.solution().summary.load_error_rel
     }
 
-    /// Compares the models and `references`, the curves of codes for the case, with those of `file`.
+    /// Compares the models and `references`, the curves of codes for the case, with those of
+    /// `file`.
     ///
     /// # Errors
     /// As [`SolvedCase::stress`].
@@ -164,13 +181,13 @@ impl Beside {
             let refined = self.refined.iter().filter(|r| r.method == model.method);
             sources.push(OnPoints {
                 source: model.method.into(),
-                curves: model.on(brought)?,
+                curves: model.on(brought, &file.widths)?,
                 sizes: Vec::new(),
-                others: refined.map(|r| r.on(brought)).collect::<Result<_>>()?,
+                others: refined.map(|r| r.on(brought, &file.widths)).collect::<Result<_>>()?,
             });
         }
         if !references.is_empty() {
-            let own = self.gated().on(brought)?;
+            let own = self.gated().on(brought, &file.widths)?;
             for (engine, reference) in references {
                 sources.extend(self.recorded(brought, &own, engine, reference)?);
             }
@@ -184,8 +201,8 @@ impl Beside {
         Ok(FileRun { case: name.clone(), file, sources, errors, left_out })
     }
 
-    /// The meshes of a code on the curves of a file that lie on the lines of its record; the gated model has
-    /// `own` there.
+    /// The meshes of a code on the curves of a file that lie on the lines of its record; the gated
+    /// model has `own` there.
     fn recorded(
         &self,
         brought: &Curves,
@@ -194,7 +211,7 @@ impl Beside {
         reference: &Reference,
     ) -> Result<Option<OnPoints>> {
         let scene = Scene::new(&self.case, GATED, None);
-        let on_record = self.gated().on(&reference.curves)?;
+        let on_record = self.gated().on(&reference.curves, &[])?;
         let mesh = |fem: &Curves| {
             let symmetric = [!scene.slides, scene.is_symmetric()];
             let between = Between { fem, model: &on_record, symmetric };

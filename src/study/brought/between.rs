@@ -1,8 +1,9 @@
 //! Recorded FEM between the points of its record.
 //!
-//! On the lines of the record the difference of FEM and a model is interpolated linearly and the model put
-//! back: the difference is small and smooth, the curves themselves are not (at the contact's edge the
-//! pressure falls like a square root). At the record's own points that is FEM exactly.
+//! On the lines of the record the difference of FEM and a model is interpolated linearly and the
+//! model put back: the difference is small and smooth, the curves themselves are not (at the
+//! contact's edge the pressure falls like a square root). At the record's own points that is FEM
+//! exactly.
 
 use crate::base::StressTensor;
 use crate::stress::{Curves, PressureLine, StressCurve};
@@ -43,7 +44,8 @@ impl Between<'_> {
         ([turned(x, flips[0]), turned(y, flips[1]), z], flips)
     }
 
-    /// FEM's stress less the model's at `point` of the body of `curve`; `None` off the record's lines.
+    /// FEM's stress less the model's at `point` of the body of `curve`; `None` off the record's
+    /// lines.
     fn stress_difference(&self, curve: &StressCurve, point: [f64; 3]) -> Option<StressTensor> {
         let (folded, flips) = self.fold(point);
         // Of lines that cross there, the one with the nearest point.
@@ -63,8 +65,8 @@ impl Between<'_> {
         })
     }
 
-    /// FEM on the points of `curve`, on which the model has `model`; `None` if one of them is off the
-    /// record's lines.
+    /// FEM on the points of `curve`, on which the model has `model`; `None` if one of them is off
+    /// the record's lines.
     pub fn stress(&self, curve: &StressCurve, model: &[StressTensor]) -> Option<StressCurve> {
         let points = curve.at.iter().zip(model);
         let stress: Option<Vec<StressTensor>> =

@@ -11,6 +11,8 @@ pub(super) enum Meaning {
     Curve,
     /// A coordinate along one of the file's axes.
     Place(usize),
+    /// The size of a cell along one of the file's axes, over which its pressure is the mean.
+    Width(usize),
     /// A stress component in the file's axes, by its index in the tensor's components.
     Stress(usize),
     /// The contact pressure.
@@ -21,7 +23,8 @@ pub(super) enum Meaning {
     Same,
 }
 
-/// The names of components: ours, those by numbers, and those of normal stresses by one letter.
+/// The names of components: ours, those by numbers, and those of normal stresses and axes by one
+/// letter or digit.
 const COMPONENTS: [[&str; 4]; 6] = [
     ["xx", "11", "x", "1"],
     ["yy", "22", "y", "2"],
@@ -44,6 +47,7 @@ pub(super) fn read(header: &str) -> Option<(Meaning, Option<Unit>)> {
         "case" | "source" => Meaning::Same,
         "p" | "pressure" | "contact_pressure" | "cpress" => Meaning::Pressure,
         "x" | "y" | "z" => Meaning::Place(axis(&name)?),
+        "dx" | "dy" | "dz" => Meaning::Width(axis(&name[1..])?),
         _ => match name.strip_prefix("coord").or_else(|| name.strip_prefix("coor")) {
             Some(rest) => Meaning::Place(axis(rest)?),
             None => Meaning::Stress(component(&name)?),
@@ -60,7 +64,9 @@ fn component(name: &str) -> Option<usize> {
         Some(rest.strip_prefix(['.', '-', ':']).and_then(|r| r.strip_prefix('s')).unwrap_or(rest))
     })?;
     let rest = rest.trim_start_matches(['_', '.', '-', ':']);
-    COMPONENTS.iter().position(|names| names.contains(&rest))
+    // S1, S2 and S3 are principal stresses in many programs.
+    let is_principal = ["1", "2", "3"].contains(&rest);
+    COMPONENTS.iter().position(|names| !is_principal && names.contains(&rest))
 }
 
 /// A column's name, and the unit at its end: behind the last `_`, or in brackets.
@@ -91,6 +97,7 @@ mod tests {
             ("x_m", (Meaning::Place(0), "m")),
             ("Y [mm]", (Meaning::Place(1), "mm")),
             ("COORD3", (Meaning::Place(2), "")),
+            ("dx_m", (Meaning::Width(0), "m")),
             ("sigma_xz_pa", (Meaning::Stress(4), "Pa")),
             ("S11", (Meaning::Stress(0), "")),
             ("S.S23", (Meaning::Stress(5), "")),
@@ -105,7 +112,9 @@ mod tests {
         ] {
             assert_eq!(name(header), Some(wanted), "{header}");
         }
-        for header in ["von_mises_pa", "p_lumped_pa", "dx_m", "size", "", "_", "coord4", "s"] {
+        for header in
+            ["S1", "sigma_3_pa", "von_mises_pa", "p_lumped_pa", "size", "", "_", "coord4", "s"]
+        {
             assert_eq!(name(header), None, "{header}");
         }
     }

@@ -24,6 +24,9 @@ const ROUNDING: f64 = 1e-3;
 /// Points this near to an end of the overlap (C) are on it.
 const END: f64 = 1e-5;
 
+/// Distance from x = 0 (C) within which a contact has some pressure, whatever its profile.
+const NEAR: f64 = 2.0;
+
 /// Depths below this (C) are those of the surface.
 const SURFACE: f64 = 1e-6;
 
@@ -38,6 +41,9 @@ pub struct BroughtFile {
     pub statements: Statements,
     /// The curves. A component that the file lacks is NaN at all points.
     pub curves: Curves,
+    /// The sizes of cells across the contact (C), over which the pressures of each line are means;
+    /// 0 at points.
+    pub widths: Vec<Vec<f64>>,
     /// Number of points.
     pub points: usize,
     /// Columns that mean nothing here.
@@ -73,7 +79,6 @@ impl BroughtFile {
     /// # Errors
     /// As [`BroughtFile::read`].
     pub fn parse(text: &str, path: &Path, case: &Case, options: &Statements) -> Result<Self> {
-        let text = text.trim_start_matches('\u{feff}');
         let own = read_statements(text, path)?;
         let statements = options.clone().or(&own);
         let stem = path.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
@@ -92,9 +97,9 @@ impl BroughtFile {
         for record in reader.records() {
             table.take(&record.map_err(of_csv)?)?;
         }
-        let (curves, points) = table.finish()?;
+        let (curves, widths, points) = table.finish()?;
         let name = statements.name.clone().unwrap_or(stem);
-        Ok(Self { name, path: path.to_path_buf(), statements, curves, points, ignored })
+        Ok(Self { name, path: path.to_path_buf(), statements, curves, widths, points, ignored })
     }
 
     /// Refuses a name that one of `others` has.
@@ -191,7 +196,7 @@ fn find_columns(
             continue;
         };
         let si = match meaning {
-            Meaning::Place(_) => {
+            Meaning::Place(_) | Meaning::Width(_) => {
                 in_si(unit, statements.length, header, "length_unit", &Unit::of_length)?
             }
             Meaning::Stress(_) | Meaning::Pressure => {
@@ -250,6 +255,8 @@ struct Table<'a> {
     /// The names that stay the same.
     same: Vec<String>,
     curves: Curves,
+    /// See [`BroughtFile::widths`].
+    widths: Vec<Vec<f64>>,
 }
 
 impl<'a> Table<'a> {
@@ -302,6 +309,7 @@ impl<'a> Table<'a> {
             mesh: f64::INFINITY,
             same: vec![String::new(); columns.len()],
             curves: Curves { hertz: case.hertz(), pressure: Vec::new(), stress: Vec::new() },
+            widths: Vec::new(),
         })
     }
 
@@ -315,6 +323,7 @@ impl<'a> Table<'a> {
         };
         let (mut place, mut stress, mut p) = ([0.0; 3], [f64::NAN; 6], f64::NAN);
         let (mut body, mut curve, mut mesh) = (self.body, POINTS.to_string(), None);
+        let mut width = 0.0;
         for (column, same) in self.columns.iter().zip(&mut self.same) {
             // The reader refuses rows of another width than the header.
             let text = &record[column.at];
@@ -324,6 +333,8 @@ impl<'a> Table<'a> {
             };
             match column.meaning {
                 Meaning::Place(axis) => place[axis] = number()?,
+                Meaning::Width(axis) if axis == self.axes.0[0].0 => width = number()?.abs(),
+                Meaning::Width(_) => {}
                 Meaning::Stress(i) => stress[i] = number()?,
                 Meaning::Pressure => p = number()?,
                 Meaning::Mesh => mesh = Some(number()?),
@@ -350,12 +361,13 @@ impl<'a> Table<'a> {
             if mesh < self.mesh {
                 // All rows so far are of a coarser mesh.
                 (self.curves.pressure, self.curves.stress) = Default::default();
+                self.widths.clear();
                 self.mesh = mesh;
             }
         }
         let place = self.axes.turn(std::array::from_fn(|i| place[i] - self.origin_m[i]));
         let added = if self.pressures {
-            self.add_pressure(curve, [place[0], place[1]], p)
+            self.add_pressure(curve, [place[0], place[1]], width, p)
         } else {
             let stress = self.axes.turn_stress(&StressTensor::from_components(stress));
             self.add_stress(body.expect("a column or a statement"), curve, place, stress)
@@ -363,21 +375,23 @@ impl<'a> Table<'a> {
         added.map_err(|message| refuse(path, line, message))
     }
 
-    fn add_pressure(&mut self, name: String, at_m: [f64; 2], p_pa: f64) -> Checked<(), String> {
+    fn add_pressure(
+        &mut self,
+        name: String,
+        at_m: [f64; 2],
+        width_m: f64,
+        p_pa: f64,
+    ) -> Checked<(), String> {
         let Curves { hertz, pressure, .. } = &mut self.curves;
-        let lines = pressure.iter_mut();
-        let line = match lines.into_iter().position(|line| line.name == name) {
-            Some(i) => &mut pressure[i],
-            None => {
-                pressure.push(PressureLine {
-                    name,
-                    at: Vec::new(),
-                    p: Vec::new(),
-                    own_error: None,
-                });
-                pressure.last_mut().expect("just added")
-            }
-        };
+        let known = pressure.iter().position(|line| line.name == name);
+        let place = known.unwrap_or_else(|| {
+            let (at, p) = (Vec::new(), Vec::new());
+            pressure.push(PressureLine { name, at, p, own_error: None });
+            self.widths.push(Vec::new());
+            pressure.len() - 1
+        });
+        let line = &mut pressure[place];
+        self.widths[place].push(width_m / hertz.c_m);
         let [x, mut y] = at_m.map(|v| v / hertz.c_m);
         // Beyond the end by rounding there would be no pressure.
         for end in self.case.overlap() {
@@ -436,13 +450,27 @@ impl<'a> Table<'a> {
         })
     }
 
-    fn finish(self) -> Result<(Curves, usize)> {
+    /// The curves, the widths of their cells and the number of points.
+    fn finish(self) -> Result<(Curves, Vec<Vec<f64>>, usize)> {
         let pressures = self.curves.pressure.iter().map(|line| line.at.len());
         let points = pressures.chain(self.curves.stress.iter().map(|c| c.at.len())).sum();
         if points == 0 {
             return Err(refuse(self.path, None, "holds no points".to_string()));
         }
-        Ok((self.curves, points))
+        if self.pressures {
+            let [from, to] = self.case.overlap();
+            let on = |[x, y]: &[f64; 2]| x.abs() <= NEAR && (from..=to).contains(y);
+            if !self.curves.pressure.iter().any(|line| line.at.iter().any(on)) {
+                let message = format!(
+                    "has no point on the contact, which has x = 0 and y from {:e} to {:e} m in our axes: check \
+                     units, axes and origin",
+                    from * self.curves.hertz.c_m,
+                    to * self.curves.hertz.c_m
+                );
+                return Err(refuse(self.path, None, message));
+            }
+        }
+        Ok((self.curves, self.widths, points))
     }
 }
 

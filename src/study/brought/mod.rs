@@ -8,7 +8,7 @@ mod compared;
 mod file;
 mod statements;
 
-pub use beside::{Beside, FileRun, OnPoints};
+pub use beside::{Beside, FileRun, GATED, OnPoints};
 pub use compared::{Comparison, Limits, UNSTATED_ERROR};
 pub use file::{BroughtFile, MAX_BYTES};
 pub use statements::{KEYS, Statements, System};

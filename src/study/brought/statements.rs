@@ -121,7 +121,8 @@ impl Axes {
 pub enum System {
     /// The depth below the body's own surface at the point's x, into each body.
     Bodies,
-    /// A coordinate in one system of axes for both bodies, into the block, 0 where they touch first.
+    /// A coordinate in one system of axes for both bodies, into the block, 0 where they touch
+    /// first.
     Space,
 }
 
