@@ -3,9 +3,10 @@
 
 use super::profile::ProfileSpec;
 use super::surface::Surface;
-use crate::base::{BodyKind, HertzScales, Material};
+use crate::base::{BodyKind, HertzScales, Material, profile};
 use crate::cells::Heights;
 use serde::{Deserialize, Serialize};
+use std::sync::Arc;
 use toml::{Table, Value};
 
 /// A circular cylinder with its axis along y, and its profile.
@@ -355,15 +356,33 @@ impl Case {
     }
 
     /// Whether `other` is the same problem apart from the name and the accuracy: all other entries
-    /// of both case files agree, numbers to nine digits.
+    /// of both case files agree, numbers to nine digits, and so does what stands in the files that
+    /// they name.
     pub fn is_same_problem(&self, other: &Case) -> bool {
-        alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
+        self.contents() == other.contents()
+            && alike(&Value::Table(self.problem()), &Value::Table(other.problem()))
     }
 
-    /// The case file but for the name, for what is made of the stresses, and for how the case is to
-    /// be solved.
+    /// What stands in the files that the case names.
+    fn contents(&self) -> ([Option<Arc<profile::Table>>; 2], Option<Arc<Heights>>) {
+        let table = |body| self.profile_spec(body)?.table.clone();
+        (
+            BodyKind::ALL.map(table),
+            self.surface.as_ref().and_then(|surface| surface.samples.clone()),
+        )
+    }
+
+    /// The case file but for the name, the paths of other files, what is made of the stresses, and
+    /// how the case is to be solved.
     fn problem(&self) -> Table {
-        let mut table = Table::try_from(self).expect(PLAIN);
+        let mut case = self.clone();
+        for spec in [&mut case.block.profile, &mut case.roller.profile].into_iter().flatten() {
+            spec.file = None;
+        }
+        if let Some(surface) = &mut case.surface {
+            surface.heights = Default::default();
+        }
+        let mut table = Table::try_from(&case).expect(PLAIN);
         table.retain(|key, _| !["name", "fatigue", "accuracy", "cells"].contains(&key));
         table
     }

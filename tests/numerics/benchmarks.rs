@@ -51,10 +51,10 @@ force_n = 8.75e6
 ///
 /// How long their plate is, is not known here: from 2 to 4 D it yields by 1.92e-10 m/N more, where
 /// one as long as the roller does by F ln 2 / (pi E H), 2.12e-10, and a far longer one by 0.58e-10.
-/// So their forces lie between those on both. Here plates are infinitely deep, and their approach is
-/// counted to their thickness, beyond one roller radius below a far longer one by the displacement
-/// below a line of equal forces on a half-space (Boussinesq; Johnson, 1985, Eq. 3.18). The roller is
-/// a disc squeezed across, which is softer than a deep body down to its centre by
+/// So their forces lie between those on both. Here plates are infinitely deep, and their approach
+/// is counted to their thickness, beyond one roller radius below a far longer one by the
+/// displacement below a line of equal forces on a half-space (Boussinesq; Johnson, 1985, Eq. 3.18).
+/// The roller is a disc squeezed across, which is softer than a deep body down to its centre by
 /// F / (pi E L) (2 ln 2 - 1 + nu) in plane stress and by
 /// F (1 - nu^2) / (pi E L) (2 ln 2 - 1 + nu / (1 - nu)) in plane strain (Eqs. 5.57 and 5.58): their
 /// mean is taken.

@@ -88,8 +88,8 @@ fn long_contact_is_plane_strain() {
 
 /// The approach of points at a depth in plane strain, the strain below Hertz's pressure integrated
 /// (Johnson, Contact Mechanics, 1985, Eq. 4.45; for large depths his Eq. 5.57):
-/// arsinh d - nu / (1 - nu) (d sqrt(1 + d^2) - d^2). One image in each face leaves the middle 1.5e-3
-/// less pressure.
+/// arsinh d - nu / (1 - nu) (d sqrt(1 + d^2) - d^2). One image in each face leaves the middle
+/// 1.5e-3 less pressure.
 #[test]
 fn approach_of_a_long_contact_is_that_of_plane_strain() {
     for (tolerance, limit) in [(1e-2, 1e-2), (1e-3, 3e-3)] {

@@ -360,6 +360,33 @@ fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
     }
 }
 
+/// What is written of a case can stand in any folder; its files are what stands in them, not where.
+#[test]
+fn cases_with_files_are_read_from_any_folder_and_known_by_their_content() {
+    let folder = tempfile::tempdir().unwrap();
+    let written = |name: &str, drop: &str, height: &str| {
+        let own = folder.path().join(name);
+        std::fs::create_dir(&own).unwrap();
+        let table = format!("y_m,drop_m\n-0.01,{drop}\n0,0\n0.01,0\n");
+        std::fs::write(own.join("drops.csv"), table).unwrap();
+        std::fs::write(own.join("heights.csv"), format!("0,0\n0,{height}\n")).unwrap();
+        let text = LOADED.replacen(
+            "[block]",
+            "[roller.profile]\nkind = \"table\"\nfile = \"drops.csv\"\n[block]",
+            1,
+        ) + "[surface]\nheights = \"heights.csv\"\ndx_m = 1e-6\ndy_m = 1e-6\n";
+        std::fs::write(own.join("case.toml"), text).unwrap();
+        Case::read(&own.join("case.toml")).unwrap()
+    };
+    let case = written("a", "1e-5", "1e-7");
+    let elsewhere = folder.path().join("case.toml");
+    std::fs::write(&elsewhere, case.to_toml()).unwrap();
+    assert_eq!(Case::read(&elsewhere).unwrap(), case);
+    assert!(written("b", "1e-5", "1e-7").is_same_problem(&case));
+    assert!(!written("c", "2e-5", "1e-7").is_same_problem(&case));
+    assert!(!written("d", "1e-5", "2e-7").is_same_problem(&case));
+}
+
 #[test]
 fn levels_with_too_many_digits_for_names_are_refused() {
     let text = DEFAULT_STUDY
