@@ -132,21 +132,11 @@ wait "$fem_tests" || status=$?
 cat "$fem_log"
 ((status == 0)) || exit "$status"
 
-step "tests"
-cargo test --profile fast --lib --bins --test numerics --test program -- --include-ignored
-cargo test --profile fast --doc
+step "tests, those with live finite elements included"
+cargo test --profile fast -- --include-ignored
 
-# Both of these wait for other programs most of the time: they run side by side.
-step "the Python package, beside the tests with live finite elements, a browser and VTK"
-outside_log=target/outside-tests.log
-cargo test --profile fast --test outside -- --include-ignored >"$outside_log" 2>&1 &
-outside_tests=$!
-trap 'kill "$fem_tests" "$outside_tests" 2>/dev/null || true' EXIT
+step "the Python package"
 bash tests/python.sh
-status=0
-wait "$outside_tests" || status=$?
-cat "$outside_log"
-((status == 0)) || exit "$status"
 
 step "the site of the documentation"
 bash tests/site.sh
