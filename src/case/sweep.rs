@@ -74,6 +74,14 @@ impl Sweep {
         Sweep::read_toml(path)
     }
 
+    /// Refuses a case with a rough surface.
+    ///
+    /// # Errors
+    /// [`Error::Value`].
+    pub fn check_smooth(case: &Case) -> Result<()> {
+        case.check_smooth(SMOOTH[0], SMOOTH[1])
+    }
+
     /// Number of rows, at least 1.
     pub fn len(&self) -> usize {
         match &self.rows {

@@ -3,7 +3,7 @@
 use super::document::nearest;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
-use super::sweep::{Column, Rows, SMOOTH, Sweep};
+use super::sweep::{Column, Rows, Sweep};
 use super::sweep_table::Table;
 use crate::base::{Error, Result};
 use crate::host::read_text;
@@ -46,7 +46,7 @@ impl Sweep {
 
     fn of_table(table: Table, path: &Path, base: Option<&Draft>) -> Result<Sweep> {
         if let Some(base) = base {
-            base.case.check_smooth(SMOOTH[0], SMOOTH[1])?;
+            Sweep::check_smooth(&base.case)?;
         }
         let in_header = |(message, remedy)| Error::File {
             path: path.to_path_buf(),

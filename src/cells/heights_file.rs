@@ -4,7 +4,7 @@ use super::heights::Heights;
 #[cfg(feature = "cli")]
 use super::x3p;
 use crate::base::{Error, Result};
-use crate::host::check_memory;
+use crate::host::{MARK, check_memory};
 use std::fs::File;
 use std::io::Read;
 use std::path::Path;
@@ -94,7 +94,7 @@ fn has_extension(path: &Path, name: &str) -> bool {
 /// The array of lines of numbers; or the line that is none, and what is wrong.
 fn csv(content: &[u8]) -> std::result::Result<Array, (Option<usize>, String)> {
     let text = std::str::from_utf8(content).map_err(|_| (None, "is not text".to_string()))?;
-    let text = text.trim_start_matches('\u{feff}');
+    let text = text.strip_prefix(MARK).unwrap_or(text);
     let (mut values, mut columns, mut rows) = (Vec::new(), None, 0);
     for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let before = values.len();

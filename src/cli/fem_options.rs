@@ -2,7 +2,6 @@
 
 use super::values::one_of;
 use crate::fem::{Code, FemSettings, LinearSolver};
-use clap::builder::TypedValueParser;
 use clap::{Args, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
@@ -28,10 +27,10 @@ pub(super) struct Size {
 #[derive(Args)]
 pub(super) struct FemOptions {
     /// The finite-element code
-    #[arg(long, default_value = "fenicsx", value_parser = code())]
+    #[arg(long, default_value = "fenicsx", value_parser = one_of(&Code::ALL, Code::name))]
     engine: Code,
     /// Linear solver of the finite elements
-    #[arg(long, default_value = "direct", value_parser = linear())]
+    #[arg(long, default_value = "direct", value_parser = one_of(&LinearSolver::ALL, LinearSolver::name))]
     linear: LinearSolver,
     /// MPI processes per finite-element run
     #[arg(long, default_value_t = 1, value_name = "N")]
@@ -88,14 +87,6 @@ impl FemOptions {
             large_displacements: false,
         }
     }
-}
-
-fn code() -> impl TypedValueParser<Value = Code> {
-    one_of(&Code::ALL, Code::name)
-}
-
-fn linear() -> impl TypedValueParser<Value = LinearSolver> {
-    one_of(&LinearSolver::ALL, LinearSolver::name)
 }
 
 /// Parses a time limit.

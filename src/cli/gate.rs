@@ -57,7 +57,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     };
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
-    let (mut outcomes, mut now) = (Vec::new(), accepted.clone());
+    let (mut outcomes, mut now) = (Vec::new(), Baseline::default());
+    let mut kept = accepted.clone();
     for study in &studies {
         let thresholds = match &arguments.gates {
             Some(path) => gate::parse(&read(path)?, path)?,
@@ -68,13 +69,14 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let run = arguments.study.run(study, &thresholds.methods(), repeats, false)?;
         if arguments.accept {
             check_solved(&run)?;
-            now = now.without(&run).with(Baseline::of(&run));
+            kept = kept.without(&run);
+            now = now.with(Baseline::of(&run));
         } else {
             outcomes.extend(gate::evaluate(&run, &thresholds, Some(&accepted)));
         }
     }
     if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {
-        return accept(path, &accepted, &now, arguments.json);
+        return accept(path, &accepted, kept, now, arguments.json);
     }
     let markdown = gates::markdown(&outcomes);
     let json = gates::json(&outcomes);
@@ -110,8 +112,15 @@ fn check_solved(run: &StudyRun) -> Result<()> {
     })
 }
 
-/// Writes the numbers of a run as the accepted ones and lists the changes.
-fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Result<Exit> {
+/// Writes the numbers `now` of a run as the accepted ones, beside those of others that are `kept`,
+/// and lists the changes.
+fn accept(
+    path: &Path,
+    accepted: &Baseline,
+    kept: Baseline,
+    now: Baseline,
+    json: bool,
+) -> Result<Exit> {
     let places: usize = now.numbers.values().map(|v| v.len()).sum();
     let sound = now.numbers.values().flat_map(|v| v.values()).all(|v| v.is_finite());
     if places == 0 || !sound {
@@ -122,8 +131,9 @@ fn accept(path: &Path, accepted: &Baseline, now: &Baseline, json: bool) -> Resul
             remedy: "run `edgeline study` to find the cause".to_string(),
         });
     }
-    let changes = accepted.changes(now, 0.0);
-    write_whole(path, now.to_json())?;
+    let all = kept.with(now);
+    let changes = accepted.changes(&all, 0.0);
+    write_whole(path, all.to_json())?;
     let mut lines: Vec<String> = changes.iter().map(gate::Change::describe).collect();
     if json {
         return print_json(&serde_json::json!({ "accepted": places, "changes": lines }))

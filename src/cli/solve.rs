@@ -19,7 +19,7 @@ use crate::solve::{
 };
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueHint};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -77,7 +77,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NX,NY,NZ", value_delimiter = ',', default_value = "33,49,41", value_parser = count("grid points", 2..=2000), requires = "field")]
     field_points: Vec<usize>,
     /// Only this body's curves; both by default
-    #[arg(long, value_parser = body())]
+    #[arg(long, value_parser = one_of(&BodyKind::ALL, BodyKind::name))]
     body: Vec<BodyKind>,
     /// Only this curve; may be given several times; all by default
     #[arg(long, value_parser = PossibleValuesParser::new(CURVE_NAMES))]
@@ -115,10 +115,6 @@ impl Arguments {
         let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
         self.engine.unwrap_or(own)
     }
-}
-
-fn body() -> impl TypedValueParser<Value = BodyKind> {
-    one_of(&BodyKind::ALL, BodyKind::name)
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {

@@ -15,8 +15,8 @@ use super::tools::{self, Interpreter};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{
-    Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there, write_set,
-    write_whole,
+    Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there,
+    remove_marker, write_set, write_whole,
 };
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -124,10 +124,7 @@ impl Driver {
             return Ok(result);
         }
         // A summary is that of another run, whose curves give way to these.
-        let other = folder.join("summary.json");
-        if other.is_file() {
-            remove_if_there(&other)?;
-        }
+        remove_marker(folder, "summary.json")?;
         // In this order, so that a run killed here does not look finished.
         for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
             remove_if_there(&folder.join(name))?;

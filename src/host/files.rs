@@ -90,6 +90,16 @@ pub(super) fn remove_parts(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(PARTS))
 }
 
+/// Removes the file that marks a run of another kind in `folder` as complete, some of whose files
+/// give way to others. A folder of that name is somebody else's, and stays.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be removed.
+pub fn remove_marker(folder: &Path, name: &str) -> Result<()> {
+    let path = folder.join(name);
+    if path.is_file() { remove_if_there(&path) } else { Ok(()) }
+}
+
 /// Removes a file, or a folder with its content, if it exists.
 ///
 /// # Errors

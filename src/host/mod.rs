@@ -17,7 +17,7 @@ mod text;
 
 #[cfg(feature = "cli")]
 pub(crate) use {
-    files::{prepare_folder, remove_if_there, write_set, write_whole},
+    files::{prepare_folder, remove_if_there, remove_marker, write_set, write_whole},
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,
@@ -25,4 +25,4 @@ pub(crate) use {
 };
 
 pub(crate) use memory::check_memory;
-pub(crate) use text::read_text;
+pub(crate) use text::{MARK, read_text};

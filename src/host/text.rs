@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 
 /// What some programs write before the text, to say that it is UTF-8.
-const MARK: &[u8] = "\u{feff}".as_bytes();
+pub const MARK: char = '\u{feff}';
 
 /// Reads a text file of at most `most` bytes, without a mark of its byte order; `remedy` says what
 /// to do about a larger one.
@@ -29,9 +29,11 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
         return Err(refuse(format!("is larger than {} MiB", most >> 20), remedy));
     }
     let other = "give a text file, or save this one as UTF-8";
-    let start = if bytes.starts_with(MARK) { MARK.len() } else { 0 };
-    String::from_utf8(bytes.split_off(start))
-        .map_err(|_| refuse("is not UTF-8 text".to_string(), other))
+    let text = String::from_utf8(bytes).map_err(|_| refuse("is not UTF-8 text".into(), other))?;
+    Ok(match text.strip_prefix(MARK) {
+        Some(rest) => rest.to_string(),
+        None => text,
+    })
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use super::groups::groups as scenes;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sweep};
-use crate::solve::{KeyResults, KeySolution, Options, Scene, SceneKey};
+use crate::solve::{KeyResults, KeySolution, Scene, SceneKey};
 use rayon::prelude::*;
 use std::collections::BTreeMap;
 use std::collections::hash_map::{DefaultHasher, Entry, HashMap};
@@ -83,6 +83,7 @@ impl Cases for Vec<Case> {
     }
 
     fn row(&self, i: usize, _: &()) -> Result<Case> {
+        Sweep::check_smooth(&self[i])?;
         Ok(self[i].clone())
     }
 }
@@ -212,8 +213,6 @@ fn case_of<C: Cases>(
     settings: &Settings,
 ) -> std::result::Result<Case, String> {
     let case = cases.row(i, cells).map_err(|e| e.to_string())?;
-    // Its scene may be known from a smooth case.
-    Options::new(settings.method).check_line(&case).map_err(|e| e.to_string())?;
     Ok(match settings.tolerance {
         Some(tolerance) => case.with_tolerance(tolerance),
         None => case,
@@ -261,11 +260,11 @@ pub fn run<C: Cases>(
             && rows.has(row.index, &row.cells)?
         {
             // The values that rows share, a base's for example, are none of their cells.
-            if !compared && let Ok(case) = &row.case {
-                let outcome = known.alone(case, settings.method);
-                if outcome.is_ok() {
+            if !compared {
+                let outcome = known.outcome(row, settings.method, &mut None);
+                compared = outcome.is_ok();
+                if compared {
                     rows.check(row.index, &outcome)?;
-                    compared = true;
                 }
             }
             kept += 1;
@@ -313,6 +312,23 @@ impl Known {
             self.keep(key, &solution);
             solution
         })
+    }
+
+    /// The outcome of a row. `shared` is the solution of its problem, once a row of it was solved.
+    fn outcome<Cells>(
+        &self,
+        row: &Row<Cells>,
+        method: EdgeModel,
+        shared: &mut Option<Shared>,
+    ) -> Outcome {
+        let case = row.case.clone()?;
+        let Some(key) = &row.key else { return self.alone(&case, method) };
+        let solution = shared.get_or_insert_with(|| self.shared(key, &case, method)).clone()?;
+        if !solution.serves(&case) {
+            return self.alone(&case, method);
+        }
+        let results = solution.of(&case);
+        Ok((case, results))
     }
 
     /// The outcome of a row with a solution of its own.
@@ -386,20 +402,9 @@ fn solve_rows<Cells>(
     known: &Known,
     add: &impl Fn(usize, Outcome) -> Result<()>,
 ) -> Result<()> {
-    let mut shared: Option<Shared> = None;
+    let mut shared = None;
     for &at in group {
-        let row = &block[at];
-        let outcome = row.case.clone().and_then(|case| {
-            let Some(key) = &row.key else { return known.alone(&case, method) };
-            let solution =
-                shared.get_or_insert_with(|| known.shared(key, &case, method)).clone()?;
-            if !solution.serves(&case) {
-                return known.alone(&case, method);
-            }
-            let results = solution.of(&case);
-            Ok((case, results))
-        });
-        add(at, outcome)?;
+        add(at, known.outcome(&block[at], method, &mut shared))?;
     }
     Ok(())
 }
@@ -557,8 +562,24 @@ mod tests {
         }
         let mut watched = Watched { next: 0, read: &read };
         let done = run(&counted, &SETTINGS, None, 2, &mut watched).unwrap();
-        // Two problems, and the first row that was there, once more.
-        assert_eq!((done, watched.next), (Done { rows: sweep.len(), problems: 3 }, sweep.len()));
+        assert_eq!((done, watched.next), (Done { rows: sweep.len(), problems: 2 }, sweep.len()));
+    }
+
+    #[test]
+    fn a_rough_case_of_a_list_is_not_solved_as_the_smooth_one_beside_it() {
+        let smooth = crate::case::builtin_case("flush-short").unwrap().unwrap();
+        let surface = crate::case::Surface {
+            heights: "h.npy".into(),
+            dx_m: 1e-6,
+            dy_m: 1e-6,
+            detrend: None,
+            samples: None,
+        };
+        let cases = vec![smooth.clone(), Case { surface: Some(surface), ..smooth }];
+        let mut kept = Kept::default();
+        run(&cases, &SETTINGS, None, 1, &mut kept).unwrap();
+        let [(0, Ok(_)), (1, Err(said))] = &kept.rows[..] else { panic!("{:?}", kept.rows) };
+        assert!(said.contains("surface.heights") && said.contains("are smooth"), "{said}");
     }
 
     #[test]

@@ -13,20 +13,22 @@ use std::path::Path;
 /// # Errors
 /// As [`write()`].
 pub fn write_run(files: &StudyFiles, folder: &Path) -> Result<()> {
-    let mut contents = made(files)?;
-    contents.extend(files.contents());
-    prepare_folder(&folder.join("plots"))?;
-    write_set(folder, &contents)
+    let made = made(files)?.into_iter();
+    write_with_plots(folder, made.chain(files.contents()).collect())
 }
 
-/// Writes `report.html`, `report.md` and `plots/*.svg` into `folder`, beside the run's other files.
+/// Writes `report.html`, `report.md` and `plots/*.svg` into `folder`.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written, [`crate::base::Error::File`] when the
 /// run's files lack data of the page.
 pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
+    write_with_plots(folder, made(files)?)
+}
+
+fn write_with_plots(folder: &Path, contents: Vec<(String, Vec<u8>)>) -> Result<()> {
     prepare_folder(&folder.join("plots"))?;
-    write_set(folder, &made(files)?)
+    write_set(folder, &contents)
 }
 
 /// Plots, Markdown and page, by the names of their files.
