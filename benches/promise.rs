@@ -41,6 +41,9 @@ const LIMIT: Resolution = Resolution {
     reach: 20.0,
 };
 
+/// The tolerance that it is solved for.
+const LIMIT_TOLERANCE: f64 = 1e-5;
+
 /// The same of half-spaces: smaller panels at their ends, where the pressure is known but for a
 /// polynomial, add noise.
 const ENDLESS_LIMIT: Resolution = Resolution { corner: 5e-3, ..LIMIT };
@@ -247,7 +250,7 @@ impl Known {
             roller.nu,
             block.share
         );
-        let fine = Scene { tolerance: 1e-4, ..scene.clone() };
+        let fine = Scene { tolerance: LIMIT_TOLERANCE, ..scene.clone() };
         match SolvedScene::with_resolution(&fine, kind.limit()) {
             Ok(solved) => {
                 let limit = values(&solved, &places, stresses(&solved, &places.curves));
@@ -471,6 +474,37 @@ fn hold(count: usize, kinds: &[Kind]) {
     }
 }
 
+/// The resolution `own` with one part after the other from `finer`.
+fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 8] {
+    [
+        ("order", Resolution { order: finer.order, ..own }),
+        ("corner", Resolution { corner: finer.corner, corner_ratio: finer.corner_ratio, ..own }),
+        ("ratio", Resolution { ratio: finer.ratio, ..own }),
+        ("modes", Resolution { modes: finer.modes, ..own }),
+        ("spacing", Resolution { spacing: finer.spacing, ..own }),
+        ("k_max", Resolution { k_max: finer.k_max, ..own }),
+        (
+            "k panels",
+            Resolution {
+                k_order: finer.k_order,
+                k_step: finer.k_step,
+                k_ratio: finer.k_ratio,
+                k_min: finer.k_min,
+                ..own
+            },
+        ),
+        (
+            "extents",
+            Resolution {
+                images: finer.images,
+                face_reach: finer.face_reach,
+                reach: finer.reach,
+                ..own
+            },
+        ),
+    ]
+}
+
 /// The errors of a scene when one part of its resolution after the other is that of the limit.
 fn causes(kind: Kind, tolerance: f64, index: usize) {
     let Some(known) = Known::new(kind, index) else { return };
@@ -494,50 +528,32 @@ fn causes(kind: Kind, tolerance: f64, index: usize) {
     println!("{}", known.name);
     let own = show("own", SolvedScene::new(&scene));
     println!("{own:?}");
-    let parts: [(&str, Resolution); 8] = [
-        ("order", Resolution { order: limit.order, ..own }),
-        ("corner", Resolution { corner: limit.corner, corner_ratio: limit.corner_ratio, ..own }),
-        ("ratio", Resolution { ratio: limit.ratio, ..own }),
-        ("modes", Resolution { modes: limit.modes, ..own }),
-        ("spacing", Resolution { spacing: limit.spacing, ..own }),
-        ("k_max", Resolution { k_max: limit.k_max, ..own }),
-        (
-            "k panels",
-            Resolution {
-                k_order: limit.k_order,
-                k_step: limit.k_step,
-                k_ratio: limit.k_ratio,
-                k_min: limit.k_min,
-                ..own
-            },
-        ),
-        (
-            "extents",
-            Resolution {
-                images: limit.images,
-                face_reach: limit.face_reach,
-                reach: limit.reach,
-                ..own
-            },
-        ),
-    ];
-    for (what, resolution) in parts {
+    for (what, resolution) in parts(own, *limit) {
         show(what, SolvedScene::with_resolution(&scene, &resolution));
     }
 }
 
-/// What the limit itself is worth: its change when every panel is halved and every extent doubled.
+/// What the limit itself is worth: its change when every panel is halved and every extent doubled,
+/// when that is done to one part after the other, and when it is solved for a tighter tolerance.
 fn limit(count: usize) {
     for kind in STRAIGHT {
         for index in 0..count {
             let Some(known) = Known::new(kind, index) else { continue };
-            let fine = Scene { tolerance: 1e-5, ..known.scene.clone() };
-            match SolvedScene::with_resolution(&fine, &kind.limit().refined()) {
-                Ok(solved) => {
-                    let (pressure, stress, place) = known.errors(&solved);
-                    println!("{}: {pressure:.1e}, {stress:.1e} {place}", known.name);
+            println!("{}", known.name);
+            let (own, finer) = (*kind.limit(), kind.limit().refined());
+            let usual = |(what, resolution)| (what, resolution, LIMIT_TOLERANCE);
+            let tighter = ("tolerance", own, 0.1 * LIMIT_TOLERANCE);
+            let all = parts(own, finer).into_iter().chain([("all", finer)]).map(usual);
+            for (what, resolution, tolerance) in all.chain([tighter]) {
+                let scene = Scene { tolerance, ..known.scene.clone() };
+                match SolvedScene::with_resolution(&scene, &resolution) {
+                    Ok(solved) => {
+                        let (pressure, stress, place) = known.errors(&solved);
+                        let spacing = solved.contact.spacing;
+                        println!("{what:12} {pressure:.1e}, {stress:.1e} {place} {spacing}");
+                    }
+                    Err(error) => println!("{what:12} {error}"),
                 }
-                Err(error) => println!("{}: {error}", known.name),
             }
         }
     }

@@ -2,11 +2,12 @@
 # Shows that the tests detect wrong formulas: changes one line of the kernels or the solver at a time,
 # in a copy of the project, and runs the tests that should then fail.
 #
-#   bash tests/mutate.sh [WORD]
+#   bash tests/mutate.sh [--fit | WORD]
 #
-# With a word, only the mutants whose line below contains it: `gates` for the one that the accuracy
-# gates should detect. EDGELINE_PASSED=TESTS says that these have just passed without a mutant. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if one
-# survived, 2 if a mutant no longer fits its file or does not build, or if the tests fail without any.
+# With --fit, only checks that every line to be changed is there. With a word, only the mutants whose line below contains it: `gates` for the one that the accuracy
+# gates should detect. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if
+# one survived, 2 if a mutant no longer fits its file or does not build, or if the tests fail
+# without any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}
@@ -25,7 +26,7 @@ mutants=(
     "src/kernels/strip.rs @@ (potential(2 * m) - potential(2 * m + 2)) @@ (potential(2 * m) + potential(2 * m + 2)) @@ --lib kernels::strip"
     "src/body/finite.rs @@ identity(n, n) - &from_face * &to_face @@ identity(n, n) + &from_face * &to_face @@ $solver"
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0 * i.weight, ..*i }) @@ .map(|i| Image { weight: i.weight, ..*i }) @@ $solver"
-    "src/contact/solver.rs @@ None => (problem.load / load, 0.0), @@ None => (0.8 * problem.load / load, 0.0), @@ $solver"
+    "src/contact/solver.rs @@ => (problem.load / load, 0.0), @@ => (0.8 * problem.load / load, 0.0), @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
     "src/kernels/strip.rs @@ [f + g, f - g, -h] @@ [f + g, f + g, -h] @@ gates @@ quarter-space .* NO .* depth-.* sigma_zz"
     "src/kernels/wave.rs @@ &mut sums.even[wave], times @@ &mut sums.even[0], times @@ --lib kernels::wave"
@@ -33,8 +34,8 @@ mutants=(
     "src/stress/waves.rs @@ let free = 1.0 - 2.0 * nu; @@ let free = 1.0 + 2.0 * nu; @@ $solver"
 )
 
-# Mutants are built with a little less optimisation. Cargo names what it builds by its options, too: with the same ones a
-# mutant would take the place of what is built of the project itself.
+# Mutants are built with a little less optimisation. Cargo names what it builds by its options, too:
+# with the same ones a mutant would take the place of what is built of the project itself.
 mutated=(--config 'profile.fast.package.edgeline.opt-level=2')
 
 # Builds the tests of a tree, quietly.
@@ -68,15 +69,29 @@ refuse() {
     exit 2
 }
 
+# The text that a mutant changes must be in one line of its file.
+fits() {
+    local count
+    count=$(grep -cF -- "$2" "$1" || true)
+    [[ $count == 1 ]] && return
+    echo "error: $1 has $count lines with \"$2\": bring tests/mutate.sh up to date" >&2
+    exit 2
+}
+
+if [[ ${1:-} == --fit ]]; then
+    for mutant in "${mutants[@]}"; do
+        rest=${mutant#* @@ }
+        fits "${mutant%% @@ *}" "${rest%% @@ *}"
+    done
+    exit 0
+fi
+
 # The current state of all files under version control; unchanged files keep their times for cargo.
 rm -rf "$copy/tree"
 mkdir "$copy/tree"
 git ls-files -z --deduplicate | xargs -0 cp --parents --preserve=timestamps --target-directory="$copy/tree"
 
 declare -A known=()
-if [[ -n ${EDGELINE_PASSED:-} ]]; then
-    known[$EDGELINE_PASSED]=1
-fi
 checked=0
 survived=0
 for mutant in "${mutants[@]}"; do
@@ -90,8 +105,7 @@ for mutant in "${mutants[@]}"; do
         run "$PWD" "${arguments[@]}" || refuse "these tests fail without a mutant: $tests"
         known[$tests]=1
     fi
-    count=$(grep -cF -- "$from" "$file" || true)
-    [[ $count == 1 ]] || refuse "$file has $count lines with \"$from\": bring tests/mutate.sh up to date"
+    fits "$file" "$from"
     FROM=$from TO=$to perl -pi -e 's/\Q$ENV{FROM}\E/$ENV{TO}/' "$copy/tree/$file"
     read -ra built <<<"${tests%% -- *}"
     build "$copy/tree" "${built[@]}" || refuse "$file does not build with \"$to\""

@@ -21,8 +21,9 @@ use crate::study::brought::FileRun;
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::reference::from_fem;
 use crate::study::verification::{self, VerificationRow};
-use crate::study::{Engine, Range, StudyRun};
+use crate::study::{CaseRun, Engine, Range, StudyRun};
 use clap::{Args, ValueHint};
+use rayon::prelude::*;
 use std::path::Path;
 use std::time::Instant;
 
@@ -130,31 +131,37 @@ fn verification(
             }
         }
     };
-    let mut all = Vec::new();
-    for case in &run.cases {
+    let of_case = |case: &CaseRun| -> Vec<VerificationRow> {
         let found = case.references.iter();
         let references: Vec<_> =
             found.filter_map(|r| Some((r.engine.clone(), r.result.as_ref().ok()?))).collect();
         let own = case.methods.iter().find(|m| m.source == model.into());
+        let mut rows = Vec::new();
         if let (Some(Ok(own)), false) = (own.map(|m| &m.result), references.is_empty()) {
             let refined = refined(&case.case);
             let curves = (model.into(), &own.solution.curves, refined.as_ref());
-            all.extend(verification::rows(&case.case, false, curves, &references));
+            rows = verification::rows(&case.case, false, curves, &references);
         }
         let files = brought.iter().filter(|file| file.case == case.case.name);
-        all.extend(files.flat_map(|file| verification::of_file(file, case.case.overlap())));
-    }
+        rows.extend(files.flat_map(|file| verification::of_file(file, case.case.overlap())));
+        rows
+    };
+    // A refined solution takes several times as long as those of the run.
+    let mut all = run.cases.par_iter().map(of_case).collect::<Vec<_>>().concat();
     let built_in = options.is_default() && options.fem == FemSource::Recorded;
-    let compared = all.iter().any(|row| row.source == model.into());
-    for name in HELD_BACK.into_iter().filter(|_| built_in && compared) {
+    if !built_in || !all.iter().any(|row| row.source == model.into()) {
+        return Ok(all);
+    }
+    let held_back = |name: &&str| -> Result<Vec<VerificationRow>> {
         let case = builtin_case(name).expect("it is built in")?;
-        let Some(record) = FemResults::embedded_of(&case)? else { continue };
+        let Some(record) = FemResults::embedded_of(&case)? else { return Ok(Vec::new()) };
         let (reference, own) = (from_fem(&record), solve(&case, &Options::new(model))?);
         let refined = refined(&case);
         let curves = (model.into(), &own.curves, refined.as_ref());
         let references = [(Engine::fenicsx(), &reference)];
-        all.extend(verification::rows(&case, true, curves, &references));
-    }
+        Ok(verification::rows(&case, true, curves, &references))
+    };
+    all.extend(HELD_BACK.par_iter().map(held_back).collect::<Result<Vec<_>>>()?.concat());
     Ok(all)
 }
 

@@ -11,6 +11,14 @@ use std::ops::Range;
 const DISTURBED: f64 = 1.0;
 const INNER_MODES: usize = 3;
 
+/// Modes at nodes so near a corner at which the pressure grows without limit, in terms of the
+/// shortest wave 1 / k_max. What nodes beside each other do to each other there is known for a few
+/// modes only: higher ones are noise that tears the nodes apart. Where bodies have no ends the
+/// exponent is 1/2, and the modes, known in closed form, change up to the corner.
+const UNRESOLVED: f64 = 0.1;
+const UNRESOLVED_MODES: usize = 3;
+const ENDLESS_EXPONENT: f64 = 0.5;
+
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
@@ -152,11 +160,23 @@ impl Layout {
             })
             .collect();
         let (first, last) = (free[0], free[free.len() - 1]);
-        let modes_at = |(j, y): (usize, &f64)| match problem.distance_to_end(*y) > DISTURBED {
-            _ if !contact.contains(&j) => 0,
-            _ if j > last || problem.both_ends && j < first => settings.modes.min(tail_modes),
-            true => settings.modes.min(INNER_MODES),
-            false => settings.modes,
+        let near = UNRESOLVED / problem.compliance.wavenumbers.coarse().end();
+        let corners = axis.corners().iter().filter(|c| c.exponent < ENDLESS_EXPONENT);
+        let corners: Vec<f64> = corners.map(|corner| corner.at).collect();
+        let modes_at = |(j, y): (usize, &f64)| {
+            let tail = j > last || problem.both_ends && j < first;
+            let most = if !contact.contains(&j) {
+                0
+            } else if corners.iter().any(|at| (y - at).abs() < near) {
+                UNRESOLVED_MODES.min(tail_modes)
+            } else if tail {
+                tail_modes
+            } else if problem.distance_to_end(*y) > DISTURBED {
+                INNER_MODES
+            } else {
+                settings.modes
+            };
+            settings.modes.min(most)
         };
         let counts = axis.nodes().iter().enumerate().map(modes_at).collect();
         let mut layout = Self { free, shares, narrows, counts, starts: Vec::new() };

@@ -136,9 +136,9 @@ impl Remainders {
         let fine = numbers.fine();
         let shares: Vec<_> = (0..fine.len()).map(|i| numbers.interpolation(i)).collect();
         // The singular mode's transform, pi J0(k), decays most slowly.
-        let limits = fine.nodes().iter().zip(numbers.weights());
-        let limits: Vec<f64> =
-            limits.map(|(k, w)| negligible * PI / (w * (0.8 / k.sqrt()).min(1.0))).collect();
+        // What falls like a power of k leaves about k times its last value.
+        let limit = |k: &f64| negligible * PI / (k * (0.8 / k.sqrt()).min(1.0));
+        let limits: Vec<f64> = fine.nodes().iter().map(limit).collect();
         let all = fine.len();
         let mut entries = vec![0.0; nodes * nodes * all];
         let mut counts = vec![0; nodes * nodes];

@@ -15,7 +15,7 @@ use std::ops::Range;
 
 /// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance
 /// of the singularity.
-const NEGLIGIBLE: f64 = 0.1;
+const NEGLIGIBLE: f64 = 0.4;
 
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
@@ -37,6 +37,13 @@ const TIP: f64 = 1e-3;
 /// tensile one after the other.
 const FEW_TAIL_MODES: usize = 3;
 
+/// Distance between free nodes (C) below which half-widths that fewer nodes have found come first,
+/// and how closely: their distance, the tolerance of their singularity and their most iterations.
+const CLOSE: f64 = 0.025;
+const FIRST_SPACING: f64 = 0.12;
+const FIRST_TOLERANCE: f64 = 5e-3;
+const FIRST_ITERATIONS: usize = 10;
+
 /// Solves for the pressure that carries the problem's load.
 ///
 /// For fixed half-widths the problem is linear: collocation determines the modes at every node, and
@@ -55,8 +62,9 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
     // half-widths.
     let mut attempt =
         ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
+    let guess = first_guess(&operator, problem, settings)?;
     let checked = |attempt: &ContactSettings, tail_modes: usize| {
-        let solution = solve_once(&operator, problem, attempt, tail_modes)?;
+        let solution = solve_once(&operator, problem, attempt, tail_modes, guess.clone())?;
         check(&operator, problem, &solution, settings.soundness)?;
         Ok(solution)
     };
@@ -72,18 +80,43 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
     checked(&attempt, FEW_TAIL_MODES)
 }
 
-/// [`solve`] with the given spacing, and at most `tail_modes` behind the last free node.
+/// The half-widths that an iteration begins with: those of the problem's guess, else 1. Where free
+/// nodes are closer than [`CLOSE`], half-widths far off would oscillate from one to the next, and
+/// one of them could be left behind in a solution of its own; fewer free nodes come first there.
+fn first_guess(
+    operator: &LineOperator,
+    problem: &Problem,
+    settings: &ContactSettings,
+) -> Result<Vec<f64>> {
+    let known = |y: &f64| problem.guess.map_or(1.0, |slices| slices.half_width(*y).max(TIP));
+    let known: Vec<f64> = problem.axis.nodes().iter().map(known).collect();
+    if problem.guess.is_some() || problem.may_end() || settings.spacing >= CLOSE {
+        return Ok(known);
+    }
+    let fewer = ContactSettings {
+        spacing: FIRST_SPACING,
+        tolerance: FIRST_TOLERANCE,
+        max_iterations: FIRST_ITERATIONS,
+        ..*settings
+    };
+    match solve_once(operator, problem, &fewer, FEW_TAIL_MODES, known.clone()) {
+        Err(Error::Stopped) => Err(Error::Stopped),
+        found => Ok(found.map_or(known, |first| first.half_widths)),
+    }
+}
+
+/// [`solve`] with the given spacing, and at most `tail_modes` behind the last free node, from these
+/// half-widths.
 fn solve_once(
     operator: &LineOperator,
     problem: &Problem,
     settings: &ContactSettings,
     tail_modes: usize,
+    mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
     let n = problem.axis.len();
     let mut contact = 0..n;
     let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
-    let guess = |y: &f64| problem.guess.map_or(1.0, |slices| slices.half_width(*y).max(TIP));
-    let mut half_widths: Vec<f64> = problem.axis.nodes().iter().map(guess).collect();
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;

@@ -71,13 +71,15 @@ const SMOOTH_DEPTH: f64 = 0.14;
 /// where the pressure's panels grow with the distance from the end.
 const SMOOTH_DISTANCE: f64 = 1.0;
 
-/// The bound r^-n of the interpolation along a line, in tolerances. Its unknown factor makes errors
-/// of some tenths of a tolerance of it; 0.02 made up to 1.5 tolerances, at the lines' ends.
-const INTERPOLATION: f64 = 0.004;
+/// The bound r^-n of the interpolation along a line is this times a power of the tolerance. Its
+/// unknown factor makes errors of some tenths of a tolerance of it, and grows with n: in proportion
+/// to the tolerance it made 0.5 tolerances of 1e-4.
+const INTERPOLATION: f64 = 0.015;
+const INTERPOLATION_POWER: f64 = 1.25;
 
-/// Negligible contribution of one wavenumber to a stress, in tolerances; some twenty may be
-/// neglected.
-const NEGLIGIBLE: f64 = 0.005;
+/// What may be neglected of a stress's sum over the wavenumbers, in tolerances. Amplitudes that
+/// fall like a power of k leave about k times the last one.
+const NEGLIGIBLE: f64 = 0.08;
 
 /// Points closer to a surface than this (C, or in body half-lengths) count as on it.
 const ON_SURFACE: f64 = 1e-9;
@@ -425,7 +427,8 @@ impl<'a> Field<'a> {
             .map(|(at, off)| ((at - from).hypot(off) + (at - to).hypot(off)) / (to - from))
             .fold(f64::INFINITY, f64::min);
         let rate = (slowest + (slowest * slowest - 1.0).max(0.0).sqrt()).ln();
-        let wanted = -(INTERPOLATION * self.tolerance).ln() / rate;
+        let bound = INTERPOLATION * self.tolerance.powf(INTERPOLATION_POWER);
+        let wanted = -bound.ln() / rate;
         (wanted < count as f64 - 1.0)
             .then(|| Panels::new(vec![from, to], wanted.ceil().max(2.0) as usize))
     }
@@ -511,7 +514,7 @@ impl<'a> Field<'a> {
             let all = pressure.iter().chain(traction.iter().flatten());
             let largest = all.fold(0.0, |m: f64, a| m.max(a.abs()));
             // A small amplitude stays small only if oscillations across the contact are resolved.
-            let small = k > 1.0 && weight * largest < self.negligible;
+            let small = k > 1.0 && k * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
             for (sum, x) in sums.iter_mut().zip(xs) {
                 let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };

@@ -146,7 +146,9 @@ fn both_engines_count_the_approach_and_the_tilt_to_the_same_points() {
     let mut eccentric = plain(3e-4, 6.0, 1.3);
     eccentric.load.eccentricity_m = Some(0.15 * eccentric.block.length_m);
     eccentric.block.material.poisson = 0.1;
-    for (name, case) in [
+    // The published models take turns.
+    let published = [EdgeModel::HalfSpace, EdgeModel::Mirror, EdgeModel::Guilbault];
+    for ((name, case), published) in [
         ("straight", plain(5e-4, 5.0, 1.0)),
         ("on a longer block", plain(1e-4, 12.0, 0.6)),
         ("ends inside", crowned(plain(5e-4, 5.0, 0.8), 0.06)),
@@ -154,8 +156,11 @@ fn both_engines_count_the_approach_and_the_tilt_to_the_same_points() {
         ("offset", held(2e-3, 6e-4)),
         ("lifted off", held(1e-2, 0.0)),
         ("beside the middle", held(2.5e-2, 0.0)),
-    ] {
-        for method in EdgeModel::ALL {
+    ]
+    .into_iter()
+    .zip(published.into_iter().cycle())
+    {
+        for method in [published, EdgeModel::QuarterSpace] {
             let options = Options { curves: Vec::new(), ..Options::new(method) };
             let line = solve(&case, &options).unwrap().summary;
             let cells = CellOptions { counts: Some([96, 144]), ..CellOptions::default() };
