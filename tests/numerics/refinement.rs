@@ -1,7 +1,9 @@
 //! The solver compared with itself: finer, with less neglected, and with less shared. Lengths are
 //! in units of C, stresses in units of p0.
 
-use crate::common::{CORNER, apart, at, case, curve_points, half_of, scene, small, solved, worse};
+use crate::common::{
+    CORNER, apart, at, case, curve_points, half_of, scene, sequence, small, solved, worse,
+};
 use edgeline::base::StressTensor;
 use edgeline::body::{EdgeModel, Resolution};
 use edgeline::solve::{Options, Scene, SolvedScene, solve};
@@ -209,6 +211,57 @@ fn refinement_changes_little_at_other_ledges_and_materials() {
     assert_converged(&[(5.0, 0.1, 0.3), (5.0, 0.95, 0.3), (5.0, 0.99, 0.3), (20.0, 0.99, 0.3)]);
     assert_converged(&[(5.0, 1.0, 0.0), (5.0, 0.5, 0.0), (5.0, 1.0, 0.25), (5.0, 0.5, 0.25)]);
     assert_converged(&[(5.0, 0.5, 0.45), (5.0, 1.0, 0.45)]);
+}
+
+/// The `index`-th scene of `benches/promise.rs`, flush or on a longer block.
+fn drawn(index: usize, flush: bool) -> Scene {
+    let log = |u: f64, low: f64, high: f64| low * (high / low).powf(u);
+    let u = sequence::<5>(index);
+    let slenderness = log(u[0], 2.0, 100.0);
+    let length_ratio = if flush { 1.0 } else { log(u[4], 0.1, 0.98) };
+    let mut scene = scene(slenderness, length_ratio, 0.3, EdgeModel::QuarterSpace);
+    let nu = [0.45 * u[1], 0.45 * u[2]];
+    let soft = [(1.0 - nu[0] * nu[0]) / log(u[3], 1.0 / 3.0, 3.0), 1.0 - nu[1] * nu[1]];
+    for (kind, i) in [(BodyKind::Block, 0), (BodyKind::Roller, 1)] {
+        (scene.bodies[kind].nu, scene.bodies[kind].share) = (nu[i], soft[i] / (soft[0] + soft[1]));
+    }
+    scene
+}
+
+/// Beside a singular corner nodes far closer than the shortest wave once tore each other apart:
+/// pressures 0.1 C from the corner were 2.7e-3 and 1.3e-3 off in these scenes, and one node more on
+/// each panel changed them by as much.
+#[test]
+fn nodes_closer_than_the_shortest_wave_keep_together() {
+    for index in [101, 104] {
+        let scene = Scene { tolerance: 1e-4, ..drawn(index, false) };
+        let end = scene.end(BodyKind::Block);
+        let usual = Resolution::of(1e-4, &end, scene.corner_exponent());
+        let close =
+            Resolution { corner: 7e-4, corner_ratio: 3.42, spacing: 0.07, k_max: 300.0, ..usual };
+        let more = Resolution { order: close.order + 1, ..close };
+        let [a, b] = [&close, &more].map(|r| SolvedScene::with_resolution(&scene, r).unwrap());
+        small(&format!("scene {index}: pressure"), changes(&a, &b).0, 3e-4);
+    }
+}
+
+/// The free half-widths of the finest resolution are so close that one of them could stay behind,
+/// at half of its neighbours', where the pressure next to the end was 0.14 and 0.8 p0 off.
+#[test]
+fn no_half_width_is_left_behind() {
+    for index in [64, 71] {
+        let [fine, usual] = [1e-4, 1e-3]
+            .map(|tolerance| SolvedScene::new(&Scene { tolerance, ..drawn(index, true) }).unwrap());
+        for i in 0..=100 {
+            let y = fine.scene.half_length - CORNER * 20f64.powf(f64::from(i) / 100.0);
+            let off = usual.pressure.at(0.0, y) - fine.pressure.at(0.0, y);
+            small(&format!("scene {index}, {y}: pressure"), off.abs(), 1.1e-3);
+        }
+        let widths = &fine.contact.half_widths;
+        for pair in widths.windows(2) {
+            small(&format!("scene {index}: step"), (pair[1] / pair[0] - 1.0).abs(), 0.1);
+        }
+    }
 }
 
 /// Each direction of refinement by itself: differences of a resolution half as fine as the default,
