@@ -4,7 +4,7 @@
 //! `cargo bench --bench promise -- hold SCENES` measures scenes that no search has seen, at every
 //! decade, and `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes
 //! KIND TOLERANCE SCENE` tells the errors of one scene when one part of its resolution after the
-//! other is the limit's; `-- search KIND TOLERANCE [STEPS]` looks for the cheapest resolution
+//! other is the limit's; `-- limit SCENES` what the limit itself is worth; `-- search KIND TOLERANCE [STEPS]` looks for the cheapest resolution
 //! (KIND: endless, finite, singular) that keeps the promise on scenes of its own, by small random
 //! steps from the present one. The table in `src/body/axes.rs` is made from what it prints.
 //!
