@@ -5,9 +5,9 @@
 //! decade, and `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes
 //! KIND TOLERANCE SCENE` tells the errors of one scene when one part of its resolution after the
 //! other is the limit's, and `-- limit SCENES` what the limit itself is worth; `-- search KIND
-//! TOLERANCE [STEPS]` looks for the cheapest resolution (KIND: endless, finite, singular) that keeps
-//! the promise on scenes of its own, by small random steps from the present one. The table in
-//! `src/body/axes.rs` is made from what it prints.
+//! TOLERANCE [STEPS]` looks for the cheapest resolution (KIND: endless, finite, singular) that
+//! keeps the promise on scenes of its own, by small random steps from the present one. The table
+//! in `src/body/axes.rs` is made from what it prints.
 //!
 //! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where
 //! the tangent of the pressure is vertical, and the same around a flush end.
