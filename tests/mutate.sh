@@ -4,10 +4,10 @@
 #
 #   bash tests/mutate.sh [--fit | WORD]
 #
-# With --fit, only checks that every line to be changed is there. With a word, only the mutants whose line below contains it: `gates` for the one that the accuracy
-# gates should detect. The copy is in target/mutants. Exit code 0 if every mutant was detected, 1 if
-# one survived, 2 if a mutant no longer fits its file or does not build, or if the tests fail
-# without any.
+# With --fit, only checks that every line to be changed is there. With a word, only the mutants whose
+# line below contains it: `gates` for the one that the accuracy gates should detect. The copy is in
+# target/mutants. Exit code 0 if every mutant was detected, 1 if one survived, 2 if a mutant no longer
+# fits its file or does not build, or if the tests fail without any.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 export CARGO_TARGET_DIR=${CARGO_TARGET_DIR:-$PWD/target}

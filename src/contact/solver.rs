@@ -13,8 +13,7 @@ use crate::kernels::strip;
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// Entries of the collocation matrix per wavenumber that are negligible, relative to the tolerance
-/// of the singularity.
+/// What may be neglected of an entry's sum over the wavenumbers, in tolerances of the singularity.
 const NEGLIGIBLE: f64 = 0.4;
 
 /// Iterations of an attempt that is not the last.

@@ -20,9 +20,9 @@ const SEARCH: f64 = 3e-2;
 const CLOSE: f64 = 1e-3;
 const MET: f64 = 1e-10;
 
-/// The same after [`PATIENCE`] trials: rounding may decide between two solutions of the contact
-/// that are nearly this far apart.
-const ROUNDED: f64 = 5e-9;
+/// The latter after [`PATIENCE`] trials, in tolerances: rounding, or one neglected wave more, may
+/// decide between two solutions of the contact that are nearly this far apart.
+const ROUNDED: f64 = 5e-6;
 const PATIENCE: usize = 6;
 
 /// Relative distance of two forces, raised to [`POWER`], from which they give a slope that rounding
@@ -118,7 +118,7 @@ impl<'a> Search<'a> {
             let off = approach_m(&scene.approaches(), &case) / self.wanted_m - 1.0;
             self.seconds += scene.seconds.total;
             let settled = self.tell(off, JUMP * tolerance);
-            let met = if trial < PATIENCE { met } else { met.max(ROUNDED) };
+            let met = if trial < PATIENCE { met } else { met.max(ROUNDED * tolerance) };
             if off.abs() <= met || settled {
                 return match unsound {
                     Some(e) if tolerance == self.case.accuracy.tolerance => Err(e),
