@@ -66,3 +66,44 @@ impl Stack {
         layers.map(|layer| layer.condition).fold(1.0, worse)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::EdgeModel;
+
+    /// Whatever the ends of a line are, flush or not, on either side of a body's middle: the
+    /// compliance of the mirror image of a line is the mirror image of the line's.
+    #[test]
+    fn compliances_of_mirror_images_are_mirror_images() {
+        let resolution = Resolution::for_tolerance(3e-2);
+        let wavenumbers = [0.02, 0.3, 2.0, 20.0];
+        for (middle, half) in [(0.0, 5.0), (-1.7, 4.9), (-4.3988041801, 9.2915775857), (1.2, 11.0)] {
+            for ends in [[-3.0, 2.0], [-0.8, 3.2 - 1e-9], [middle - half, middle + half], [middle - half, middle + 0.3]] {
+                if ends[0] < middle - half || ends[1] > middle + half { continue; }
+                for (model, nu) in [(EdgeModel::QuarterSpace, 0.1), (EdgeModel::HalfSpace, 0.1)] {
+                    let matrices = [1.0, -1.0].map(|side| {
+                        let own = if side > 0.0 { ends } else { [-ends[1], -ends[0]] };
+                        let (line, _) = resolution.contact_line(own, [None; 2], &[], false);
+                        let end = model.end(nu, None);
+                        let shape = Shape { half, nu };
+                        let stack = Stack::new(&line, (false, false), (side * middle, shape), end, (&resolution, &wavenumbers));
+                        (0..wavenumbers.len()).map(|i| {
+                            let mut total = DMatrix::zeros(line.len(), line.len());
+                            stack.add_compliance(i, 1.0, &mut total);
+                            total
+                        }).collect::<Vec<_>>()
+                    });
+                    for (i, k) in wavenumbers.iter().enumerate() {
+                        let (a, b) = (&matrices[0][i], &matrices[1][i]);
+                        let n = a.nrows();
+                        let turned = DMatrix::from_fn(n, n, |r, c| b[(n - 1 - r, n - 1 - c)]);
+                        let off = (a - &turned).amax() / a.amax();
+                        let worst = (0..n).max_by(|r, s| (a[(*r, *r)] - turned[(*r, *r)]).abs().total_cmp(&(a[(*s, *s)] - turned[(*s, *s)]).abs())).unwrap();
+                        println!("{middle} {half} {ends:?} {model} k {k}: {off:.1e} at {worst} of {n}");
+                    }
+                }
+            }
+        }
+    }
+}

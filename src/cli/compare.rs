@@ -6,7 +6,7 @@ use super::records::Records;
 use super::study_options::RangeOptions;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::host::{Lock, prepare_folder, write_set};
+use crate::host::{Lock, prepare_folder, replace_set};
 use crate::report::comparison::{Context, Summary, files};
 use crate::report::gates;
 use crate::report::table::read;
@@ -133,7 +133,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let out = &arguments.out;
     let _lock = Lock::claim(out)?;
     prepare_folder(&out.join("plots"))?;
-    write_set(out, &contents)?;
+    replace_set(out, &contents)?;
     for file in &summary.files {
         if !file.left_out.is_empty() {
             let left_out = file.left_out.join(", ");

@@ -7,7 +7,7 @@ use crate::base::number::significant;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Design};
-use crate::host::{Lock, write_set};
+use crate::host::{Lock, replace_set};
 use crate::report::design::{at_bounds, contents, summary, value_pa};
 use crate::study::optimum::{Optimum, Settings, seek};
 use clap::{Args, ValueHint};
@@ -68,7 +68,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     bar.finish_and_clear();
     let found = found?;
     let case = named(&design, &found)?;
-    write_set(&arguments.out, &contents(&design, &settings, &found, &case))?;
+    replace_set(&arguments.out, &contents(&design, &settings, &found, &case))?;
     for name in at_bounds(&design, &found) {
         say(&format!(
             "note: {name} lies at one of its bounds; wider ones, where they are legal, may do better"

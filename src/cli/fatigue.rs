@@ -5,7 +5,7 @@ use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::host::{Lock, write_set};
+use crate::host::{Lock, replace_set};
 use crate::report::fatigue::{CriticalPlace, Passages, Summary, contents, summary};
 use crate::report::study_files::pretty;
 use crate::solve::{Options, Passage, SolvedCase};
@@ -72,7 +72,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let found = summary(case, &hertz, &own, half_space.as_ref());
     let mut files = contents(case, &hertz, &own, half_space.as_ref());
     files.push(("summary.json".into(), pretty(&found).into_bytes()));
-    write_set(&arguments.out, &files)?;
+    replace_set(&arguments.out, &files)?;
     if arguments.json {
         print_json(&found)?;
     } else {

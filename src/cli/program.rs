@@ -13,9 +13,9 @@ use std::process::ExitCode;
 /// finite-element models that verify it.
 ///
 /// Results go to files and a short summary to standard output; progress and warnings go to
-/// standard error. Only one run at a time can use a folder. The exit code is 0 for success, 1 if an
-/// accuracy gate failed, and 2 if the command could not run: bad input, a missing tool, a failed
-/// child process.
+/// standard error. Only one run at a time can use a folder; files of an earlier run there that do
+/// not belong to the new one are removed. The exit code is 0 for success, 1 if an accuracy gate
+/// failed, and 2 if the command could not run: bad input, a missing tool, a failed child process.
 #[derive(Parser)]
 #[command(name = "edgeline", version, arg_required_else_help = true)]
 struct Arguments {

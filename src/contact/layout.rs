@@ -76,7 +76,7 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
         (y - end).abs() < apart
     };
     let middle = match problem.both_ends {
-        true => contact.start + contact.len() / 2,
+        true => nodes.partition_point(|y| *y < 0.5 * (last[0] + last[1])),
         false => contact.start,
     };
     let side = |inward: &mut dyn Iterator<Item = usize>| {

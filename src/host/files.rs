@@ -3,7 +3,7 @@
 use crate::base::{Error, Result};
 use std::fs::File;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Component, Path, PathBuf};
 
 /// Creates the folder `path` and checks that files can be written there, so that a bad path is an
 /// error before the calculation and not after it.
@@ -50,13 +50,40 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 /// # Panics
 /// When there are no files.
 pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Result<()> {
+    move_into_place(folder, files, &|| Ok(()))
+}
+
+/// As [`write_set`], for a set whose files depend on what was asked for: those of the last set with
+/// this mark that are not in this one are removed. They would be taken for parts of it.
+///
+/// # Errors
+/// As [`write_set`].
+///
+/// # Panics
+/// As [`write_set`].
+pub fn replace_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Result<()> {
+    let names: Vec<&Path> = files.iter().map(|(name, _)| name.as_ref()).collect();
+    let list = list_of(folder, names.last().expect("a set has files"));
+    move_into_place(folder, files, &|| {
+        let earlier = listed(&list).into_iter().filter(|name| !names.contains(&name.as_path()));
+        for path in earlier.map(|name| folder.join(name)).filter(|path| path.is_file()) {
+            remove_if_there(&path)?;
+        }
+        let text: String = names.iter().map(|name| format!("{}\n", name.display())).collect();
+        write_through(&list, text.as_bytes()).map_err(failed("write", &list))
+    })
+}
+
+/// [`write_set`], with `before` between the removal of the file that marks an earlier set and the
+/// moves.
+fn move_into_place<N: AsRef<Path>>(
+    folder: &Path,
+    files: &[(N, Vec<u8>)],
+    before: &dyn Fn() -> Result<()>,
+) -> Result<()> {
     let (last, _) = files.last().expect("a set has files");
     let last = folder.join(last);
     let parts = folder.join(PARTS);
-    let failed = |action, path: &Path| {
-        let path = path.to_path_buf();
-        move |source| Error::Io { action, path, source }
-    };
     let write = || {
         remove(&parts)
             .and_then(|()| std::fs::create_dir(&parts))
@@ -66,6 +93,7 @@ pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Resul
             write_through(&part, content).map_err(failed("write", &folder.join(name)))?;
         }
         remove_file(&last).map_err(failed("replace", &last))?;
+        before()?;
         for (i, (name, _)) in files.iter().enumerate() {
             let path = folder.join(name);
             std::fs::rename(parts.join(i.to_string()), &path).map_err(failed("write", &path))?;
@@ -78,8 +106,27 @@ pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Resul
     written
 }
 
+/// What makes an error of a failed `action` on `path`.
+fn failed(action: &'static str, path: &Path) -> impl FnOnce(std::io::Error) -> Error {
+    let path = path.to_path_buf();
+    move |source| Error::Io { action, path, source }
+}
+
 /// The folder in which a set of files is written before the move.
 const PARTS: &str = ".parts";
+
+/// The file in `folder` that has the names of the files of the set with this mark, one a line.
+fn list_of(folder: &Path, mark: &Path) -> PathBuf {
+    folder.join(format!(".{}.files", mark.display()))
+}
+
+/// The names in a list of files, but for those that lead out of its folder. None if it cannot be
+/// read.
+fn listed(list: &Path) -> Vec<PathBuf> {
+    let text = std::fs::read_to_string(list).unwrap_or_default();
+    let within = |name: &PathBuf| name.components().all(|c| matches!(c, Component::Normal(_)));
+    text.lines().map(PathBuf::from).filter(within).collect()
+}
 
 /// Removes the unfinished files of a run that was killed in `folder`. The caller has locked the
 /// folder.
@@ -183,5 +230,29 @@ mod tests {
         write_set(folder.path(), &set("three")).unwrap_err();
         assert!(!folder.path().join("done").exists());
         assert_eq!(files(), 2);
+    }
+
+    #[test]
+    fn files_of_an_earlier_set_do_not_stay_beside_a_new_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let outside = folder.path().join("outside");
+        std::fs::write(&outside, "").unwrap();
+        let folder = folder.path().join("run");
+        std::fs::create_dir_all(folder.join("plots")).unwrap();
+        let write = |names: &[&str]| {
+            let set: Vec<_> = names.iter().map(|name| (*name, Vec::new())).collect();
+            replace_set(&folder, &set).unwrap();
+        };
+        let there = |names: &[&str]| names.iter().all(|name| folder.join(name).exists());
+        write(&["a", "plots/b", "done"]);
+        write(&["c", "other"]);
+        std::fs::write(folder.join("own"), "").unwrap();
+        write(&["d", "done"]);
+        assert!(there(&["c", "d", "done", "other", "own"]) && !there(&["a"]));
+        assert!(!there(&["plots/b"]));
+        // A list is a file that anybody can write.
+        std::fs::write(list_of(&folder, "done".as_ref()), "../outside\nd\n").unwrap();
+        write(&["e", "done"]);
+        assert!(there(&["e", "done"]) && !there(&["d"]) && outside.exists());
     }
 }

@@ -17,7 +17,7 @@ mod text;
 
 #[cfg(feature = "cli")]
 pub(crate) use {
-    files::{prepare_folder, remove_if_there, remove_marker, write_set, write_whole},
+    files::{prepare_folder, remove_if_there, remove_marker, replace_set, write_set, write_whole},
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,

@@ -4,7 +4,7 @@
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
-use crate::host::{Lock, remove_marker, write_set};
+use crate::host::{Lock, remove_marker, replace_set};
 use crate::solve::{Lamina, Options, Solution};
 use serde::Serialize;
 use std::path::Path;
@@ -41,7 +41,7 @@ pub fn write<D: Serialize>(
     put("summary.json".into(), pretty(&solution.summary));
     // Curves and pressures of finite elements there are no longer those that it marks as complete.
     remove_marker(folder, "fem.json")?;
-    write_set(folder, &files)
+    replace_set(folder, &files)
 }
 
 /// As [`write()`], into a folder that is locked meanwhile, and made if it is not there.

@@ -2,7 +2,7 @@
 
 use super::render::{html, markdown};
 use crate::base::Result;
-use crate::host::{prepare_folder, write_set};
+use crate::host::{prepare_folder, replace_set};
 use crate::report::plots;
 use crate::report::study_files::StudyFiles;
 use std::path::Path;
@@ -28,7 +28,7 @@ pub fn write(files: &StudyFiles, folder: &Path) -> Result<()> {
 
 fn write_with_plots(folder: &Path, contents: Vec<(String, Vec<u8>)>) -> Result<()> {
     prepare_folder(&folder.join("plots"))?;
-    write_set(folder, &contents)
+    replace_set(folder, &contents)
 }
 
 /// Plots, Markdown and page, by the names of their files.
