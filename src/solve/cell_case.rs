@@ -6,6 +6,7 @@ use super::cell_stress::Stressed;
 use super::cells::{PressureCell, contact_ends, largest, line_loads};
 use super::options::Options;
 use super::scene::Scene;
+use super::shaping::Shaping;
 use super::solved::{Solution, most_stressed};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
@@ -14,7 +15,7 @@ use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, Grid};
 use crate::stress::curves::across_contact;
-use crate::stress::{Curves, LineLoad, PressureLine, round};
+use crate::stress::{Curves, LineLoad, PressureLine};
 use serde::{Deserialize, Serialize};
 use std::time::Instant;
 
@@ -374,7 +375,7 @@ impl Found<'_> {
             contact_area_m2: self.pressure.contact_area() * c_m * c_m,
             mean_gap_m: self.mean_gap * case.gap_unit_m(),
             approach_reference_m: radius_m,
-            roller_diametral_tension_pa: round::DIAMETRAL_TENSION * c_m / radius_m * p0_pa,
+            roller_diametral_tension_pa: Shaping::of(case).roller_tension() * p0_pa,
         }
     }
 }

@@ -81,7 +81,8 @@ impl KeySolution {
         let curvature = Shaping::of(&case).largest_curvature().max(LARGEST_CURVATURE);
         let mut samples = samples(&solved);
         if !scene.slides {
-            keep_candidates(&mut samples, curvature);
+            let [block, roller] = [&scene.bodies.block, &scene.bodies.roller].map(|body| body.half);
+            keep_candidates(&mut samples, curvature, block.min(roller) / roller);
         }
         let own = Self {
             approaches: solved.approaches(),
@@ -120,11 +121,12 @@ impl KeySolution {
     }
 }
 
-/// Removes samples that are critical for no C / R up to `largest`, where there is no friction.
-fn keep_candidates(samples: &mut Vec<Sample>, largest: f64) {
+/// Removes samples that are critical for no C / R up to `largest`, where there is no friction and
+/// the shorter body is `loaded` lengths of the roller long.
+fn keep_candidates(samples: &mut Vec<Sample>, largest: f64, loaded: f64) {
     let at = |curvature: f64, (body, _, stress): &Sample| {
         let curvatures = PerBody { block: curvature, roller: curvature };
-        Shaping { curvatures, friction: 0.0 }.stress(*body, stress).von_mises()
+        Shaping { curvatures, loaded, friction: 0.0 }.stress(*body, stress).von_mises()
     };
     // Von Mises' stress is convex in the curvature.
     let most = |s: &Sample| at(largest, s).max(at(-largest, s));

@@ -3,12 +3,16 @@
 use crate::base::{BodyKind, PerBody, StressTensor};
 use crate::case::{Case, Sliding};
 use crate::stress::RoundStress;
+use crate::stress::round::DIAMETRAL_TENSION;
 
 /// The radii and the friction of a case.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Shaping {
     /// C / R of each body, negative for a concave one.
     pub curvatures: PerBody<f64>,
+    /// The length of the shorter body in those of the roller: far from the contact the roller
+    /// carries its load along all of its length.
+    pub loaded: f64,
     /// The traction on the block along +x in pressures.
     pub friction: f64,
 }
@@ -22,12 +26,18 @@ impl Shaping {
             block: case.block.radius_m.map_or(0.0, of_radius),
             roller: of_radius(case.roller.radius_m),
         };
-        Self { curvatures, friction }
+        let loaded = case.shorter_m() / case.roller.length_m;
+        Self { curvatures, loaded, friction }
     }
 
     /// The larger C / R of the bodies, whatever its sign.
     pub fn largest_curvature(&self) -> f64 {
         self.curvatures.block.abs().max(self.curvatures.roller.abs())
+    }
+
+    /// The uniform sigma_xx of the roller, squeezed across its diameter (p0).
+    pub fn roller_tension(&self) -> f64 {
+        DIAMETRAL_TENSION * self.curvatures.roller * self.loaded
     }
 
     /// Whether the stress of a body is more than that of a flat one under the pressure alone.
@@ -38,9 +48,13 @@ impl Shaping {
     /// The stress of a body (p0).
     pub fn stress(&self, body: BodyKind, stress: &RoundStress) -> StressTensor {
         let curvature = self.curvatures[body];
+        let pressed = stress.at(curvature);
         let (pressed, friction) = match body {
-            BodyKind::Block => (stress.on_one_side(curvature), self.friction),
-            BodyKind::Roller => (stress.at(curvature), -self.friction),
+            BodyKind::Block => (pressed, self.friction),
+            BodyKind::Roller => {
+                let tension = StressTensor { xx: self.roller_tension(), ..StressTensor::default() };
+                (pressed + tension, -self.friction)
+            }
         };
         match friction == 0.0 {
             true => pressed,

@@ -18,7 +18,7 @@ use crate::stress::curves::{Span, across_contact, curves_on};
 use crate::stress::grid::on_grid;
 use crate::stress::{
     BodyKind, Critical, CurveSpec, Curves, EDGE, Grid, GridStress, LineLoad, Load, PressureLine,
-    RoundStress, StressCurve, away_from_edges, round,
+    RoundStress, StressCurve, away_from_edges,
 };
 use std::sync::Arc;
 use std::time::Instant;
@@ -285,8 +285,7 @@ impl SolvedCase {
             bodies_shared: solved.bodies_shared(),
             work: Some(WorkSummary::new(&stresses.found.work, alike)),
             approach_reference_m: self.case.roller.radius_m,
-            roller_diametral_tension_pa: round::DIAMETRAL_TENSION
-                * self.curvature(BodyKind::Roller)
+            roller_diametral_tension_pa: Shaping::of(&self.case).roller_tension()
                 * self.hertz.p0_pa,
             stiffness: None,
         }

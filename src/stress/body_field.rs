@@ -2,7 +2,7 @@
 
 use super::field::{Field, Work};
 use super::flat::FlatStress;
-use super::round::{DIAMETRAL_TENSION, RoundStress};
+use super::round::RoundStress;
 use crate::base::StressTensor;
 
 /// A [`Field`] that is computed in a unit of length of its own, and so with a unit of pressure of
@@ -75,16 +75,11 @@ impl<'a> BodyField<'a> {
     }
 
     fn round(&self, stresses: Vec<RoundStress>) -> Vec<RoundStress> {
-        // What the round shape adds is stated per C / R. The tension of the squeezed roller is that
-        // of the mean load, whatever the unit.
-        let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
+        // What the round shape adds is stated per C / R.
         let square = self.unit * self.unit;
         let of = |RoundStress { flat, round }| RoundStress {
             flat: flat * self.unit,
-            round: FlatStress {
-                pressure: (round.pressure - tension) * square + tension,
-                traction: round.traction * square,
-            },
+            round: round * square,
         };
         stresses.into_iter().map(of).collect()
     }

@@ -61,8 +61,10 @@ static RULE: LazyLock<Rule> = LazyLock::new(|| {
     })
 });
 
-/// The uniform sigma_xx of a disc compressed across its diameter, w' / (pi R) with the mean line
-/// load, per C / R (p0).
+/// The uniform sigma_xx of a disc compressed across its diameter by two loads, w' / (pi R) with the
+/// line load w' of Hertz's p0 and C, per C / R (p0). It is no part of a [`RoundStress`]: a load on
+/// one side does not cause it, and far from the contact a load on a part of a roller's length is
+/// one on all of it.
 pub const DIAMETRAL_TENSION: f64 = 0.5;
 
 /// The plane contact near a place of the line.
@@ -114,7 +116,7 @@ type Kernel = fn(&Rule, f64, f64) -> [f64; 3];
 pub struct RoundStress {
     /// The flat body's stress.
     pub flat: FlatStress,
-    /// The contribution of the round shape per C / R.
+    /// The contribution of the round shape per C / R, without [`DIAMETRAL_TENSION`].
     pub round: FlatStress,
 }
 
@@ -130,9 +132,7 @@ impl RoundStress {
     ) -> Self {
         let (flat, slope) = (flat.into(), slope.into());
         let moved = |s: &StressTensor, slope: StressTensor| turned(s) * x + slope * (x * z);
-        let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
-        let pressure =
-            moved(&flat.pressure, slope.pressure) + tension + contact.tilted(tilted, x, z);
+        let pressure = moved(&flat.pressure, slope.pressure) + contact.tilted(tilted, x, z);
         // Nothing is computed without a traction.
         let traction = match flat.traction == StressTensor::default() {
             true => StressTensor::default(),
@@ -141,7 +141,8 @@ impl RoundStress {
         Self { flat, round: FlatStress { pressure, traction } }
     }
 
-    /// The stress (p0) under the pressure for C / R = `curvature`, positive for a convex body.
+    /// The stress (p0) under the pressure for C / R = `curvature`, positive for a convex body,
+    /// without the tension of a disc that is squeezed, [`DIAMETRAL_TENSION`].
     pub fn at(&self, curvature: f64) -> StressTensor {
         self.flat.pressure + self.round.pressure * curvature
     }
@@ -155,13 +156,6 @@ impl RoundStress {
     #[must_use]
     pub fn mirrored_in_x(&self) -> Self {
         Self { flat: self.flat.mirrored_in_x(), round: self.round.mirrored_in_x() }
-    }
-
-    /// [`RoundStress::at`] without the diametral tension, which only a disc has that is squeezed
-    /// between two loads.
-    pub fn on_one_side(&self, curvature: f64) -> StressTensor {
-        let tension = StressTensor { xx: DIAMETRAL_TENSION, ..StressTensor::default() };
-        self.flat.pressure + (self.round.pressure - tension) * curvature
     }
 }
 
@@ -352,7 +346,8 @@ mod tests {
                     let slope = (plane(x + 1e-4, z) - plane(x - 1e-4, z)) * 5e3;
                     let got = RoundStress::new(x, z, plane(x, z), slope, &LocalContact::HERTZ)
                         .at(1.0 / radius);
-                    for (g, e) in [got.xx, got.zz, got.xz].iter().zip(disc(radius, x, z)) {
+                    let xx = got.xx + DIAMETRAL_TENSION / radius;
+                    for (g, e) in [xx, got.zz, got.xz].iter().zip(disc(radius, x, z)) {
                         worst = worst.max((g - e).abs());
                     }
                 }
