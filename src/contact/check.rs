@@ -17,9 +17,12 @@ const END: f64 = 0.2;
 /// The same where a contact narrows to a tip, as a part of its length.
 const TIP: f64 = 0.05;
 
+/// Largest part of the load that may not be carried: rounding leaves far less.
+const CARRIED: f64 = 1e-6;
+
 /// Refuses a solution that violates a law of contact by more than `tolerance`: there is no gap
 /// under pressure and no penetration elsewhere (in units of C^2 / (2 R)), and the pressure is not
-/// tensile (p0).
+/// tensile (p0). With any finite `tolerance` the load is carried.
 ///
 /// # Errors
 /// [`Error::Unsound`] with the law that is violated most.
@@ -29,6 +32,13 @@ pub(super) fn check(
     solution: &ContactSolution,
     tolerance: f64,
 ) -> Result<()> {
+    let unsound = |law: &'static str, value: f64, limit: f64| {
+        let remedy = "another [accuracy] tolerance or another model may do".into();
+        Err(Error::Unsound { law, value, limit, remedy })
+    };
+    if tolerance.is_finite() && (solution.load_error > CARRIED || solution.load_error.is_nan()) {
+        return unsound("the part of the load that is not carried", solution.load_error, CARRIED);
+    }
     let mut broken: [(f64, &'static str); 3] = [
         (0.0, "the deepest penetration (C^2 / 2 R)"),
         (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
@@ -54,12 +64,7 @@ pub(super) fn check(
     if worst.0 <= tolerance {
         return Ok(());
     }
-    Err(Error::Unsound {
-        law: worst.1,
-        value: worst.0,
-        limit: tolerance,
-        remedy: "another [accuracy] tolerance or another model may do".into(),
-    })
+    unsound(worst.1, worst.0, tolerance)
 }
 
 /// Whether `y` lies so close to an end of the contact that its gap says nothing about the rest.

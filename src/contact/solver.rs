@@ -16,6 +16,9 @@ use std::ops::Range;
 /// What may be neglected of an entry's sum over the wavenumbers, in tolerances of the singularity.
 const NEGLIGIBLE: f64 = 0.4;
 
+/// Free nodes from which the end of a contact that narrows is found.
+const TIP_NODES: usize = 3;
+
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
@@ -150,6 +153,7 @@ fn solve_once(
         let near = settled && worst <= settings.tolerance.max(NEAR);
         let released = near && layout.release(problem.both_ends, &unknowns);
         if settled && worst <= settings.tolerance && !released {
+            check_nodes(problem, settings, &layout, &contact)?;
             let ends = ends(problem, &layout, &contact, &half_widths);
             let solution = carrying(problem, &layout, half_widths, &unknowns);
             return Ok(ContactSolution {
@@ -180,6 +184,29 @@ fn solve_once(
         iterations: settings.max_iterations,
         residual: last,
         remedy: "ask for a coarser [accuracy] tolerance, or check the case's lengths".into(),
+    })
+}
+
+/// Refuses a contact that ends before its bodies do, and whose free nodes are so few that its
+/// half-widths say nothing of how it narrows.
+fn check_nodes(
+    problem: &Problem,
+    settings: &ContactSettings,
+    layout: &Layout,
+    contact: &Range<usize>,
+) -> Result<()> {
+    let narrows = problem.open.contains(&true)
+        || problem.both_ends && contact.start > 0
+        || contact.end < problem.axis.len();
+    let lacking = TIP_NODES.saturating_sub(layout.free.len());
+    if !narrows || lacking == 0 || settings.soundness.is_infinite() {
+        return Ok(());
+    }
+    Err(Error::Unsound {
+        law: "the number of nodes that a contact lacks to narrow to its end",
+        value: lacking as f64,
+        limit: 0.0,
+        remedy: "take a tighter [accuracy] tolerance, or --engine cells".into(),
     })
 }
 
@@ -281,8 +308,8 @@ fn ends(
     };
     let before = contact.start > 0 || problem.open[0];
     let after = contact.end < axis.len() || problem.open[1];
-    let last = free.len().max(3) - 1;
-    let enough = free.len() >= 3;
+    let last = free.len().max(TIP_NODES) - 1;
+    let enough = free.len() >= TIP_NODES;
     [
         if before && enough { zero([free[0], free[1], free[2]]) } else { axis.breaks()[0] },
         if after && enough {
