@@ -15,11 +15,15 @@ const WIDEST: f64 = 1.0;
 pub(super) const PLATE_FADES: f64 = 8.0;
 
 /// Wavenumber times half-length up to which one panel holds the waves of a plate in bending.
-const BENDS: f64 = 0.25;
+pub(super) const BENDS: f64 = 0.25;
 
 /// Largest growth of the panels of depths and wavenumbers along an end face of a plate in bending,
 /// whose loads reach as deep as the wave is long.
 const BENDING_RATIO: f64 = 2.0;
+
+/// Largest ratio of two bodies' half-lengths for which the first panel of wavenumbers is that of
+/// the longer one.
+const UNLIKE: f64 = 10.0;
 
 /// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest
 /// one.
@@ -409,6 +413,13 @@ const ENDLESS: [Resolution; 5] = [
     },
 ];
 
+/// The length of a body of this half-length beyond the `contact` on one side of its middle: none
+/// where it differs by rounding. Flush ends have other axes than the narrowest ledge.
+pub(super) fn ledge(contact: &Panels, half: f64) -> f64 {
+    let beyond = half - contact.end();
+    if beyond > SAME * half { beyond } else { 0.0 }
+}
+
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
     pub const FINEST: f64 = TOLERANCES[4];
@@ -589,8 +600,8 @@ impl Resolution {
             let inward = self.graded(self.corner.min(0.5 * near), near);
             breaks.splice(..0, inward[1..].iter().rev().map(|s| (near - s).max(0.0)));
         }
-        let ledge = half - contact.end();
-        if ledge > rounding {
+        let ledge = ledge(contact, half);
+        if ledge > 0.0 {
             // The effect of the end face on the surface is smooth at the contact's end: only the
             // face itself needs grading.
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
@@ -641,6 +652,18 @@ impl Resolution {
         equal(smallest, SLOW, if SLOW <= 20.0 * smallest { 20.0 } else { 10.0 });
         equal(SLOW, self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
+    }
+
+    /// [`Resolution::wavenumbers`] of bodies of these half-lengths.
+    pub fn wavenumbers_of(&self, halves: &[f64], parity: Parity) -> Wavenumbers {
+        let longest = halves.iter().copied().fold(0.0, f64::max);
+        let shortest = halves.iter().copied().fold(f64::INFINITY, f64::min);
+        // The first panel has room for the waves that a much shorter body can be computed for.
+        let half = match parity {
+            Parity::Even => longest,
+            Parity::Odd => longest.min(UNLIKE * shortest),
+        };
+        self.wavenumbers(half, parity)
     }
 
     /// End of the first panel of wavenumbers: waves longer than the body and the contact's width

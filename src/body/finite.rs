@@ -6,7 +6,7 @@
 //! units of C. A layer's displacement is f p with u = (1 - nu^2)/(pi E) f p, so a half-space's f is
 //! 2 K0(k |y|).
 
-use super::axes::{PLATE_FADES, Resolution};
+use super::axes::{PLATE_FADES, Resolution, ledge};
 use super::end::End;
 use super::stencil::{Image, Peak, Sources, Stencil};
 use crate::base::{Panels, Parity, StressTensor, linear};
@@ -127,12 +127,6 @@ impl Shape {
 /// fifth order).
 const CLOSING: [f64; 5] = [31.0 / 32.0, 26.0 / 32.0, 16.0 / 32.0, 6.0 / 32.0, 1.0 / 32.0];
 
-/// Longest waves of the odd part (half-lengths of the body, divided by 2 pi). Such a load bends the
-/// body as a plate, the less stiff the longer the wave: the equations become singular, and errors
-/// of the axes decide. The waves of an axis for odd loads are shorter, but for a body that is many
-/// times shorter than the other.
-const LONGEST: f64 = 250.0;
-
 /// A load at s >= 0 and its other half at -s, and their images in the end faces of a body.
 ///
 /// Even loads have the period 2 H of the body's length, and strips replace the images beyond the
@@ -173,7 +167,7 @@ impl Body {
         let Shape { half, nu } = shape;
         let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
-        let ledge = half - contact.end();
+        let ledge = ledge(contact, half);
         let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
         let exponent = corner.map(|c| c.exponent);
         let contact = first..first + contact.len();
@@ -364,8 +358,6 @@ impl Body {
 
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
-        let bends = self.end.freed && self.parity == Parity::Odd;
-        let k = if bends { k.max(1.0 / (LONGEST * self.half)) } else { k };
         let n = self.surface.axis.len();
         let mut displacement = Rows::new(&self.surface, n);
         let reach = self.reach(k);

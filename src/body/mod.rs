@@ -8,6 +8,7 @@ mod finite;
 mod fold;
 mod guilbault;
 mod half_space;
+mod long_waves;
 mod mirror;
 mod model;
 mod quarter_space;

@@ -4,6 +4,7 @@ use super::axes::Resolution;
 use super::end::End;
 use super::finite::{Body, Layer, Shape};
 use super::fold::Fold;
+use super::long_waves::{LongWaves, growth};
 use crate::base::{Panels, Parity};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -18,27 +19,41 @@ pub struct Stack {
     /// The contact line from the body's middle.
     pub fold: Fold,
     parts: Vec<(Body, Vec<Layer>)>,
+    /// The coarse wavenumbers of the layers.
+    nodes: Vec<f64>,
+    /// Those of the first panel, where they are not the ones of both bodies.
+    long: Option<LongWaves>,
+    /// The wavenumbers of both bodies in the first panel.
+    common: Vec<f64>,
 }
 
 impl Stack {
     /// A body of this `shape` whose middle is at `middle`, with end faces `end`, under loads on
     /// `line`; a `symmetric` line begins at the middle and is one half of the contact; where it
-    /// `slides`, the line may carry a traction along x.
+    /// `slides`, the line may carry a traction along x. Its layers are those of the `coarse`
+    /// wavenumbers.
     pub fn new(
         line: &Panels,
         (symmetric, slides): (bool, bool),
         (middle, shape): (f64, Shape),
         end: End,
-        (resolution, wavenumbers): (&Resolution, &[f64]),
+        (resolution, coarse): (&Resolution, &Panels),
     ) -> Self {
         let fold = Fold::new(line, middle, symmetric);
+        let bends = end.freed && fold.parities().contains(&Parity::Odd);
+        let long = if bends { LongWaves::new(coarse, shape.half) } else { None };
+        let mut nodes = coarse.nodes().to_vec();
+        let common = nodes[..coarse.order()].to_vec();
+        if let Some(long) = &long {
+            nodes[..long.nodes().len()].copy_from_slice(long.nodes());
+        }
         let part = |&parity: &Parity| {
             let body = Body::new(fold.axis(), shape, end, (parity, slides), resolution);
-            let layers = wavenumbers.par_iter().map(|&k| body.layer(k)).collect();
+            let layers = nodes.par_iter().map(|&k| body.layer(k)).collect();
             (body, layers)
         };
         let parts = fold.parities().iter().map(part).collect();
-        Self { middle, fold, parts }
+        Self { middle, fold, parts, nodes, long, common }
     }
 
     /// The body for each part of the load, with its layers.
@@ -51,11 +66,50 @@ impl Stack {
         &self.parts[0].0
     }
 
-    /// Adds `factor` times the compliance at wavenumber number `i` to `total`, over the line's
-    /// nodes.
+    /// The wavenumbers of the layers.
+    pub fn nodes(&self) -> &[f64] {
+        &self.nodes
+    }
+
+    /// What belongs to the coarse wavenumbers of both bodies, in rows, for those of the layers.
+    pub fn for_layers(&self, rows: &DMatrix<f64>) -> DMatrix<f64> {
+        self.long.as_ref().map_or_else(|| rows.clone(), |long| long.of_common(rows))
+    }
+
+    /// An interpolation from the coarse wavenumbers of both bodies, the first one and the weights,
+    /// from those of the layers.
+    pub fn interpolation(&self, common: (usize, &[f64])) -> (usize, Vec<f64>) {
+        match &self.long {
+            Some(long) => long.interpolation(common),
+            None => (common.0, common.1.to_vec()),
+        }
+    }
+
+    /// The factor of the share of layer number `layer` in the loads of `body` at the wavenumber `k`.
+    pub(crate) fn growth(&self, body: &Body, k: f64, layer: usize) -> f64 {
+        match &self.long {
+            Some(_) => growth(k, self.nodes[layer], (body.half, body.end.freed), body.parity),
+            None => 1.0,
+        }
+    }
+
+    /// Adds `factor` times the compliance at coarse wavenumber number `i` of both bodies to
+    /// `total`, over the line's nodes.
     pub fn add_compliance(&self, i: usize, factor: f64, total: &mut DMatrix<f64>) {
         for (body, layers) in &self.parts {
-            self.fold.add(body.parity, &layers[i].compliance, factor, total);
+            let mut add = |layer: &Layer, share: f64| {
+                self.fold.add(body.parity, &layer.compliance, factor * share, total);
+            };
+            match &self.long {
+                Some(long) if i < long.nodes().len() => {
+                    for (j, (k, layer)) in long.nodes().iter().zip(layers).enumerate() {
+                        let shape = (body.half, body.end.freed);
+                        let grown = growth(self.common[i], *k, shape, body.parity);
+                        add(layer, long.share(i, j) * grown);
+                    }
+                }
+                _ => add(&layers[i], 1.0),
+            }
         }
     }
 
@@ -72,37 +126,44 @@ mod tests {
     use super::*;
     use crate::body::EdgeModel;
 
-    /// Whatever the ends of a line are, flush or not, on either side of a body's middle: the
-    /// compliance of the mirror image of a line is the mirror image of the line's.
+    /// The compliance of the mirror image of a line is the mirror image of the line's, whatever its
+    /// ends are, on either side of a body's middle, flush or not.
     #[test]
     fn compliances_of_mirror_images_are_mirror_images() {
         let resolution = Resolution::for_tolerance(3e-2);
-        let wavenumbers = [0.02, 0.3, 2.0, 20.0];
-        for (middle, half) in [(0.0, 5.0), (-1.7, 4.9), (-4.3988041801, 9.2915775857), (1.2, 11.0)] {
-            for ends in [[-3.0, 2.0], [-0.8, 3.2 - 1e-9], [middle - half, middle + half], [middle - half, middle + 0.3]] {
-                if ends[0] < middle - half || ends[1] > middle + half { continue; }
-                for (model, nu) in [(EdgeModel::QuarterSpace, 0.1), (EdgeModel::HalfSpace, 0.1)] {
-                    let matrices = [1.0, -1.0].map(|side| {
-                        let own = if side > 0.0 { ends } else { [-ends[1], -ends[0]] };
-                        let (line, _) = resolution.contact_line(own, [None; 2], &[], false);
-                        let end = model.end(nu, None);
-                        let shape = Shape { half, nu };
-                        let stack = Stack::new(&line, (false, false), (side * middle, shape), end, (&resolution, &wavenumbers));
-                        (0..wavenumbers.len()).map(|i| {
-                            let mut total = DMatrix::zeros(line.len(), line.len());
-                            stack.add_compliance(i, 1.0, &mut total);
-                            total
-                        }).collect::<Vec<_>>()
-                    });
-                    for (i, k) in wavenumbers.iter().enumerate() {
-                        let (a, b) = (&matrices[0][i], &matrices[1][i]);
-                        let n = a.nrows();
-                        let turned = DMatrix::from_fn(n, n, |r, c| b[(n - 1 - r, n - 1 - c)]);
-                        let off = (a - &turned).amax() / a.amax();
-                        let worst = (0..n).max_by(|r, s| (a[(*r, *r)] - turned[(*r, *r)]).abs().total_cmp(&(a[(*s, *s)] - turned[(*s, *s)]).abs())).unwrap();
-                        println!("{middle} {half} {ends:?} {model} k {k}: {off:.1e} at {worst} of {n}");
+        let coarse = Panels::new(vec![0.0, 0.05, 0.5, 2.0, 20.0], 2);
+        let flush = |middle: f64, half: f64| [middle - half, middle + half];
+        for (middle, half, ends, exponents) in [
+            (0.0, 5.0, [-3.0, 2.0], [Some(0.2); 2]),
+            (0.0, 5.0, flush(0.0, 5.0), [None; 2]),
+            (-1.7, 4.9, flush(-1.7, 4.9), [None; 2]),
+            (-1.7, 4.9, [-0.8, 3.2 - 1e-9], [Some(0.2), None]),
+            (1.2, 11.0, [-9.8, 1.5], [None, Some(0.3)]),
+            (1.2, 11.0, [-3.0, 5.0], [Some(0.3), Some(0.1)]),
+        ] {
+            for model in EdgeModel::ALL {
+                let total = |side: f64| {
+                    let (mut ends, mut exponents) = (ends.map(|y| side * y), exponents);
+                    if side < 0.0 {
+                        ends.reverse();
+                        exponents.reverse();
                     }
-                }
+                    let (line, _) = resolution.contact_line(ends, exponents, &[], false);
+                    let place = (side * middle, Shape { half, nu: 0.1 });
+                    let end = model.end(0.1, None);
+                    let stack =
+                        Stack::new(&line, (false, false), place, end, (&resolution, &coarse));
+                    let mut total = DMatrix::zeros(line.len(), line.len());
+                    for i in 0..coarse.len() {
+                        stack.add_compliance(i, coarse.nodes()[i], &mut total);
+                    }
+                    total
+                };
+                let (own, other) = (total(1.0), total(-1.0));
+                let n = own.nrows();
+                let turned = DMatrix::from_fn(n, n, |i, j| other[(n - 1 - i, n - 1 - j)]);
+                let off = (&own - turned).amax() / own.amax();
+                assert!(off < 1e-9, "{middle} {half} {ends:?} {model}: {off:e}");
             }
         }
     }

@@ -102,12 +102,12 @@ impl FreeEnds {
         let resolution = Resolution::for_tolerance(TOLERANCE);
         let ends = [-half_length, half_length];
         let (axis, parity) = resolution.contact_line(ends, [None; 2], &[], symmetric);
-        let longest = bodies.iter().fold(half_length, |m: f64, b| m.max(b.half));
-        let wavenumbers = resolution.wavenumbers(longest, parity);
+        let halves: Vec<f64> = bodies.iter().map(|body| body.half).collect();
+        let wavenumbers = resolution.wavenumbers_of(&halves, parity);
         let distinct = distinct(bodies);
         let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
         let bodies = distinct.iter().map(|own| {
-            let coarse = wavenumbers.coarse().nodes();
+            let coarse = wavenumbers.coarse();
             let place = (own.middle, Shape { half: own.half, nu: own.nu });
             let [stack, mirrored] = [FREED, MIRRORED].map(|end| {
                 Stack::new(&axis, (symmetric, false), place, end, (&resolution, coarse))

@@ -189,7 +189,7 @@ impl SolvedScene {
         let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
         let open = left_open(scene, &line, &contact);
-        if soundness.is_finite() && open == [true; 2] {
+        if soundness.is_finite() && open.contains(&true) {
             let widest = contact.half_widths.iter().copied().fold(0.0, f64::max);
             let [from, to] = contact.ends;
             check_length(widest, to - if scene.is_symmetric() { -to } else { from }, WIDEST)?;
@@ -605,14 +605,14 @@ impl Trial<'_> {
     /// The bodies on a line.
     fn parts(&self, line: &Line) -> Result<Parts> {
         let (scene, resolution) = (self.scene, self.resolution);
-        let longest = scene.bodies.iter().fold(0.0, |m: f64, b| m.max(b.half));
         let symmetric = scene.is_symmetric();
         let known = scene.corner_exponents();
         let exponents = [0, 1].map(|side| known[side].filter(|_| self.powers && !line.open[side]));
         let (axis, parity) =
             resolution.contact_line(line.ends, exponents, &self.gap.kinks(), symmetric);
-        let wavenumbers = resolution.wavenumbers(longest, parity);
-        let coarse = wavenumbers.coarse().nodes();
+        let halves = [scene.bodies.block.half, scene.bodies.roller.half];
+        let wavenumbers = resolution.wavenumbers_of(&halves, parity);
+        let coarse = wavenumbers.coarse();
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
         // Bodies with the same ends and Poisson's ratio share one computation.
         let distinct =

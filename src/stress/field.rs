@@ -10,7 +10,7 @@
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
 use super::round::{LocalContact, RoundStress};
-use super::waves::{Influence, PartLoads, TractionLoads, Waves};
+use super::waves::{Influence, LongQuadrature, PartLoads, TractionLoads, Waves};
 use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
 use crate::body::{Body, Stack, transition};
 use crate::kernels::line_load::WaveStress;
@@ -124,6 +124,10 @@ type Plates = Arc<Vec<Vec<Vec<[f64; 6]>>>>;
 /// Largest number of positions y whose plate kernels are kept for other points.
 const KEPT_PLATES: usize = 128;
 
+/// Depth, in half-lengths of the body, from which on the waves that are resolved across the contact
+/// are too few.
+const FAR_BELOW: f64 = 5.0;
+
 /// Number of consecutive negligible fine wavenumbers after which the sum ends: more than a period
 /// of the oscillation of the amplitudes with the contact's width. The sum over coarse wavenumbers
 /// ends after a panel.
@@ -141,8 +145,8 @@ impl<'a> Field<'a> {
         gamma: Option<f64>,
         tolerance: f64,
     ) -> Self {
-        let (k, shares) = (wavenumbers.coarse().nodes().to_vec(), |i: usize| (i, [1.0]));
-        let central = Arc::new(Waves::new(stack, k, None, moments.clone(), shares));
+        let (k, shares) = (stack.nodes().to_vec(), |i: usize| (i, [1.0]));
+        let central = Arc::new(Waves::new(stack, k, None, stack.for_layers(moments), shares));
         let negligible = NEGLIGIBLE * tolerance;
         let all = Mutex::default();
         let counters = Counters::default();
@@ -228,34 +232,96 @@ impl<'a> Field<'a> {
         if let Some((_, waves)) = known.iter().find(|(l, _)| *l == level) {
             return waves.clone();
         }
-        let numbers = self.wavenumbers.resolving(2f64.powi(level));
-        let k = numbers.fine().nodes().to_vec();
-        let transforms = self.pressure.transforms(&k).transpose();
-        let weights = Some(numbers.weights());
-        let shares = |i: usize| numbers.interpolation(i);
-        let waves = Arc::new(Waves::new(self.stack, k, weights, transforms, shares));
+        let waves = Arc::new(self.resolved(&self.wavenumbers.resolving(2f64.powi(level))));
         known.push((level, waves.clone()));
         waves
+    }
+
+    /// The loads of all fine ones of the wavenumbers `numbers`, but for those of the first panel:
+    /// those of the layers stand for them.
+    fn resolved(&self, numbers: &Wavenumbers) -> Waves {
+        let (stack, fine) = (self.stack, numbers.fine().nodes());
+        let order = numbers.coarse().order();
+        let long = fine.partition_point(|k| *k < numbers.coarse().breaks()[1]);
+        let shares = |i: usize| stack.interpolation(numbers.interpolation(i));
+        let k = [&stack.nodes()[..order], &fine[long..]].concat();
+        let weights = [&[0.0].repeat(order), &numbers.weights()[long..]].concat();
+        let transforms = self.pressure.transforms(&k).transpose();
+        let own = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
+        let share = |i: usize| match i < order {
+            true => (0, own(i)),
+            false => shares(i - order + long),
+        };
+        let mut waves = Waves::new(stack, k, Some(&weights), transforms, share);
+        waves.long = LongQuadrature {
+            nodes: (0..long).map(|i| (fine[i], numbers.weights()[i] / PI)).collect(),
+            shares: (0..long).map(|i| shares(i).1).collect(),
+        };
+        waves
+    }
+
+    /// The body.
+    pub(super) fn stack(&self) -> &Stack {
+        self.stack
+    }
+
+    /// The pressure.
+    pub(super) fn load(&self) -> &dyn Load {
+        self.pressure
+    }
+
+    /// The same as a traction along x, if there is one.
+    pub(super) fn traction(&self) -> Option<&dyn Traction> {
+        self.traction
+    }
+
+    /// Whether there is a traction.
+    pub(super) fn slides(&self) -> bool {
+        self.traction.is_some()
+    }
+
+    /// Transition factor of the stress correction, if any.
+    pub(super) fn correction(&self) -> Option<f64> {
+        self.gamma
     }
 
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
     ///
     /// On a loaded surface or a free end face the known tractions are used.
     pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
+        self.near_or_far(y, z, xs, xs)
+    }
+
+    /// [`Field::at`], where the points with those of `places` for x decide which of them are far.
+    fn near_or_far(&self, y: f64, z: f64, xs: &[f64], places: &[f64]) -> Vec<FlatStress> {
         let z = if z < ON_SURFACE { 0.0 } else { z };
-        let remainders = self.remainders(y, z, xs);
-        xs.iter().zip(remainders).map(|(&x, s)| self.complete(x, y, z, s)).collect()
+        let far: Vec<bool> = places.iter().map(|x| self.is_far(*x, z)).collect();
+        let near = xs.iter().zip(&far).filter(|(_, far)| !**far).map(|(x, _)| *x);
+        let near: Vec<f64> = near.collect();
+        let mut remainders = self.remainders(y, z, &near).into_iter();
+        let at = |(&x, far): (&f64, bool)| match far {
+            true => self.far(x, y, z),
+            false => self.complete(x, y, z, remainders.next().expect("one of each near point")),
+        };
+        xs.iter().zip(far).map(at).collect()
     }
 
     /// [`Field::at`], with the contribution of a round surface per C / R.
     pub fn round_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<RoundStress> {
         let contact = self.local_contact(y);
-        rounded(xs, &[z], &contact, |all| vec![self.at(y, z, all)]).swap_remove(0)
+        let flat = |all: &[f64], places: &[f64]| vec![self.near_or_far(y, z, all, places)];
+        rounded(xs, &[z], &contact, flat).swap_remove(0)
     }
 
     /// [`Field::down`], with the contribution of a round surface per C / R.
     pub fn round_down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<RoundStress>> {
-        rounded(xs, zs, &self.local_contact(y), |all| self.down(all, y, zs))
+        rounded(xs, zs, &self.local_contact(y), |all, places| {
+            let far = |z: &f64| places.iter().any(|x| self.is_far(*x, *z));
+            match zs.iter().any(far) {
+                true => zs.iter().map(|&z| self.near_or_far(y, z, all, places)).collect(),
+                false => self.down(all, y, zs),
+            }
+        })
     }
 
     /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in
@@ -267,6 +333,9 @@ impl<'a> Field<'a> {
     /// such place, all of them have imaginary parts of +-pi/2. Directly below such a place the
     /// variable is ln z, which is used from some depth.
     pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<FlatStress>> {
+        if zs.iter().any(|z| xs.iter().any(|x| self.is_far(*x, *z))) {
+            return zs.iter().map(|&z| self.at(y, z, xs)).collect();
+        }
         let near =
             xs.iter().fold(f64::INFINITY, |near: f64, &x| near.min(self.smooth_within(x, y)));
         let least = if near >= SMOOTH_DEPTH { 0.0 } else { SMOOTH_DEPTH };
@@ -318,7 +387,7 @@ impl<'a> Field<'a> {
     /// variation. Each side of the contact is sampled by itself. Between shaped bodies the field
     /// varies along the contact as their profiles do, and nothing is interpolated.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<FlatStress> {
-        if self.follows_contact {
+        if self.follows_contact || self.is_far(x, z) {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         }
         let mut stresses = vec![FlatStress::default(); ys.len()];
@@ -494,7 +563,14 @@ impl<'a> Field<'a> {
     /// Stresses at (x, `y`, `z`) for each x of `xs`, less those of an endless contact of the
     /// pressure at `y`.
     fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
-        let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        if xs.is_empty() {
+            return Vec::new();
+        }
+        let mut farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        // Far below, waves vary with their length as they do far beside.
+        if !self.stack.body().end.freed && z > FAR_BELOW * self.stack.body().half {
+            farthest = farthest.max(z);
+        }
         let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
         let faded = if farthest == 0.0 {
             self.wavenumbers.coarse().order()
@@ -505,6 +581,7 @@ impl<'a> Field<'a> {
         let mut sums = vec![[[0.0; 6]; 2]; xs.len()];
         let mut fading = 0;
         let odd = self.pressure.parity_across() == Parity::Odd;
+        let long: Vec<Vec<[f64; 2]>> = xs.iter().map(|x| waves.long.factors(*x)).collect();
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {
                 target.work.faded = ((waves.k.len() - i) * target.loads()) as u64;
@@ -516,13 +593,20 @@ impl<'a> Field<'a> {
             // A small amplitude stays small only if oscillations across the contact are resolved.
             let small = k > 1.0 && k * largest < self.negligible;
             fading = if small { fading + 1 } else { 0 };
-            for (sum, x) in sums.iter_mut().zip(xs) {
-                let (sin, cos) = if *x == 0.0 { (0.0, 1.0) } else { (k * x).sin_cos() };
+            for ((sum, x), long) in sums.iter_mut().zip(xs).zip(&long) {
+                let [cos, sin] = match long.get(i) {
+                    Some(factors) => *factors,
+                    None if *x == 0.0 => [weight, 0.0],
+                    None => {
+                        let (sin, cos) = (k * x).sin_cos();
+                        [weight * cos, weight * sin]
+                    }
+                };
                 // An odd pressure is an even one a quarter of the wave farther on.
                 let [others, shears] = if odd { [sin, -cos] } else { [cos, sin] };
-                add_wave(&mut sum[0], weight, &pressure, others, shears);
+                add_wave(&mut sum[0], &pressure, others, shears);
                 if let Some(traction) = &traction {
-                    add_wave(&mut sum[1], weight, traction, sin, cos);
+                    add_wave(&mut sum[1], traction, sin, cos);
                 }
             }
         }
@@ -537,9 +621,9 @@ impl<'a> Field<'a> {
 
 /// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times
 /// `shears`, all others times `others`.
-fn add_wave(sum: &mut [f64; 6], weight: f64, amplitudes: &[f64; 6], others: f64, shears: f64) {
+fn add_wave(sum: &mut [f64; 6], amplitudes: &[f64; 6], others: f64, shears: f64) {
     for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
-        *s += weight * a * if StressTensor::ODD_IN_X[i] { shears } else { others };
+        *s += a * if StressTensor::ODD_IN_X[i] { shears } else { others };
     }
 }
 
@@ -880,21 +964,23 @@ fn in_body(stress: &WaveStress) -> [f64; 6] {
 }
 
 /// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
-/// gives those of the flat body at each of `zs` for a list of x, under the plane `contact`. The
-/// slopes along x are difference quotients, whose points share all sums.
+/// gives those of the flat body at each of `zs` for a list of x, and for the place that each of them
+/// belongs to, under the plane `contact`. The slopes along x are difference quotients, whose points
+/// share all sums.
 fn rounded(
     xs: &[f64],
     zs: &[f64],
     contact: &LocalContact,
-    flat: impl Fn(&[f64]) -> Vec<Vec<FlatStress>>,
+    flat: impl Fn(&[f64], &[f64]) -> Vec<Vec<FlatStress>>,
 ) -> Vec<Vec<RoundStress>> {
     // Points at x = 0 and on the surface are not shifted along x.
     let sloped = |x: f64| x != 0.0 && zs.iter().any(|z| *z > 0.0);
-    let all: Vec<f64> = xs
-        .iter()
-        .flat_map(|&x| if sloped(x) { vec![x, x - STEP, x + STEP] } else { vec![x] })
-        .collect();
-    let rows = zs.iter().zip(flat(&all));
+    let points = |&x: &f64| match sloped(x) {
+        true => vec![(x, x), (x - STEP, x), (x + STEP, x)],
+        false => vec![(x, x)],
+    };
+    let (all, places): (Vec<f64>, Vec<f64>) = xs.iter().flat_map(points).unzip();
+    let rows = zs.iter().zip(flat(&all, &places));
     rows.map(|(&z, row)| {
         let mut row = row.into_iter();
         let mut next = || row.next().expect("one for each of all");

@@ -4,6 +4,7 @@ mod answer;
 mod body_field;
 mod critical;
 pub mod curves;
+mod far;
 pub mod field;
 mod flat;
 pub mod grid;

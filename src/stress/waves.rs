@@ -21,8 +21,36 @@ pub(super) struct Waves {
     pub contact: DMatrix<f64>,
     /// Whether they are valid for the plane x = 0 only, where what is odd in x vanishes.
     pub central: bool,
+    /// The quadrature of the long waves, which come first.
+    pub long: LongQuadrature,
     /// The loads of each part of the pressure, in the order of [`Stack::parts`].
     pub parts: Vec<PartLoads>,
+}
+
+/// The quadrature over the first panel of wavenumbers, for points beside the plane x = 0. Stresses
+/// tend to a limit for long waves, and those at a few wavenumbers are interpolated; loads grow
+/// without a limit, and what is left of them in a stress would be the interpolation's error.
+#[derive(Debug, Clone, Default)]
+pub(super) struct LongQuadrature {
+    /// The wavenumbers of the quadrature, and their weights over pi.
+    pub nodes: Vec<(f64, f64)>,
+    /// The shares in each of them of the first waves' stresses.
+    pub shares: Vec<Vec<f64>>,
+}
+
+impl LongQuadrature {
+    /// Factors of the first waves' stresses at `x`, of those with cos(k x) and those with sin(k x).
+    pub fn factors(&self, x: f64) -> Vec<[f64; 2]> {
+        let mut factors = vec![[0.0; 2]; self.shares.first().map_or(0, Vec::len)];
+        for ((k, weight), shares) in self.nodes.iter().zip(&self.shares) {
+            let (sin, cos) = (k * x).sin_cos();
+            for (factor, share) in factors.iter_mut().zip(shares) {
+                factor[0] += weight * share * cos;
+                factor[1] += weight * share * sin;
+            }
+        }
+        factors
+    }
 }
 
 /// The loads of one part of the pressure, even or odd about the body's middle.
@@ -108,7 +136,8 @@ impl Waves {
         let shares: Vec<_> = (0..k.len()).map(shares).collect();
         let parts = stack.parts().iter().map(|(body, layers)| {
             let own = stack.fold.part(body.parity, &contact);
-            PartLoads::new(body, &k, &own, layers, &shares)
+            let grown = |wave: usize, layer: usize| stack.growth(body, k[wave], layer);
+            PartLoads::new((body, &grown), &k, &own, layers, &shares)
         });
         Self {
             weights: match weights {
@@ -116,6 +145,7 @@ impl Waves {
                 None => vec![1.0 / PI; k.len()],
             },
             central: weights.is_none(),
+            long: LongQuadrature::default(),
             parts: parts.collect(),
             k,
             contact,
@@ -124,9 +154,10 @@ impl Waves {
 }
 
 impl PartLoads {
-    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`].
+    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`]; `grown` as
+    /// in [`nodal_loads`].
     fn new<S: AsRef<[f64]>>(
-        body: &Body,
+        (body, grown): (&Body, &dyn Fn(usize, usize) -> f64),
         k: &[f64],
         contact: &DMatrix<f64>,
         layers: &[Layer],
@@ -139,10 +170,11 @@ impl PartLoads {
             let waves = k.iter().zip(face.column_iter()).take(ends);
             waves.map(|(k, q)| body.plate_transform(*k, q.as_slice())).collect::<Vec<_>>()
         };
-        let (surface, face) = nodal_loads(body, contact, layers, shares, Under::Pressure);
+        let loads = |under| nodal_loads(body, contact, layers, (shares, grown), under);
+        let (surface, face) = loads(Under::Pressure);
         let traction = body.along.as_ref().map(|_| {
             let own = contact_loads(body, contact);
-            let (surface, face) = nodal_loads(body, contact, layers, shares, Under::Traction);
+            let (surface, face) = loads(Under::Traction);
             TractionLoads {
                 own: blocks(body, (k, 0), &own, &DMatrix::zeros(body.face.axis.len(), k.len())),
                 freeing: blocks(body, (k, ends), &surface, &face),
@@ -192,12 +224,13 @@ fn contact_loads(body: &Body, contact: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The pressures at the nodes of the surface and of the end faces, a column for each wavenumber,
-/// `under` the transforms `contact`; see [`Waves::new`].
+/// `under` the transforms `contact`; see [`Waves::new`]. `grown` is the factor of a wavenumber's
+/// share of a layer.
 fn nodal_loads<S: AsRef<[f64]>>(
     body: &Body,
     contact: &DMatrix<f64>,
     layers: &[Layer],
-    shares: &[(usize, S)],
+    (shares, grown): (&[(usize, S)], &dyn Fn(usize, usize) -> f64),
     under: Under,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
@@ -214,7 +247,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
         let waves = start..shares.partition_point(|s| s.0 <= at);
         let p = DMatrix::from_fn(contact.ncols(), waves.len(), |node, i| {
             let (first, shares) = &shares[start + i];
-            shares.as_ref()[at - first] * contact[(start + i, node)]
+            grown(start + i, at) * shares.as_ref()[at - first] * contact[(start + i, node)]
         });
         // For short waves the deep nodes of an end face carry no load.
         let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
@@ -405,7 +438,7 @@ mod tests {
             (true, false),
             (0.0, shape),
             EdgeModel::QuarterSpace.end(0.3, None),
-            (&resolution, numbers.coarse().nodes()),
+            (&resolution, numbers.coarse()),
         );
         let (body, layers) = &stack.parts()[0];
         let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.weights());
