@@ -146,6 +146,18 @@ fn records_solutions_and_given_limits_are_taken() {
     let own = errors(&folder.path().join("c/errors.csv"));
     let own = own.iter().find(|(place, _)| place.starts_with("quarter-space")).unwrap();
     assert!(own.1 < 1e-3, "{own:?}");
+    // What no limit takes is refused: a load that is met says nothing of curves.
+    let load =
+        "[[gate]]\nname = \"load\"\nmethod = \"quarter-space\"\nquantity = \"load\"\nlimit = 1\n";
+    fs::write(folder.path().join("load.toml"), load).unwrap();
+    for (arguments, wanted) in [
+        ([&*pressure, "--exclude-pressure", "0.1"], "add 0.2 to --exclude-pressure"),
+        (["si.csv", "--gates", "load.toml"], "no gate of quarter-space takes any of its curves"),
+    ] {
+        let all = [&["compare", "case.toml", "--out", "no"], &arguments[..]].concat();
+        let message = refused(&mut edgeline(folder.path(), &all));
+        assert!(message.contains(wanted) && message.contains(arguments[0]), "{message}");
+    }
     // Given limits are not widened, and one that selects nothing fails.
     let gate = |measure: &str, limit: f64| {
         format!(
