@@ -176,6 +176,43 @@ fn a_second_reference_is_shown_beside_the_first_that_errors_are_taken_against() 
     assert!(page::markdown(&two).unwrap().contains("| another-code | unknowns |"));
 }
 
+/// The published method is a source without being one of the models: it has a column, too.
+#[test]
+fn times_stand_under_the_names_of_their_sources() {
+    let mut run = files(Twist::Published);
+    // One time for each source, so that none can stand for another.
+    for row in &mut run.study {
+        (row.seconds, row.seconds_spread) = (Some(1.5 + row.source.name().len() as f64), None);
+    }
+    let [html, markdown] = [page::html(&run).unwrap(), page::markdown(&run).unwrap()];
+    let section = markdown.split("## Run time").nth(1).unwrap();
+    let lines: Vec<&str> = section.lines().filter(|l| l.starts_with('|')).take(11).collect();
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect()
+    };
+    let head = cells(lines[0]);
+    let names: Vec<&str> = run.sources().into_iter().map(Source::title).collect();
+    assert_eq!(names.len(), 6);
+    assert_eq!(head[1..7], *names);
+    for line in &lines[1..] {
+        assert_eq!(cells(line).len(), head.len(), "{line}");
+    }
+    let caption = html.split("Time a case.").nth(1).unwrap();
+    let html_rows: Vec<&str> = caption.split("<tr>").skip(1).take(10).collect();
+    let heads = html_rows[0].matches("</th>").count();
+    for (line, row) in lines[2..].iter().zip(&html_rows[1..]) {
+        let own = cells(line);
+        assert_eq!(row.matches("<td").count(), heads, "{row}");
+        for (i, source) in run.sources().into_iter().enumerate() {
+            let time = run.row(&own[0], source).unwrap().seconds.unwrap();
+            let shown = crate::base::number::duration(time);
+            assert_eq!(own[i + 1], shown, "{line}");
+            let cell = row.split("<td").nth(i + 2).unwrap();
+            assert_eq!(cell, format!(">{shown}</td>"), "{row}");
+        }
+    }
+}
+
 #[test]
 fn plots_are_well_formed_and_hold_every_source() {
     let plots = plots::all(&files(Twist::None));
