@@ -80,7 +80,21 @@ impl Case {
 
     /// Refuses profiles without the numbers of their kind, with others, or that no body can have.
     pub(super) fn check_profiles(&self) -> Result<()> {
-        BodyKind::ALL.into_iter().try_for_each(|body| self.check_profile(body))
+        BodyKind::ALL.into_iter().try_for_each(|body| self.check_profile(body))?;
+        let of_both = |body: BodyKind| {
+            self.profile_spec(body).map(|spec| spec.kind).filter(|kind| kind.is_of_both())
+        };
+        let [Some(block), Some(roller)] = BodyKind::ALL.map(of_both) else { return Ok(()) };
+        Err(Error::Value {
+            key: "block.profile.kind".into(),
+            value: format!("{:?}", block.name()),
+            reason: format!(
+                "its drop is that of both bodies together, as that of the roller's {} profile is: \
+                 added, they are too deep",
+                roller.name()
+            ),
+            remedy: "give it to one of the bodies alone".into(),
+        })
     }
 
     fn check_profile(&self, body: BodyKind) -> Result<()> {

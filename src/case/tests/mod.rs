@@ -181,6 +181,33 @@ fn errors_name_key_line_and_remedy() {
     assert!(message.contains("f.toml: there is no load"), "{message}");
 }
 
+/// The case of [`LOADED`] with these profiles.
+fn profiled(roller: &str, block: &str) -> crate::base::Result<Case> {
+    let profile = |body: &str, keys: &str| match keys {
+        "" => String::new(),
+        keys => format!("[{body}.profile]\n{keys}\n"),
+    };
+    parse(&format!("{LOADED}{}{}", profile("roller", roller), profile("block", block)))
+}
+
+#[test]
+fn a_drop_of_both_bodies_together_is_not_given_twice() {
+    let kinds = [
+        "kind = \"lundberg\"\ndesign_force_n = 500",
+        "kind = \"johns-gohar\"\ndesign_force_n = 500",
+        "kind = \"iso-16281\"",
+        "kind = \"fujiwara\"\ndesign_force_n = 500\nk1 = 1.5\nk2 = 0.6\nzm_m = 1e-5",
+    ];
+    for own in kinds {
+        for other in kinds {
+            let said = profiled(own, other).unwrap_err().to_string();
+            assert!(said.contains("block.profile.kind") && said.contains("both bodies"), "{said}");
+        }
+        profiled(own, "").unwrap();
+        profiled("kind = \"crown\"\nradius_m = 10", own).unwrap();
+    }
+}
+
 #[test]
 fn missing_file_names_the_built_in_cases() {
     let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
