@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Ratio of length and diameter up to which the profile of ISO/TS 16281 curves from the middle.
 const SHORT: f64 = 2.5;
 
+/// Johns and Gohar's factor of the Hertz half-width.
+const JOHNS_GOHAR: f64 = 0.3033;
+
 /// Most of the diameter that a profile may drop at the body's end.
 const DEEPEST: f64 = 0.5;
 
@@ -44,7 +47,7 @@ impl Case {
             ProfileKind::JohnsGohar => {
                 let radius = self.equivalent_radius_m();
                 let b = HertzScales::new(e_star, radius, length, force).c_m;
-                whole(amplitude, (1.0 - 0.3033 * b / half).max(f64::MIN_POSITIVE))
+                whole(amplitude, 1.0 - JOHNS_GOHAR * b / half)
             }
             ProfileKind::Iso16281 if length <= SHORT * diameter => whole(0.00035 * diameter, 1.0),
             ProfileKind::Iso16281 => {
@@ -158,6 +161,9 @@ impl Case {
             }
             _ => {}
         }
+        if spec.kind == ProfileKind::JohnsGohar {
+            self.check_design_force(body, spec)?;
+        }
         let profile = self.profile(body).expect("the body has one");
         // What has no limit at the end is judged just before it.
         let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
@@ -170,5 +176,25 @@ impl Case {
             return refuse("kind", value, reason, "check the units of the profile (m, N)".into());
         }
         Ok(())
+    }
+
+    /// Refuses a force under which Johns and Gohar's profile would not drop: its Hertz half-width b
+    /// is at most a / 0.3033, b^2 = 4 Q R / (pi L E*).
+    fn check_design_force(&self, body: BodyKind, spec: &ProfileSpec) -> Result<()> {
+        let length = self.length_m(body);
+        let widest = 0.5 * length / JOHNS_GOHAR;
+        let most = PI * length * self.contact_modulus() * widest * widest
+            / (4.0 * self.equivalent_radius_m());
+        match spec.design_force_n {
+            Some(force) if force >= most => Err(Error::Value {
+                key: format!("{}.profile.design_force_n", body.name()),
+                value: format!("{force:e}"),
+                reason: "1 - 0.3033 b / a is not above zero, b the Hertz half-width under this \
+                         force and a half of the length: such a profile does not drop"
+                    .into(),
+                remedy: format!("give less than {most:.4e} N, the force that the body carries"),
+            }),
+            _ => Ok(()),
+        }
     }
 }

@@ -208,6 +208,22 @@ fn a_drop_of_both_bodies_together_is_not_given_twice() {
     }
 }
 
+/// Beyond the force whose Hertz half-width b is a / 0.3033 the profile would be a straight line.
+#[test]
+fn a_force_under_which_johns_and_gohars_profile_does_not_drop_is_refused() {
+    let of =
+        |force: f64| profiled(&format!("kind = \"johns-gohar\"\ndesign_force_n = {force:e}"), "");
+    let (case, force) = (of(500.0).unwrap(), 500.0);
+    // b grows with the root of the force, and at the limit the drop vanishes.
+    let b = Case { load: Load { force_n: force, ..case.load }, ..case.clone() }.hertz().c_m;
+    let most = force * (10e-3 / 0.3033 / b).powi(2);
+    let profile = of(0.9999 * most).unwrap().profile(crate::base::BodyKind::Roller).unwrap();
+    assert!(profile.drop(10e-3) > 0.0);
+    let said = of(1.0001 * most).unwrap_err().to_string();
+    assert!(said.contains("roller.profile.design_force_n"), "{said}");
+    assert!(said.contains(&format!("less than {most:.4e} N")), "{said}");
+}
+
 #[test]
 fn missing_file_names_the_built_in_cases() {
     let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
