@@ -403,6 +403,24 @@ fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
     }
 }
 
+/// Numbers that do not follow from W, S_l and L_r are corrected where they stand.
+#[test]
+fn a_case_by_factors_keeps_the_remedies_of_its_other_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("heights.csv"), "0,0\n0,2\n").unwrap();
+    let surface = "[surface]\nheights = \"heights.csv\"\ndx_m = 1e-6\ndy_m = 1e-6\n";
+    for (more, wanted) in [
+        (surface, "the heights range over 2e0 m, more than a tenth of the roller's radius"),
+        (surface, "give heights in metres"),
+        ("eccentricity_m = 1.0\n", "f.toml:13: dimensionless.eccentricity_m = 1.0 is not valid"),
+        ("eccentricity_m = 1.0\n", "place it between the ends of the overlap"),
+    ] {
+        let text = format!("{DIMENSIONLESS}{more}");
+        let said = Case::parse(&text, &folder.path().join("f.toml")).unwrap_err().to_string();
+        assert!(said.contains(wanted) && !said.contains("follows from W"), "{said}");
+    }
+}
+
 /// What is written of a case can stand in any folder; its files are what stands in them, not where.
 #[test]
 fn cases_with_files_are_read_from_any_folder_and_known_by_their_content() {
