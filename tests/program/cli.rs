@@ -522,6 +522,18 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
+        // Micrometres typed as metres.
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 10\ndy_m = 3e-5",
+            "surface.dx_m = 1e1 is not valid: neighbouring heights are further apart than the contact is wide, \
+             5.046e-4 m; give the distance in metres",
+        ),
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 1e-5\ndy_m = 30",
+            "than the contact is long, 2.523e-3 m",
+        ),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
         ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
         ("heigths = \"waves.npy\"", steps, "did you mean heights?"),
