@@ -5,7 +5,7 @@ use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
 use super::values::{
-    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine,
+    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine, unsuited,
 };
 use crate::base::number::duration;
 use crate::base::{Error, Result};
@@ -274,16 +274,6 @@ fn pictures<D>(
         date: now(),
     };
     page::of_solution(case, &label, found)
-}
-
-/// An option that does not suit the others.
-fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
-    Error::Value {
-        key: format!("--{option}"),
-        value: "given".into(),
-        reason: reason.into(),
-        remedy: remedy.into(),
-    }
 }
 
 /// Prints what was found.
