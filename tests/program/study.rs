@@ -146,6 +146,7 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         (vec!["study", "--methods", "halfspace"], "halfspace"),
         (vec!["study", "--exclude=-1"], "--exclude"),
         (vec!["study", "--reference", &path("nowhere"), "--out", &path("o")], "nowhere"),
+        (vec!["study", "--reference", ".", "--out", &path("o")], "holds no record; give a folder"),
         // What would change nothing.
         (vec!["study", "--size", "0"], "--size = given is not valid"),
         (vec!["study", "--ranks", "0"], "add --fem live, or leave it out"),
