@@ -168,7 +168,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
     }
-    more.extend(pictures(case, &found, &arguments)?);
+    more.extend(pictures(case, &found, None, &arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     solution::write(&found, &options, more, &arguments.out)?;
     tell(case, &found, &arguments)
@@ -253,25 +253,27 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
         let layers = layers_on_cells(case, options, &found.pressure, &arguments.layers)?;
         more.extend(cells::layers(&found, &layers));
     }
-    more.extend(pictures(case, &found.solution, arguments)?);
+    more.extend(pictures(case, &found.solution, Some(cells.tolerance), arguments)?);
     solution::write(&found.solution, options, more, &arguments.out)?;
     tell(case, &found.solution, arguments)
 }
 
-/// The pictures and the page, if they are asked for.
+/// The pictures and the page, if they are asked for; `residual` is that of cells.
 fn pictures<D>(
     case: &Case,
     found: &Solution<D>,
+    residual: Option<f64>,
     arguments: &Arguments,
 ) -> Result<Vec<(String, Vec<u8>)>> {
     if !arguments.plots {
         return Ok(Vec::new());
     }
-    let engine = if arguments.engine(case) == Engine::Cells { " on uniform cells" } else { "" };
+    let engine = if residual.is_some() { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
         program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
         date: now(),
+        residual,
     };
     page::of_solution(case, &label, found)
 }

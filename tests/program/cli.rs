@@ -512,6 +512,10 @@ fn a_measured_surface_is_pressed_on_cells() {
         serde_json::from_str(&std::fs::read_to_string(more.join("layers.json")).unwrap()).unwrap();
     assert_eq!(layers["layers"][1]["z_m"], 2e-4);
     assert!(layers["critical"]["value_pa"].as_f64().unwrap() > 1e8);
+    // The case's tolerance has no part on cells.
+    let page = std::fs::read_to_string(more.join("summary.html")).unwrap();
+    assert!(page.contains("Relative residual asked for") && page.contains("1e−8"), "{page}");
+    assert!(!page.contains("olerance"), "{page}");
     for plot in ["plot-heights.png", "plot-peak-block.svg", "plot-pressure-map.png"] {
         assert!(more.join(plot).is_file(), "{plot}");
     }
