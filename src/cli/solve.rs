@@ -1,6 +1,6 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::output::{Exit, print, print_json, say};
+use super::output::{Exit, print, print_json, say, wrote};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
@@ -14,7 +14,7 @@ use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
+    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary, check_cells,
     check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
 };
 use crate::stress::BodyKind;
@@ -170,8 +170,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     more.extend(pictures(case, &found, None, &arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
-    solution::write(&found, &options, more, &arguments.out)?;
-    tell(case, &found, &arguments)
+    let names = solution::write(&found, &options, more, &arguments.out)?;
+    tell(case, &found, &names, &arguments)
 }
 
 /// What the slices of ISO/TS 16281 make of the ends, in words.
@@ -254,8 +254,8 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
         more.extend(cells::layers(&found, &layers));
     }
     more.extend(pictures(case, &found.solution, Some(cells.tolerance), arguments)?);
-    solution::write(&found.solution, options, more, &arguments.out)?;
-    tell(case, &found.solution, arguments)
+    let names = solution::write(&found.solution, options, more, &arguments.out)?;
+    tell(case, &found.solution, &names, arguments)
 }
 
 /// The pictures and the page, if they are asked for; `residual` is that of cells.
@@ -278,8 +278,13 @@ fn pictures<D>(
     page::of_solution(case, &label, found)
 }
 
-/// Prints what was found.
-fn tell<D: Serialize>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> Result<Exit> {
+/// Prints what was found, and the `names` of the files.
+fn tell<D: Serialize>(
+    case: &Case,
+    found: &Solution<D>,
+    names: &[String],
+    arguments: &Arguments,
+) -> Result<Exit> {
     if !found.summary.converged {
         say(&format!(
             "warning: the contact changed by more than its tolerance until the last of its {} iterations \
@@ -290,7 +295,7 @@ fn tell<D: Serialize>(case: &Case, found: &Solution<D>, arguments: &Arguments) -
     if arguments.json {
         print_json(&found.summary)?;
     } else {
-        print(&text(case, found, arguments))?;
+        print(&format!("{}{}\n", text(case, &found.summary), wrote(names, &arguments.out)))?;
     }
     Ok(Exit::Done)
 }
@@ -330,9 +335,7 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
 }
 
 /// The short summary for a reader.
-fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
-    let pressure = if solution::writes_pressure(&found.cells) { " pressure.csv," } else { "" };
-    let found = &found.summary;
+fn text<D>(case: &Case, found: &Summary<D>) -> String {
     let (factors, hertz) = (case.factors(), found.hertz);
     let p0 = hertz.p0_pa;
     let mut lines = vec![
@@ -367,17 +370,6 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
         found.iterations,
         found.load_error_rel,
         duration(found.seconds.total)
-    ));
-    let points = if arguments.points.is_some() { ", points.csv" } else { "" };
-    let field = match (arguments.field, arguments.engine(case)) {
-        (true, _) => ", the fields (*.vtr) and their contours",
-        (false, Engine::Cells) => ", pressure.npy, axes.json",
-        (false, Engine::Line) => "",
-    };
-    let plots = if arguments.plots { ", pictures and summary.html" } else { "" };
-    lines.push(format!(
-        "wrote summary.json,{pressure} line_load.csv, curves.csv{points}{field}{plots} into {}",
-        arguments.out.display()
     ));
     lines.join("\n") + "\n"
 }

@@ -1,6 +1,6 @@
 //! The command line: exit codes, messages, files.
 
-use crate::support::{edgeline, files, number, rows};
+use crate::support::{edgeline, files, number, rows, succeeded};
 use serde_json::Value;
 use std::path::Path;
 
@@ -558,6 +558,40 @@ fn a_measured_surface_is_pressed_on_cells() {
         assert!(said.contains("smooth"), "{said}");
     }
     assert!(!folder.path().join("no").exists());
+}
+
+/// The last line names every file of a run, pictures in two formats once.
+#[test]
+fn the_last_line_names_all_files_that_were_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [line, cells] = ["--tolerance=1e-1", "--cells=16,32"];
+    for arguments in [
+        &["solve", "flush-short", line, "--laminae", "30", "--plots"][..],
+        &["solve", "flush-short", line, "--uncertain", "load_n=5%", "--samples", "8"],
+        &["solve", "flush-short", line, "--field", "--field-points", "3,3,3"],
+        &["solve", "flush-short", "--engine=cells", cells, "--loads=200", "--layers=1e-4"],
+        &["fatigue", "flush-short", line, "--places", "3,3"],
+    ] {
+        let output = succeeded(&mut edgeline(
+            folder.path(),
+            &[arguments, &["--method", "half-space", "--out", "o"]].concat(),
+        ));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let last = text.lines().last().unwrap();
+        let names = last.strip_prefix("wrote ").unwrap().strip_suffix(" into o").unwrap();
+        let both = |name: &str| match name.strip_suffix(".{svg,png}") {
+            Some(stem) => vec![format!("{stem}.png"), format!("{stem}.svg")],
+            None => vec![name.to_string()],
+        };
+        let mut named: Vec<String> = names.split(", ").flat_map(both).collect();
+        named.sort();
+        let out = folder.path().join("o");
+        // What the program keeps for itself is hidden.
+        let mut written = files(&out);
+        written.retain(|name| !name.starts_with('.'));
+        assert_eq!(named, written, "{arguments:?}");
+        std::fs::remove_dir_all(out).unwrap();
+    }
 }
 
 #[test]
