@@ -7,7 +7,7 @@ use super::uncertain_options::UncertainOptions;
 use super::values::{
     checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine, unsuited,
 };
-use crate::base::number::duration;
+use crate::base::number::{duration, significant};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Key};
@@ -340,14 +340,18 @@ fn text<D>(case: &Case, found: &Summary<D>) -> String {
     let p0 = hertz.p0_pa;
     let mut lines = vec![
         format!(
-            "{} by {}: W {:.4e}, S_l {:.4}, L_r {:.4}",
-            found.case, found.method, factors.load, factors.slenderness, factors.length_ratio
+            "{} by {}: W {:.4e}, S_l {}, L_r {}",
+            found.case,
+            found.method,
+            factors.load,
+            significant(factors.slenderness, 5),
+            significant(factors.length_ratio, 5)
         ),
         format!(
-            "  load {:.6} N, half-width C {:.4} mm, p0 {:.1} MPa",
-            found.load_n,
-            hertz.c_m * 1e3,
-            p0 * 1e-6
+            "  load {} N, half-width C {} mm, p0 {} MPa",
+            significant(found.load_n, 6),
+            significant(hertz.c_m * 1e3, 5),
+            significant(p0 * 1e-6, 5)
         ),
         format!(
             "  pressure {:.4} p0 at the centre; largest mean of a cell {:.4} p0 at x = {:.3} C, y = {:.3} C",

@@ -560,6 +560,31 @@ fn a_measured_surface_is_pressed_on_cells() {
     assert!(!folder.path().join("no").exists());
 }
 
+/// Small bodies have digits, too.
+#[test]
+fn the_summary_of_a_small_case_has_no_zeros() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = "name = \"small\"\nroller = { radius_m = 1e-6, young_pa = 1e6, poisson = 0.3 }\n\
+                block = { young_pa = 1e6, poisson = 0.3 }\n\
+                dimensionless = { W = 1e-4, S_l = 5, L_r = 1 }\n";
+    std::fs::write(folder.path().join("small.toml"), case).unwrap();
+    let solve = ["solve", "small.toml", "--tolerance=1e-1", "--method", "half-space"];
+    let output = succeeded(&mut edgeline(folder.path(), &solve));
+    let text = String::from_utf8(output.stdout).unwrap();
+    // C = 2 R sqrt(W / pi), p0 = E* sqrt(W / pi), the load W E* R L with L = 10 C.
+    let root = (1e-4 / std::f64::consts::PI).sqrt();
+    let e_star = 1e6 / 1.82;
+    let [c, p0] = [2e-6 * root, e_star * root];
+    let load = 1e-4 * e_star * 1e-6 * 10.0 * c;
+    for (name, value, unit) in [("load", load, "N"), ("C", c * 1e3, "mm"), ("p0", p0 * 1e-6, "MPa")]
+    {
+        let shown = text.split(&format!("{name} ")).nth(1).unwrap();
+        let shown = shown.split(&format!(" {unit}")).next().unwrap();
+        let found: f64 = shown.parse().unwrap();
+        assert!((found / value - 1.0).abs() < 1e-4, "{name}: {text}");
+    }
+}
+
 /// The last line names every file of a run, pictures in two formats once.
 #[test]
 fn the_last_line_names_all_files_that_were_written() {
