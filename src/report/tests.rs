@@ -2,18 +2,19 @@
 
 use super::study_files::StudyFiles;
 use super::study_rows::EffectRow;
-use super::study_summary::{CaseMethod, FemOrigin};
+use super::study_summary::{CaseMethod, FemOrigin, StudySummary};
 use super::summarise::Context;
 use super::*;
 use crate::body::EdgeModel;
 use crate::case::Study;
 use crate::solve::{Avoided, WorkSummary};
-use crate::study::bench::Machine;
+use crate::study::bench::{Against, Machine, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::response::Response;
 use crate::study::synthetic::{self, Twist};
+use crate::study::timing::Ratio;
 use crate::study::verification::{self, Convergence, Finding, VerificationRow};
-use crate::study::{Source, StudyRun};
+use crate::study::{Engine, Source, StudyRun};
 use std::path::Path;
 
 /// The differences of a run's quarter-space, whose refined solution is off by 1e-4 p0.
@@ -174,6 +175,37 @@ fn a_second_reference_is_shown_beside_the_first_that_errors_are_taken_against() 
     let html = page::html(&two).unwrap();
     assert!(html.contains("another-code ran on") && html.contains("FEM ran on"));
     assert!(page::markdown(&two).unwrap().contains("| another-code | unknowns |"));
+}
+
+/// What is on record about the published method is said where it ran and was timed.
+#[test]
+fn the_time_of_the_published_method_is_said_of_a_run_that_timed_it() {
+    let mut summary = files(Twist::Published).summary;
+    let ratio = Ratio { value: 9e3, plus_minus: 90.0 };
+    summary.published_speedups = vec![Speedup {
+        case: "a".to_string(),
+        level: 0.05,
+        against: Against::Fem,
+        engine: Engine::fenicsx(),
+        size: 1.0,
+        unknowns: None,
+        fem_error: 0.01,
+        fem_seconds: (9e3, 90.0),
+        tolerance: 8192.0,
+        model_error: 0.05,
+        model_seconds: (1.0, 0.0),
+        ratio,
+    }];
+    let said = |summary: &StudySummary| {
+        let all = verdict::sentences(summary);
+        all.into_iter().find(|sentence| sentence.contains("times faster"))
+    };
+    let text = said(&summary).unwrap();
+    assert!(text.contains("the published method on uniform cells is 9,000 ± 90"), "{text}");
+    summary.published.as_mut().unwrap().seconds = None;
+    assert_eq!(said(&summary), None);
+    summary.published = None;
+    assert_eq!(said(&summary), None);
 }
 
 /// The published method is a source without being one of the models: it has a column, too.
