@@ -152,6 +152,7 @@ fn records_solutions_and_given_limits_are_taken() {
     fs::write(folder.path().join("load.toml"), load).unwrap();
     for (arguments, wanted) in [
         ([&*pressure, "--exclude-pressure", "0.1"], "add 0.2 to --exclude-pressure"),
+        (["/dev/null", "--gates", "/dev/null"], ": holds no gate; add [[gate]] tables"),
         (["si.csv", "--gates", "load.toml"], "no gate of quarter-space takes any of its curves"),
     ] {
         let all = [&["compare", "case.toml", "--out", "no"], &arguments[..]].concat();
