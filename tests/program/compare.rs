@@ -197,7 +197,16 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         ("x_m,y_m\n".into(), "has no column of a stress or a pressure"),
         ("x_m,y_m,p_pa,cpress_pa\n".into(), "columns 'p_pa' and 'cpress_pa' are the same thing"),
         ("x_m,y_m,p_pa\n".into(), "holds no points"),
-        ("x_m,y_m,p_pa\n0,7,0\n".into(), "has no point on the contact"),
+        ("x_m,y_m,p_pa\n0,3e-3,0\n".into(), "has no point on the contact"),
+        ("x_m,y_m,p_pa\n0,0,1e9\n0,7,0\n".into(), ":3: in our axes y = 7e0 m is outside the block"),
+        (
+            "# length_unit: m\n# length_unit: mm\nx,y,p_pa\n".into(),
+            ":2: length_unit is stated twice",
+        ),
+        (
+            "# body: block\nx_m,y_m,p_pa\n0,0,1e9\n".into(),
+            "states a body, but a pressure is that of both",
+        ),
         ("# length_unit: ft\nx,y,p_pa\n".into(), ":1: length_unit cannot be 'ft': give m, cm, mm"),
         (
             "# lenght_unit: mm\nx,y,p_pa\n".into(),
@@ -212,8 +221,10 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         assert!(message.contains("bad.csv") && message.contains(wanted), "{text}{message}");
     }
     fs::copy(folder.path().join("si.csv"), folder.path().join("mirror.csv")).unwrap();
+    fs::write(folder.path().join("middle.csv"), "x_m,y_m,p_pa\n0,0,2e9\n").unwrap();
     for (arguments, wanted) in [
         (["si.csv", "si.csv"].to_vec(), "name = si is not valid"),
+        (["middle.csv", "--body", "block"].to_vec(), "--body = given is not valid: a pressure"),
         (["mirror.csv"].to_vec(), "is called like a model or a code"),
         (["si.csv", "--axes", "x y"].to_vec(), "--axes = x y is not valid"),
     ] {
