@@ -103,32 +103,11 @@ impl Case {
     fn check_profile(&self, body: BodyKind) -> Result<()> {
         let Some(spec) = self.profile_spec(body) else { return Ok(()) };
         let place = format!("{}.profile", body.name());
+        check_numbers(spec, &place)?;
         let refuse = |key: &str, value: String, reason: String, remedy: String| {
             Err(Error::Value { key: format!("{place}.{key}"), value, reason, remedy })
         };
-        let (kind, wanted) = (spec.kind.name(), spec.kind.keys());
-        let takes = match wanted {
-            [] => "no number".to_string(),
-            keys => keys.join(", "),
-        };
-        for key in ProfileSpec::NUMBERS {
-            match spec.number(key) {
-                Some(value) if !wanted.contains(&key) => {
-                    let reason = format!("a {kind} profile has no such number");
-                    return refuse(key, format!("{value:e}"), reason, format!("it takes {takes}"));
-                }
-                None if wanted.contains(&key) => {
-                    let reason = format!("a {kind} profile needs {key}, which is missing");
-                    return refuse(
-                        "kind",
-                        format!("{kind:?}"),
-                        reason,
-                        format!("it takes {takes}"),
-                    );
-                }
-                _ => {}
-            }
-        }
+        let kind = spec.kind.name();
         let [from, to] = [-0.5, 0.5].map(|s| s * self.length_m(body));
         let half = to;
         if let Some(straight) = spec.straight_m.filter(|s| *s >= 2.0 * half) {
@@ -197,4 +176,28 @@ impl Case {
             _ => Ok(()),
         }
     }
+}
+
+/// Refuses a profile at `place` without the numbers of its kind, or with others.
+fn check_numbers(spec: &ProfileSpec, place: &str) -> Result<()> {
+    let (kind, wanted) = (spec.kind.name(), spec.kind.keys());
+    let takes = match wanted {
+        [] => "no number".to_string(),
+        keys => keys.join(", "),
+    };
+    for key in ProfileSpec::NUMBERS {
+        let (own, value, reason) = match spec.number(key) {
+            Some(value) if !wanted.contains(&key) => {
+                (key, format!("{value:e}"), format!("a {kind} profile has no such number"))
+            }
+            None if wanted.contains(&key) => {
+                let reason = format!("a {kind} profile needs {key}, which is missing");
+                ("kind", format!("{kind:?}"), reason)
+            }
+            _ => continue,
+        };
+        let (key, remedy) = (format!("{place}.{own}"), format!("it takes {takes}"));
+        return Err(Error::Value { key, value, reason, remedy });
+    }
+    Ok(())
 }

@@ -233,7 +233,11 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         assert!(message.contains(wanted), "{message}");
     }
     assert!(!folder.path().join("out").exists());
-    // A file all of whose points are next to an end compares nothing.
+}
+
+#[test]
+fn a_file_all_of_whose_points_are_next_to_an_end_compares_nothing() {
+    let folder = bench();
     let end = 5.0 * 0.02 * (1e-3 / std::f64::consts::PI).sqrt();
     fs::write(folder.path().join("end.csv"), format!("x_m,y_m,p_pa\n0,{end},1e9\n")).unwrap();
     let output = edgeline(folder.path(), &["compare", "case.toml", "end.csv"]).output().unwrap();
