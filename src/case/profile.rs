@@ -56,6 +56,14 @@ impl ProfileKind {
         }
     }
 
+    /// Whether its drop is that of both bodies together, so that one of them has it.
+    pub(super) fn is_of_both(self) -> bool {
+        match self {
+            Self::Lundberg | Self::JohnsGohar | Self::Iso16281 | Self::Fujiwara => true,
+            Self::Crown | Self::Logarithmic | Self::Relief | Self::Table => false,
+        }
+    }
+
     /// The numbers that it needs.
     pub fn keys(self) -> &'static [&'static str] {
         match self {

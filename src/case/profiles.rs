@@ -8,6 +8,9 @@ use std::f64::consts::PI;
 /// Ratio of length and diameter up to which the profile of ISO/TS 16281 curves from the middle.
 const SHORT: f64 = 2.5;
 
+/// Johns and Gohar's factor of the Hertz half-width.
+const JOHNS_GOHAR: f64 = 0.3033;
+
 /// Most of the diameter that a profile may drop at the body's end.
 const DEEPEST: f64 = 0.5;
 
@@ -44,7 +47,7 @@ impl Case {
             ProfileKind::JohnsGohar => {
                 let radius = self.equivalent_radius_m();
                 let b = HertzScales::new(e_star, radius, length, force).c_m;
-                whole(amplitude, (1.0 - 0.3033 * b / half).max(f64::MIN_POSITIVE))
+                whole(amplitude, 1.0 - JOHNS_GOHAR * b / half)
             }
             ProfileKind::Iso16281 if length <= SHORT * diameter => whole(0.00035 * diameter, 1.0),
             ProfileKind::Iso16281 => {
@@ -80,38 +83,31 @@ impl Case {
 
     /// Refuses profiles without the numbers of their kind, with others, or that no body can have.
     pub(super) fn check_profiles(&self) -> Result<()> {
-        BodyKind::ALL.into_iter().try_for_each(|body| self.check_profile(body))
+        BodyKind::ALL.into_iter().try_for_each(|body| self.check_profile(body))?;
+        let of_both = |body: BodyKind| {
+            self.profile_spec(body).map(|spec| spec.kind).filter(|kind| kind.is_of_both())
+        };
+        let [Some(block), Some(roller)] = BodyKind::ALL.map(of_both) else { return Ok(()) };
+        Err(Error::Value {
+            key: "block.profile.kind".into(),
+            value: format!("{:?}", block.name()),
+            reason: format!(
+                "its drop is that of both bodies together, as that of the roller's {} profile is: \
+                 added, they are too deep",
+                roller.name()
+            ),
+            remedy: "give it to one of the bodies alone".into(),
+        })
     }
 
     fn check_profile(&self, body: BodyKind) -> Result<()> {
         let Some(spec) = self.profile_spec(body) else { return Ok(()) };
         let place = format!("{}.profile", body.name());
+        check_numbers(spec, &place)?;
         let refuse = |key: &str, value: String, reason: String, remedy: String| {
             Err(Error::Value { key: format!("{place}.{key}"), value, reason, remedy })
         };
-        let (kind, wanted) = (spec.kind.name(), spec.kind.keys());
-        let takes = match wanted {
-            [] => "no number".to_string(),
-            keys => keys.join(", "),
-        };
-        for key in ProfileSpec::NUMBERS {
-            match spec.number(key) {
-                Some(value) if !wanted.contains(&key) => {
-                    let reason = format!("a {kind} profile has no such number");
-                    return refuse(key, format!("{value:e}"), reason, format!("it takes {takes}"));
-                }
-                None if wanted.contains(&key) => {
-                    let reason = format!("a {kind} profile needs {key}, which is missing");
-                    return refuse(
-                        "kind",
-                        format!("{kind:?}"),
-                        reason,
-                        format!("it takes {takes}"),
-                    );
-                }
-                _ => {}
-            }
-        }
+        let kind = spec.kind.name();
         let [from, to] = [-0.5, 0.5].map(|s| s * self.length_m(body));
         let half = to;
         if let Some(straight) = spec.straight_m.filter(|s| *s >= 2.0 * half) {
@@ -144,6 +140,9 @@ impl Case {
             }
             _ => {}
         }
+        if spec.kind == ProfileKind::JohnsGohar {
+            self.check_design_force(body, spec)?;
+        }
         let profile = self.profile(body).expect("the body has one");
         // What has no limit at the end is judged just before it.
         let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
@@ -157,4 +156,48 @@ impl Case {
         }
         Ok(())
     }
+
+    /// Refuses a force under which Johns and Gohar's profile would not drop: its Hertz half-width b
+    /// is at most a / 0.3033, b^2 = 4 Q R / (pi L E*).
+    fn check_design_force(&self, body: BodyKind, spec: &ProfileSpec) -> Result<()> {
+        let length = self.length_m(body);
+        let widest = 0.5 * length / JOHNS_GOHAR;
+        let most = PI * length * self.contact_modulus() * widest * widest
+            / (4.0 * self.equivalent_radius_m());
+        match spec.design_force_n {
+            Some(force) if force >= most => Err(Error::Value {
+                key: format!("{}.profile.design_force_n", body.name()),
+                value: format!("{force:e}"),
+                reason: "1 - 0.3033 b / a is not above zero, b the Hertz half-width under this \
+                         force and a half of the length: such a profile does not drop"
+                    .into(),
+                remedy: format!("give less than {most:.4e} N, the force that the body carries"),
+            }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses a profile at `place` without the numbers of its kind, or with others.
+fn check_numbers(spec: &ProfileSpec, place: &str) -> Result<()> {
+    let (kind, wanted) = (spec.kind.name(), spec.kind.keys());
+    let takes = match wanted {
+        [] => "no number".to_string(),
+        keys => keys.join(", "),
+    };
+    for key in ProfileSpec::NUMBERS {
+        let (own, value, reason) = match spec.number(key) {
+            Some(value) if !wanted.contains(&key) => {
+                (key, format!("{value:e}"), format!("a {kind} profile has no such number"))
+            }
+            None if wanted.contains(&key) => {
+                let reason = format!("a {kind} profile needs {key}, which is missing");
+                ("kind", format!("{kind:?}"), reason)
+            }
+            _ => continue,
+        };
+        let (key, remedy) = (format!("{place}.{own}"), format!("it takes {takes}"));
+        return Err(Error::Value { key, value, reason, remedy });
+    }
+    Ok(())
 }

@@ -1,6 +1,7 @@
 //! Heights in the format x3p of ISO 25178-72: a zip archive with a description, main.xml, and the
 //! heights.
 
+use md5::{Digest, Md5};
 use roxmltree::{Document, Node};
 use std::io::{Cursor, Read};
 use zip::ZipArchive;
@@ -11,6 +12,9 @@ pub(super) type Samples = ([usize; 2], [f64; 2], Vec<f64>);
 
 /// More samples than cells can be: an archive may hold far more than it weighs.
 const MOST_SAMPLES: usize = 1 << 27;
+
+/// The feature type of heights on a grid; others are profiles (PRF) and clouds of points (PCL).
+const SURFACE: &str = "SUR";
 
 /// Most bytes of the description, and of each height.
 const MOST_TEXT: u64 = 16 << 20;
@@ -26,6 +30,11 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
         String::from_utf8(text).map_err(|_| "has a main.xml that is not text".to_string())?;
     let document = Document::parse(&text).map_err(|e| format!("has a broken main.xml: {e}"))?;
     let root = document.root_element();
+    if let Ok(kind) = find(root, "FeatureType").map(word)
+        && kind != SURFACE
+    {
+        return Err(format!("has a FeatureType '{kind}', not {SURFACE}: no surface on a grid"));
+    }
     let axes = find(root, "Axes")?;
     let steps = [increment(find(axes, "CX")?)?, increment(find(axes, "CY")?)?];
     let height = find(axes, "CZ")?;
@@ -47,20 +56,40 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
     }
     let samples = nx.checked_mul(ny).filter(|n| (1..=MOST_SAMPLES).contains(n));
     let samples = samples.ok_or_else(|| format!("has heights of the shape {nx} x {ny}"))?;
-    let mut linked =
-        |link: Node, most: u64| part(&mut archive, word(link).trim_start_matches('/'), most);
+    let raw = heights(&mut archive, root, kind, samples)?;
+    // In the file x is fastest.
+    let place = |i: usize, j: usize| offset + scale * raw[j * nx + i];
+    let values = (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j)));
+    Ok(([nx, ny], steps, values.map(|(i, j)| place(i, j)).collect()))
+}
+
+/// The heights as the file has them, x fastest; those that it marks as missing become NaN.
+fn heights(
+    archive: &mut ZipArchive<Cursor<&[u8]>>,
+    root: Node,
+    kind: &str,
+    samples: usize,
+) -> Result<Vec<f64>, String> {
+    let mut linked = |link: Node, sum: &str, most: u64| {
+        let name = word(link).trim_start_matches('/');
+        let content = part(archive, name, most)?;
+        check_sum(root, sum, &content, name).map(|()| content)
+    };
     let mut raw = match find(root, "PointDataLink") {
-        Ok(link) => binary(&linked(link, (samples as u64).saturating_mul(MOST_BYTES))?, kind)?,
+        Ok(link) => {
+            let most = (samples as u64).saturating_mul(MOST_BYTES);
+            binary(&linked(link, "MD5ChecksumPointData", most)?, kind)?
+        }
         Err(_) => list(find(root, "DataList")?)?,
     };
     if raw.len() != samples {
-        return Err(format!("has {} heights for the shape {nx} x {ny}", raw.len()));
+        return Err(format!("has {} heights for a shape of {samples}", raw.len()));
     }
     if let Ok(link) = find(root, "ValidPointsLink")
         && !word(link).is_empty()
     {
         let bytes = samples.div_ceil(8);
-        let valid = linked(link, bytes as u64)?;
+        let valid = linked(link, "MD5ChecksumValidPoints", bytes as u64)?;
         if valid.len() != bytes {
             return Err(format!("says of {} heights whether they are valid", 8 * valid.len()));
         }
@@ -71,10 +100,17 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
             }
         }
     }
-    // In the file x is fastest.
-    let place = |i: usize, j: usize| offset + scale * raw[j * nx + i];
-    let values = (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j)));
-    Ok(([nx, ny], steps, values.map(|(i, j)| place(i, j)).collect()))
+    Ok(raw)
+}
+
+/// Refuses the content of the file `name` whose MD5 is not the one that the element `sum` states.
+fn check_sum(root: Node, sum: &str, content: &[u8], name: &str) -> Result<(), String> {
+    let stated = find(root, sum).map(word).unwrap_or_default();
+    let found: String = Md5::digest(content).iter().map(|byte| format!("{byte:02x}")).collect();
+    if stated.is_empty() || stated.eq_ignore_ascii_case(&found) {
+        return Ok(());
+    }
+    Err(format!("has a damaged {name}: its MD5 is {found}, not {stated}"))
 }
 
 /// The content of a file of the archive.
@@ -148,12 +184,12 @@ mod tests {
 
     /// An archive with this description and these bytes of heights.
     fn archive(kind: &str, shape: [usize; 2], data: Option<&[u8]>, list: &str) -> Vec<u8> {
-        archive_with(kind, shape, data, list, None)
+        archive_with([kind, ""], shape, data, list, None)
     }
 
-    /// The same with these bits of validity.
+    /// The same with more elements in the description and these bits of validity.
     fn archive_with(
-        kind: &str,
+        [kind, more]: [&str; 2],
         shape: [usize; 2],
         data: Option<&[u8]>,
         list: &str,
@@ -175,7 +211,7 @@ mod tests {
              <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>3e-6</Increment></CY>\
              <CZ><AxisType>A</AxisType><DataType>{kind}</DataType><Increment>1e-9</Increment><Offset>0</Offset></CZ>\
              </Axes></Record1><Record3><MatrixDimension><SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ>\
-             </MatrixDimension>{link}</Record3></p:ISO5436_2>",
+             </MatrixDimension>{link}{more}</Record3></p:ISO5436_2>",
             shape[0], shape[1]
         );
         let mut writer = zip::ZipWriter::new(Cursor::new(Vec::new()));
@@ -218,7 +254,7 @@ mod tests {
         let data = 1f64.to_le_bytes();
         for (bytes, wanted) in [
             (b"PK no".to_vec(), "is no zip archive"),
-            (archive("D", [2, 1], Some(&data), ""), "has 1 heights for the shape 2 x 1"),
+            (archive("D", [2, 1], Some(&data), ""), "has 1 heights for a shape of 2"),
             (archive("Q", [1, 1], Some(&data), ""), "of the type 'Q'"),
             (archive("D", [1, 1], Some(&data[..5]), ""), "5 bytes of heights of 8"),
             (archive("D", [1, 1], None, "<Datum>x</Datum>"), "'x', which is no number"),
@@ -226,12 +262,30 @@ mod tests {
             let said = read(&bytes).unwrap_err();
             assert!(said.contains(wanted), "{said}");
         }
+        // A description may say what its data are, and their MD5.
+        let described = |feature: &str, sum: &str| {
+            let said = format!(
+                "<FeatureType>{feature}</FeatureType>\
+                 <MD5ChecksumPointData>{sum}</MD5ChecksumPointData>"
+            );
+            read(&archive_with(["D", &said], [1, 1], Some(&data), "", None))
+        };
+        // The MD5 of eight bytes 00 00 00 00 00 00 f0 3f, by md5sum.
+        let sum = "e02e0d84c1f7b647c18ab9646d57ec89";
+        for stated in [sum, "", &sum.to_uppercase()] {
+            assert_eq!(described("SUR", stated).unwrap().2, [1.0]);
+        }
+        let said = described("SUR", &sum.replace('9', "8")).unwrap_err();
+        assert!(said.contains(&format!("damaged bindata/data.bin: its MD5 is {sum}")), "{said}");
+        let said = described("PRF", sum).unwrap_err();
+        assert!(said.contains("a FeatureType 'PRF', not SUR"), "{said}");
         // A missing height is a hole, which a surface must not have.
         let (_, _, values) = read(&archive("D", [1, 1], None, "<Datum></Datum>")).unwrap();
         assert!(values[0].is_nan());
         // Whole numbers have no NaN: bits say which of them are heights.
         let data: Vec<u8> = (0..10i16).flat_map(|v| v.to_le_bytes()).collect();
-        let masked = |valid: &[u8]| read(&archive_with("I", [10, 1], Some(&data), "", Some(valid)));
+        let masked =
+            |valid: &[u8]| read(&archive_with(["I", ""], [10, 1], Some(&data), "", Some(valid)));
         let (_, _, values) = masked(&[0b1111_1110, 0b01]).unwrap();
         let holes: Vec<usize> = (0..10).filter(|i| values[*i].is_nan()).collect();
         assert_eq!(holes, [0, 9]);

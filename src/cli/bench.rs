@@ -1,7 +1,7 @@
 //! `edgeline bench`: run time against error.
 
 use super::cold::ColdRuns;
-use super::fem_options::{FemOptions, FemSource};
+use super::fem_options::{FemOptions, FemSource, OfLive};
 use super::output::{Exit, print, say};
 use super::progress::{progress_bar, show};
 use super::provenance::{command_line, now, processor};
@@ -64,6 +64,16 @@ pub(super) struct Arguments {
     /// Folder of recorded curves, one folder per case, instead of the built-in ones
     #[arg(long, value_name = "DIR", value_hint = ValueHint::DirPath)]
     reference: Option<PathBuf>,
+    #[command(flatten)]
+    live: OfLive<LiveOptions>,
+    /// Print bench.json and nothing else
+    #[arg(long)]
+    json: bool,
+}
+
+/// How finite elements are run.
+#[derive(Args)]
+struct LiveOptions {
     /// Relative element sizes of the meshes with --fem live; ENGINE=S for one by another code than
     /// --engine, as in 2,1.4,calculix=2
     #[arg(
@@ -80,9 +90,6 @@ pub(super) struct Arguments {
     fem_repeats: usize,
     #[command(flatten)]
     options: FemOptions,
-    /// Print bench.json and nothing else
-    #[arg(long)]
-    json: bool,
 }
 
 /// Parses the size of a mesh, with its code in front or not.
@@ -162,6 +169,7 @@ fn descending(values: &[f64]) -> Vec<f64> {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let date = now();
+    arguments.live.check(arguments.fem)?;
     let cases = find_cases(&arguments.cases)?;
     let tolerances: Vec<f64> = descending(&arguments.tolerances)
         .into_iter()
@@ -197,9 +205,9 @@ fn drivers(arguments: &Arguments) -> Result<Vec<(MeshOf, Driver)>> {
     if arguments.fem == FemSource::Recorded {
         return Ok(Vec::new());
     }
-    let options = &arguments.options;
+    let LiveOptions { sizes, options, .. } = &arguments.live.options;
     let sizes = |code: Code| {
-        let own = arguments.sizes.iter().filter(|(of, _)| of.unwrap_or(options.engine()) == code);
+        let own = sizes.iter().filter(|(of, _)| of.unwrap_or(options.engine()) == code);
         descending(&own.map(|(_, size)| *size).collect::<Vec<_>>())
     };
     let meshes = Code::ALL
@@ -234,7 +242,14 @@ fn measure(
                 let recorded = records.find(case).unwrap_or_default();
                 let folder = arguments.out.join("fem").join(&case.name);
                 let say = |text: &str| bar.set_message(format!("{}: {text}", case.name));
-                FemMeshes::run(recorded, drivers, arguments.fem_repeats, case, &folder, &say)
+                FemMeshes::run(
+                    recorded,
+                    drivers,
+                    arguments.live.options.fem_repeats,
+                    case,
+                    &folder,
+                    &say,
+                )
             },
             progress: &|done, all, what| show(&bar, done, all, what),
         },

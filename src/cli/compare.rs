@@ -4,6 +4,7 @@ use super::output::{Exit, print, print_json, say};
 use super::provenance::{command_line, now};
 use super::records::Records;
 use super::study_options::RangeOptions;
+use super::values::unsuited;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{Lock, prepare_folder, replace_set};
@@ -118,6 +119,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         file.check_foreign()?;
         file.check_name(&brought)?;
         brought.push(file);
+    }
+    let pressures = |file: &BroughtFile| file.curves.stress.is_empty();
+    if arguments.stated.body.is_some() && brought.iter().all(pressures) {
+        return Err(unsuited("body", "a pressure is that of both bodies", "leave it out"));
     }
     let records = Records::read(arguments.reference.as_deref())?;
     let first = records.find(&case)?.map(|record| (Engine::fenicsx(), Ok(record)));

@@ -96,17 +96,18 @@ fn named(design: &Design, found: &Optimum) -> Result<Case> {
 
 /// The short summary for a reader.
 fn text(design: &Design, found: &Optimum, arguments: &Arguments, seconds: f64) -> String {
+    let mpa = |value_pa: f64| format!("{} MPa", significant(value_pa * 1e-6, 5));
     let values = design.parameters.iter().zip(&found.values);
     let values: Vec<String> =
         values.map(|(p, v)| format!("{} = {}", p.name, significant(*v, 4))).collect();
     let mut lines = vec![
         format!("{}: {}", design.case.name, values.join(", ")),
         format!(
-            "  largest {} {:.1} MPa, more than {} C from the edges of the overlap (search: {:.1} MPa)",
+            "  largest {} {}, more than {} C from the edges of the overlap (search: {})",
             design.objective.label(),
-            found.confirmed_pa * 1e-6,
+            mpa(found.confirmed_pa),
             design.exclude_c,
-            found.searched_pa * 1e-6,
+            mpa(found.searched_pa),
         ),
     ];
     for (load, before) in found.loads.iter().zip(&found.before) {
@@ -116,12 +117,12 @@ fn text(design: &Design, found: &Optimum, arguments: &Arguments, seconds: f64) -
             (None, None) => String::new(),
         };
         let before = before.map_or(String::new(), |before| {
-            format!("; with the case's own profile {:.1} MPa", before * 1e-6)
+            format!("; with the case's own profile {}", mpa(before))
         });
         lines.push(format!(
-            "  {} N{place}: {:.1} MPa{before}",
+            "  {} N{place}: {}{before}",
             load.case.load.force_n,
-            value_pa(load, design.objective) * 1e-6,
+            mpa(value_pa(load, design.objective)),
         ));
     }
     lines.push(format!(

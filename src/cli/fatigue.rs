@@ -1,8 +1,9 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
-use super::output::{Exit, print, print_json};
+use super::output::{Exit, print, print_json, wrote};
 use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
+use crate::base::number::significant;
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::{Lock, replace_set};
@@ -76,7 +77,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     if arguments.json {
         print_json(&found)?;
     } else {
-        print(&text(&found, &arguments))?;
+        let names: Vec<String> = files.into_iter().map(|(name, _)| name).collect();
+        print(&format!("{}{}\n", text(&found), wrote(&names, &arguments.out)))?;
     }
     Ok(Exit::Done)
 }
@@ -93,15 +95,14 @@ fn places(arguments: &Arguments) -> Result<[usize; 2]> {
 }
 
 /// The short summary for a reader.
-fn text(found: &Summary, arguments: &Arguments) -> String {
+fn text(found: &Summary) -> String {
     let Summary { case, method, c_m, p0_pa, friction, critical } = found;
     let mut lines = vec![format!(
-        "{case} by {method}, friction {friction}: C {:.4} mm, p0 {:.1} MPa",
-        c_m * 1e3,
-        p0_pa * 1e-6
+        "{case} by {method}, friction {friction}: C {} mm, p0 {} MPa",
+        significant(c_m * 1e3, 5),
+        significant(p0_pa * 1e-6, 5)
     )];
     lines.extend(critical.iter().map(|c| line(c, *c_m, *p0_pa)));
-    lines.push(format!("  {}", arguments.out.display()));
     lines.join("\n") + "\n"
 }
 

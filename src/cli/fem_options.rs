@@ -1,8 +1,10 @@
 //! Options of the subcommands that run finite elements.
 
-use super::values::one_of;
+use super::values::{one_of, unsuited};
+use crate::base::Result;
 use crate::fem::{Code, FemSettings, LinearSolver};
-use clap::{Args, ValueEnum, ValueHint};
+use clap::parser::ValueSource;
+use clap::{ArgMatches, Args, Command, FromArgMatches, ValueEnum, ValueHint};
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -13,6 +15,69 @@ pub(super) enum FemSource {
     Recorded,
     /// A run of gmsh and a finite-element code now
     Live,
+}
+
+/// Options that have an effect with --fem live alone, and the first of them that is given.
+pub(super) struct OfLive<T> {
+    /// The options.
+    pub options: T,
+    given: Option<String>,
+}
+
+impl<T> OfLive<T> {
+    /// Refuses an option that would change nothing.
+    ///
+    /// # Errors
+    /// [`crate::base::Error::Value`] that names it.
+    pub fn check(&self, source: FemSource) -> Result<()> {
+        match &self.given {
+            Some(option) if source == FemSource::Recorded => {
+                let reason = "it has no effect on recorded finite elements";
+                Err(unsuited(option, reason, "add --fem live, or leave it out"))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+impl<T: Args> Args for OfLive<T> {
+    fn augment_args(command: Command) -> Command {
+        T::augment_args(command)
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        T::augment_args_for_update(command)
+    }
+}
+
+impl<T: Args> OfLive<T> {
+    /// The first option of `T` that stands on the command line.
+    fn given(matches: &ArgMatches) -> Option<String> {
+        let own = T::augment_args(Command::new(""));
+        let stands = |id: &str| matches.value_source(id) == Some(ValueSource::CommandLine);
+        let first = own.get_arguments().find(|option| stands(option.get_id().as_str()))?;
+        first.get_long().map(String::from)
+    }
+}
+
+impl<T: Args> FromArgMatches for OfLive<T> {
+    fn from_arg_matches(matches: &ArgMatches) -> std::result::Result<Self, clap::Error> {
+        Ok(Self { given: Self::given(matches), options: T::from_arg_matches(matches)? })
+    }
+
+    fn from_arg_matches_mut(matches: &mut ArgMatches) -> std::result::Result<Self, clap::Error> {
+        // Reading the options takes them out of the matches.
+        let given = Self::given(matches);
+        Ok(Self { given, options: T::from_arg_matches_mut(matches)? })
+    }
+
+    fn update_from_arg_matches(
+        &mut self,
+        matches: &ArgMatches,
+    ) -> std::result::Result<(), clap::Error> {
+        self.given = Self::given(matches);
+        self.options.update_from_arg_matches(matches)
+    }
 }
 
 /// The mesh of a subcommand that uses a single one.

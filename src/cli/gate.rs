@@ -3,6 +3,7 @@
 use super::output::{Exit, print, print_json};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
+use crate::body::EdgeModel;
 use crate::case::Study;
 use crate::host::{Lock, write_set, write_whole};
 use crate::report::gates;
@@ -55,15 +56,18 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         Some(path) => Baseline::parse(&read(path)?, path)?,
         None => Baseline::built_in()?,
     };
+    let thresholds_of = |study: &Study| match &arguments.gates {
+        Some(path) => gate::parse(&read(path)?, path),
+        None => Gates::built_in_for(&study.name),
+    };
+    let thresholds: Vec<Gates> = studies.iter().map(thresholds_of).collect::<Result<_>>()?;
+    let usual: Vec<EdgeModel> = thresholds.iter().flat_map(Gates::methods).collect();
+    arguments.study.check(&usual, false)?;
     let out = &arguments.study.out;
     let _lock = Lock::claim(out)?;
     let (mut outcomes, mut now) = (Vec::new(), Baseline::default());
     let mut kept = accepted.clone();
-    for study in &studies {
-        let thresholds = match &arguments.gates {
-            Some(path) => gate::parse(&read(path)?, path)?,
-            None => Gates::built_in_for(&study.name)?,
-        };
+    for (study, thresholds) in studies.iter().zip(&thresholds) {
         let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
         let repeats = if timed { 5 } else { 0 };
         let run = arguments.study.run(study, &thresholds.methods(), repeats, false)?;
@@ -72,7 +76,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             kept = kept.without(&run);
             now = now.with(Baseline::of(&run));
         } else {
-            outcomes.extend(gate::evaluate(&run, &thresholds, Some(&accepted)));
+            outcomes.extend(gate::evaluate(&run, thresholds, Some(&accepted)));
         }
     }
     if let Some(path) = arguments.baseline.as_deref().filter(|_| arguments.accept) {

@@ -4,6 +4,7 @@ use crate::base::{Error, Result};
 use crate::report::study_files::pretty;
 use serde::Serialize;
 use std::io::Write;
+use std::path::Path;
 
 /// How a subcommand ended that could run.
 pub(super) enum Exit {
@@ -33,4 +34,23 @@ pub(super) fn print(text: &str) -> Result<()> {
 /// Prints a JSON value as the only thing on standard output.
 pub(super) fn print_json(value: &impl Serialize) -> Result<()> {
     print(&pretty(value))
+}
+
+/// The files of a run by their names, in one line. A picture in two formats is named once.
+pub(super) fn wrote(names: &[String], folder: &Path) -> String {
+    let stem = |name: &str| -> Option<String> {
+        Some(name.strip_suffix(".svg").or(name.strip_suffix(".png"))?.to_string())
+    };
+    let mut shown: Vec<String> = Vec::new();
+    for name in names {
+        let twin = |other: &&String| *other != name && stem(other) == stem(name);
+        let text = match stem(name) {
+            Some(stem) if names.iter().any(|other| twin(&other)) => format!("{stem}.{{svg,png}}"),
+            _ => name.clone(),
+        };
+        if !shown.contains(&text) {
+            shown.push(text);
+        }
+    }
+    format!("wrote {} into {}", shown.join(", "), folder.display())
 }

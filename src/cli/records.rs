@@ -1,6 +1,6 @@
 //! The recorded FEM curves that a run is compared with.
 
-use crate::base::Result;
+use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::fem::{Code, FemResults};
 use crate::study::Engine;
@@ -11,8 +11,23 @@ pub(super) struct Records(Option<Vec<FemResults>>);
 
 impl Records {
     /// Those in `folder`, or the built-in ones if there is none.
+    ///
+    /// # Errors
+    /// As [`FemResults::read_all`]; [`Error::File`] for a folder without a record, with which
+    /// nothing would be compared.
     pub(super) fn read(folder: Option<&Path>) -> Result<Self> {
-        folder.map(FemResults::read_all).transpose().map(Self)
+        let Some(folder) = folder else { return Ok(Self(None)) };
+        let all = FemResults::read_all(folder)?;
+        if all.is_empty() {
+            return Err(Error::File {
+                path: folder.to_path_buf(),
+                line: None,
+                message: "holds no record".into(),
+                remedy: "give a folder like results/reference, with a folder for each case that has a record.json"
+                    .into(),
+            });
+        }
+        Ok(Self(Some(all)))
     }
 
     /// The record of a case, if there is one.

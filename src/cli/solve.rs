@@ -1,20 +1,20 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::output::{Exit, print, print_json, say};
+use super::output::{Exit, print, print_json, say, wrote};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
 use super::values::{
-    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine,
+    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine, unsuited,
 };
-use crate::base::number::duration;
+use crate::base::number::{duration, significant};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Key};
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
+    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary, check_cells,
     check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
 };
 use crate::stress::BodyKind;
@@ -168,10 +168,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
     }
-    more.extend(pictures(case, &found, &arguments)?);
+    more.extend(pictures(case, &found, None, &arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
-    solution::write(&found, &options, more, &arguments.out)?;
-    tell(case, &found, &arguments)
+    let names = solution::write(&found, &options, more, &arguments.out)?;
+    tell(case, &found, &names, &arguments)
 }
 
 /// What the slices of ISO/TS 16281 make of the ends, in words.
@@ -253,41 +253,38 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
         let layers = layers_on_cells(case, options, &found.pressure, &arguments.layers)?;
         more.extend(cells::layers(&found, &layers));
     }
-    more.extend(pictures(case, &found.solution, arguments)?);
-    solution::write(&found.solution, options, more, &arguments.out)?;
-    tell(case, &found.solution, arguments)
+    more.extend(pictures(case, &found.solution, Some(cells.tolerance), arguments)?);
+    let names = solution::write(&found.solution, options, more, &arguments.out)?;
+    tell(case, &found.solution, &names, arguments)
 }
 
-/// The pictures and the page, if they are asked for.
+/// The pictures and the page, if they are asked for; `residual` is that of cells.
 fn pictures<D>(
     case: &Case,
     found: &Solution<D>,
+    residual: Option<f64>,
     arguments: &Arguments,
 ) -> Result<Vec<(String, Vec<u8>)>> {
     if !arguments.plots {
         return Ok(Vec::new());
     }
-    let engine = if arguments.engine(case) == Engine::Cells { " on uniform cells" } else { "" };
+    let engine = if residual.is_some() { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
         program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
         date: now(),
+        residual,
     };
     page::of_solution(case, &label, found)
 }
 
-/// An option that does not suit the others.
-fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
-    Error::Value {
-        key: format!("--{option}"),
-        value: "given".into(),
-        reason: reason.into(),
-        remedy: remedy.into(),
-    }
-}
-
-/// Prints what was found.
-fn tell<D: Serialize>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> Result<Exit> {
+/// Prints what was found, and the `names` of the files.
+fn tell<D: Serialize>(
+    case: &Case,
+    found: &Solution<D>,
+    names: &[String],
+    arguments: &Arguments,
+) -> Result<Exit> {
     if !found.summary.converged {
         say(&format!(
             "warning: the contact changed by more than its tolerance until the last of its {} iterations \
@@ -298,7 +295,7 @@ fn tell<D: Serialize>(case: &Case, found: &Solution<D>, arguments: &Arguments) -
     if arguments.json {
         print_json(&found.summary)?;
     } else {
-        print(&text(case, found, arguments))?;
+        print(&format!("{}{}\n", text(case, &found.summary), wrote(names, &arguments.out)))?;
     }
     Ok(Exit::Done)
 }
@@ -338,21 +335,23 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
 }
 
 /// The short summary for a reader.
-fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
-    let pressure = if solution::writes_pressure(&found.cells) { " pressure.csv," } else { "" };
-    let found = &found.summary;
+fn text<D>(case: &Case, found: &Summary<D>) -> String {
     let (factors, hertz) = (case.factors(), found.hertz);
     let p0 = hertz.p0_pa;
     let mut lines = vec![
         format!(
-            "{} by {}: W {:.4e}, S_l {:.4}, L_r {:.4}",
-            found.case, found.method, factors.load, factors.slenderness, factors.length_ratio
+            "{} by {}: W {:.4e}, S_l {}, L_r {}",
+            found.case,
+            found.method,
+            factors.load,
+            significant(factors.slenderness, 5),
+            significant(factors.length_ratio, 5)
         ),
         format!(
-            "  load {:.6} N, half-width C {:.4} mm, p0 {:.1} MPa",
-            found.load_n,
-            hertz.c_m * 1e3,
-            p0 * 1e-6
+            "  load {} N, half-width C {} mm, p0 {} MPa",
+            significant(found.load_n, 6),
+            significant(hertz.c_m * 1e3, 5),
+            significant(p0 * 1e-6, 5)
         ),
         format!(
             "  pressure {:.4} p0 at the centre; largest mean of a cell {:.4} p0 at x = {:.3} C, y = {:.3} C",
@@ -375,17 +374,6 @@ fn text<D>(case: &Case, found: &Solution<D>, arguments: &Arguments) -> String {
         found.iterations,
         found.load_error_rel,
         duration(found.seconds.total)
-    ));
-    let points = if arguments.points.is_some() { ", points.csv" } else { "" };
-    let field = match (arguments.field, arguments.engine(case)) {
-        (true, _) => ", the fields (*.vtr) and their contours",
-        (false, Engine::Cells) => ", pressure.npy, axes.json",
-        (false, Engine::Line) => "",
-    };
-    let plots = if arguments.plots { ", pictures and summary.html" } else { "" };
-    lines.push(format!(
-        "wrote summary.json,{pressure} line_load.csv, curves.csv{points}{field}{plots} into {}",
-        arguments.out.display()
     ));
     lines.join("\n") + "\n"
 }

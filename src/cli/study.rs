@@ -57,6 +57,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
     let date = now();
+    arguments.study.check(&EdgeModel::ALL, true)?;
     let study = arguments.study.find_study()?;
     let brought = Brought::read(&arguments.curves, &study, &arguments.study)?;
     let out = &arguments.study.out;

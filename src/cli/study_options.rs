@@ -1,12 +1,12 @@
 //! What `edgeline study` and `edgeline gate` share: the study, its cases by every model, and FEM.
 
 use super::cold::ColdRuns;
-use super::fem_options::{FemOptions, FemSource, Size};
+use super::fem_options::{FemOptions, FemSource, OfLive, Size};
 use super::output::say;
 use super::progress::{progress_bar, show};
 use super::published;
 use super::records::Records;
-use super::values::{chosen_models, source};
+use super::values::{chosen_models, source, unsuited};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{BUILTIN_STUDIES, Case, Study};
@@ -43,12 +43,19 @@ pub(super) struct StudyOptions {
     reference: Option<PathBuf>,
     #[command(flatten)]
     range: RangeOptions,
-    /// Finite-element runs of each case with --fem live; the median time is reported
-    #[arg(long, value_name = "N", default_value_t = 2)]
-    fem_repeats: usize,
     /// Weight of the images of guilbault, instead of the one that follows from Poisson's ratio
     #[arg(long, value_parser = factor)]
     psi: Option<f64>,
+    #[command(flatten)]
+    live: OfLive<LiveOptions>,
+}
+
+/// How finite elements are run.
+#[derive(Args)]
+struct LiveOptions {
+    /// Finite-element runs of each case with --fem live; the median time is reported
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    fem_repeats: usize,
     #[command(flatten)]
     size: Size,
     #[command(flatten)]
@@ -93,6 +100,35 @@ impl StudyOptions {
         self.range.range()
     }
 
+    /// Refuses options that would change nothing: those of live finite elements or of records where
+    /// the others run, and a weight of images that no model has. `usual` and `with_cells` as for
+    /// [`StudyOptions::run`].
+    ///
+    /// # Errors
+    /// [`crate::base::Error::Value`] that names the option.
+    pub(super) fn check(&self, usual: &[EdgeModel], with_cells: bool) -> Result<()> {
+        self.live.check(self.fem)?;
+        if self.fem == FemSource::Live && self.reference.is_some() {
+            let reason = "recorded curves have no effect on live finite elements";
+            return Err(unsuited("reference", reason, "leave it out, or leave out --fem live"));
+        }
+        let has_images = self.methods_of(usual).contains(&EdgeModel::Guilbault)
+            || with_cells && published::is_chosen(&self.methods);
+        if self.psi.is_some() && !has_images {
+            let reason = "only guilbault has images with such a weight";
+            return Err(unsuited("psi", reason, "leave it out, or add guilbault to --methods"));
+        }
+        Ok(())
+    }
+
+    /// The chosen models, the `usual` ones if none was chosen.
+    fn methods_of(&self, usual: &[EdgeModel]) -> Vec<EdgeModel> {
+        match self.methods.is_empty() {
+            true => usual.to_vec(),
+            false => chosen_models(&self.methods),
+        }
+    }
+
     /// The models of a case, solved to be evaluated at the points of files.
     ///
     /// # Errors
@@ -112,10 +148,7 @@ impl StudyOptions {
         repeats: usize,
         with_cells: bool,
     ) -> Result<StudyRun> {
-        let methods = match self.methods.is_empty() {
-            true => usual.to_vec(),
-            false => chosen_models(&self.methods),
-        };
+        let methods = self.methods_of(usual);
         let (cases, models) = (study.cases().count(), methods.len());
         check_memory(
             &format!("a study of {cases} cases by {models} models"),
@@ -124,7 +157,7 @@ impl StudyOptions {
         )?;
         let references = self.references()?;
         let engine = match self.fem {
-            FemSource::Live => Engine::of(self.options.engine()),
+            FemSource::Live => Engine::of(self.live.options.options.engine()),
             FemSource::Recorded => Engine::fenicsx(),
         };
         let cold = ColdRuns::new(&self.out);
@@ -169,10 +202,13 @@ impl StudyOptions {
     /// Source of the FEM curves.
     fn references(&self) -> Result<FemCurves> {
         Ok(match self.fem {
-            FemSource::Live => FemCurves::Live {
-                live: Live::new(self.options.settings(self.size.size), self.fem_repeats)?,
-                folder: self.out.join("fem"),
-            },
+            FemSource::Live => {
+                let LiveOptions { fem_repeats, size, options } = &self.live.options;
+                FemCurves::Live {
+                    live: Live::new(options.settings(size.size), *fem_repeats)?,
+                    folder: self.out.join("fem"),
+                }
+            }
             FemSource::Recorded => FemCurves::Recorded {
                 records: Records::read(self.reference.as_deref())?,
                 times: Bench::recorded()?,

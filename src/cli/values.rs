@@ -8,6 +8,16 @@ use crate::study::{Engine, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::ops::RangeInclusive;
 
+/// An option that does not suit the others.
+pub(super) fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
+    Error::Value {
+        key: format!("--{option}"),
+        value: "given".into(),
+        reason: reason.into(),
+        remedy: remedy.into(),
+    }
+}
+
 /// Parses the name of one of `all`.
 pub(super) fn one_of<T: Copy + Send + Sync + 'static>(
     all: &'static [T],

@@ -13,14 +13,9 @@ use std::path::Path;
 /// [`super::cells`].
 const MOST_CELLS: usize = 100_000;
 
-/// Whether the pressures of the `cells` are few enough to be written as text.
-pub fn writes_pressure<T>(cells: &[T]) -> bool {
-    cells.len() <= MOST_CELLS
-}
-
 /// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as
 /// CSV but for pressures on very many cells, and `summary.json` last, so that its presence means
-/// that all are there.
+/// that all are there. Returns their names, `summary.json` first and `more` last.
 ///
 /// # Errors
 /// [`crate::base::Error::Io`] when a file cannot be written.
@@ -29,11 +24,12 @@ pub fn write<D: Serialize>(
     options: &Options,
     more: Vec<(String, Vec<u8>)>,
     folder: &Path,
-) -> Result<()> {
+) -> Result<Vec<String>> {
+    let further: Vec<String> = more.iter().map(|(name, _)| name.clone()).collect();
     let mut files = more;
     let mut put = |name: String, text: String| files.push((name, text.into_bytes()));
     for table in tables(solution, options) {
-        if table.name == "pressure" && !writes_pressure(&solution.cells) {
+        if table.name == "pressure" && solution.cells.len() > MOST_CELLS {
             continue;
         }
         put(format!("{}.csv", table.name), table.to_csv());
@@ -41,7 +37,11 @@ pub fn write<D: Serialize>(
     put("summary.json".into(), pretty(&solution.summary));
     // Curves and pressures of finite elements there are no longer those that it marks as complete.
     remove_marker(folder, "fem.json")?;
-    replace_set(folder, &files)
+    replace_set(folder, &files)?;
+    let own = files.into_iter().skip(further.len()).map(|(name, _)| name);
+    let mut names: Vec<String> = own.collect();
+    names.rotate_right(1);
+    Ok([names, further].concat())
 }
 
 /// As [`write()`], into a folder that is locked meanwhile, and made if it is not there.
@@ -55,7 +55,7 @@ pub fn write_locked<D: Serialize>(
     folder: &Path,
 ) -> Result<()> {
     let _lock = Lock::claim(folder)?;
-    write(solution, options, more, folder)
+    write(solution, options, more, folder).map(|_| ())
 }
 
 /// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points,

@@ -2,18 +2,19 @@
 
 use super::study_files::StudyFiles;
 use super::study_rows::EffectRow;
-use super::study_summary::{CaseMethod, FemOrigin};
+use super::study_summary::{CaseMethod, FemOrigin, StudySummary};
 use super::summarise::Context;
 use super::*;
 use crate::body::EdgeModel;
 use crate::case::Study;
 use crate::solve::{Avoided, WorkSummary};
-use crate::study::bench::Machine;
+use crate::study::bench::{Against, Machine, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
 use crate::study::response::Response;
 use crate::study::synthetic::{self, Twist};
+use crate::study::timing::Ratio;
 use crate::study::verification::{self, Convergence, Finding, VerificationRow};
-use crate::study::{Source, StudyRun};
+use crate::study::{Engine, Source, StudyRun};
 use std::path::Path;
 
 /// The differences of a run's quarter-space, whose refined solution is off by 1e-4 p0.
@@ -174,6 +175,74 @@ fn a_second_reference_is_shown_beside_the_first_that_errors_are_taken_against() 
     let html = page::html(&two).unwrap();
     assert!(html.contains("another-code ran on") && html.contains("FEM ran on"));
     assert!(page::markdown(&two).unwrap().contains("| another-code | unknowns |"));
+}
+
+/// What is on record about the published method is said where it ran and was timed.
+#[test]
+fn the_time_of_the_published_method_is_said_of_a_run_that_timed_it() {
+    let mut summary = files(Twist::Published).summary;
+    let ratio = Ratio { value: 9e3, plus_minus: 90.0 };
+    summary.published_speedups = vec![Speedup {
+        case: "a".to_string(),
+        level: 0.05,
+        against: Against::Fem,
+        engine: Engine::fenicsx(),
+        size: 1.0,
+        unknowns: None,
+        fem_error: 0.01,
+        fem_seconds: (9e3, 90.0),
+        tolerance: 8192.0,
+        model_error: 0.05,
+        model_seconds: (1.0, 0.0),
+        ratio,
+    }];
+    let said = |summary: &StudySummary| {
+        let all = verdict::sentences(summary);
+        all.into_iter().find(|sentence| sentence.contains("times faster"))
+    };
+    let text = said(&summary).unwrap();
+    assert!(text.contains("the published method on uniform cells is 9,000 ± 90"), "{text}");
+    summary.published.as_mut().unwrap().seconds = None;
+    assert_eq!(said(&summary), None);
+    summary.published = None;
+    assert_eq!(said(&summary), None);
+}
+
+/// The published method is a source without being one of the models: it has a column, too.
+#[test]
+fn times_stand_under_the_names_of_their_sources() {
+    let mut run = files(Twist::Published);
+    // One time for each source, so that none can stand for another.
+    for row in &mut run.study {
+        (row.seconds, row.seconds_spread) = (Some(1.5 + row.source.name().len() as f64), None);
+    }
+    let [html, markdown] = [page::html(&run).unwrap(), page::markdown(&run).unwrap()];
+    let section = markdown.split("## Run time").nth(1).unwrap();
+    let lines: Vec<&str> = section.lines().filter(|l| l.starts_with('|')).take(11).collect();
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_string()).collect()
+    };
+    let head = cells(lines[0]);
+    let names: Vec<&str> = run.sources().into_iter().map(Source::title).collect();
+    assert_eq!(names.len(), 6);
+    assert_eq!(head[1..7], *names);
+    for line in &lines[1..] {
+        assert_eq!(cells(line).len(), head.len(), "{line}");
+    }
+    let caption = html.split("Time a case.").nth(1).unwrap();
+    let html_rows: Vec<&str> = caption.split("<tr>").skip(1).take(10).collect();
+    let heads = html_rows[0].matches("</th>").count();
+    for (line, row) in lines[2..].iter().zip(&html_rows[1..]) {
+        let own = cells(line);
+        assert_eq!(row.matches("<td").count(), heads, "{row}");
+        for (i, source) in run.sources().into_iter().enumerate() {
+            let time = run.row(&own[0], source).unwrap().seconds.unwrap();
+            let shown = crate::base::number::duration(time);
+            assert_eq!(own[i + 1], shown, "{line}");
+            let cell = row.split("<td").nth(i + 2).unwrap();
+            assert_eq!(cell, format!(">{shown}</td>"), "{row}");
+        }
+    }
 }
 
 #[test]

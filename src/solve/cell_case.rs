@@ -13,7 +13,7 @@ use super::summary::{CriticalSummary, Summary};
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::cells::{CellPressure, CellProblem, Grid};
+use crate::cells::{CellPressure, CellProblem, Grid, Heights};
 use crate::stress::curves::across_contact;
 use crate::stress::{Curves, LineLoad, PressureLine};
 use serde::{Deserialize, Serialize};
@@ -104,9 +104,33 @@ pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
     }
     let region = Region::new(case, &scene, cells);
     let grid = region.first()?;
-    let heights = case.heights();
-    heights.map_or(Ok(()), |heights| heights.check_covers(&grid, case.hertz().c_m))?;
+    if let Some(heights) = case.heights() {
+        check_steps(case, &heights)?;
+        heights.check_covers(&grid, case.hertz().c_m)?;
+    }
     Ok(grid)
+}
+
+/// Refuses heights of which no two lie over the contact: they are no roughness of it, and their
+/// distances most likely of another unit.
+fn check_steps(case: &Case, heights: &Heights) -> Result<()> {
+    let c_m = case.hertz().c_m;
+    let [from, to] = case.overlap();
+    let sides_m = [2.0 * c_m, (to - from) * c_m];
+    let names = [("surface.dx_m", "wide"), ("surface.dy_m", "long")];
+    for ((step_m, side_m), (key, how)) in heights.steps_m().into_iter().zip(sides_m).zip(names) {
+        if step_m > side_m {
+            return Err(Error::Value {
+                key: key.into(),
+                value: format!("{step_m:e}"),
+                reason: format!(
+                    "neighbouring heights are further apart than the contact is {how}, {side_m:.3e} m"
+                ),
+                remedy: "give the distance in metres: a micrometre is 1e-6".into(),
+            });
+        }
+    }
+    Ok(())
 }
 
 /// The region of the cells.

@@ -236,8 +236,8 @@ pub struct Change {
 /// Parses the text of the thresholds file `path`.
 ///
 /// # Errors
-/// [`Error::File`] with the line when it is not TOML, or has an unknown key, an unknown name or a
-/// limit that is not a positive number.
+/// [`Error::File`] with the line when it is not TOML, or has an unknown key, an unknown name, a
+/// limit that is not a positive number, or nothing to be held to.
 pub fn parse(text: &str, path: &Path) -> Result<Gates> {
     let refuse = |line: Option<usize>, message: String, remedy: &str| Error::File {
         path: path.to_path_buf(),
@@ -249,6 +249,10 @@ pub fn parse(text: &str, path: &Path) -> Result<Gates> {
         let line = e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1);
         refuse(line, e.message().to_string(), "compare with the thresholds in docs/methodology.md")
     })?;
+    if gates.gate.is_empty() && gates.drift.is_none() {
+        let remedy = "add [[gate]] tables, as docs/methodology.md describes them";
+        return Err(refuse(None, "holds no gate".to_string(), remedy));
+    }
     for gate in &gates.gate {
         let whole = ["critical_value", "critical_depth", "load", "speedup"];
         let measured = ["pressure", "stress", "von_mises", "tau_max"];

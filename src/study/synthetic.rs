@@ -221,6 +221,8 @@ pub enum Twist {
     NoReference,
     /// A second engine, [`second_engine`], has curves of its own.
     SecondReference,
+    /// The published method takes part, too.
+    Published,
     /// One method solves nothing.
     Unsolved(EdgeModel),
 }
@@ -320,7 +322,7 @@ pub fn run_of(study: &Study, twist: Twist) -> StudyRun {
                 repeats: 3,
                 solver: &solver,
                 cold: &|_, _, _| Some(0.02),
-                published: None,
+                published: (twist == Twist::Published).then_some(&solve_on_cells),
             },
             range: Range::default(),
             references: &references,

@@ -1,6 +1,6 @@
 //! The command line: exit codes, messages, files.
 
-use crate::support::{edgeline, files, number, rows};
+use crate::support::{edgeline, files, number, rows, succeeded};
 use serde_json::Value;
 use std::path::Path;
 
@@ -512,6 +512,10 @@ fn a_measured_surface_is_pressed_on_cells() {
         serde_json::from_str(&std::fs::read_to_string(more.join("layers.json")).unwrap()).unwrap();
     assert_eq!(layers["layers"][1]["z_m"], 2e-4);
     assert!(layers["critical"]["value_pa"].as_f64().unwrap() > 1e8);
+    // The case's tolerance has no part on cells.
+    let page = std::fs::read_to_string(more.join("summary.html")).unwrap();
+    assert!(page.contains("Relative residual asked for") && page.contains("1e−8"), "{page}");
+    assert!(!page.contains("olerance"), "{page}");
     for plot in ["plot-heights.png", "plot-peak-block.svg", "plot-pressure-map.png"] {
         assert!(more.join(plot).is_file(), "{plot}");
     }
@@ -522,6 +526,18 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
+        // Micrometres typed as metres.
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 10\ndy_m = 3e-5",
+            "surface.dx_m = 1e1 is not valid: neighbouring heights are further apart than the contact is wide, \
+             5.046e-4 m; give the distance in metres",
+        ),
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 1e-5\ndy_m = 30",
+            "than the contact is long, 2.523e-3 m",
+        ),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
         ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
         ("heigths = \"waves.npy\"", steps, "did you mean heights?"),
@@ -542,6 +558,65 @@ fn a_measured_surface_is_pressed_on_cells() {
         assert!(said.contains("smooth"), "{said}");
     }
     assert!(!folder.path().join("no").exists());
+}
+
+/// Small bodies have digits, too.
+#[test]
+fn the_summary_of_a_small_case_has_no_zeros() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = "name = \"small\"\nroller = { radius_m = 1e-6, young_pa = 1e6, poisson = 0.3 }\n\
+                block = { young_pa = 1e6, poisson = 0.3 }\n\
+                dimensionless = { W = 1e-4, S_l = 5, L_r = 1 }\n";
+    std::fs::write(folder.path().join("small.toml"), case).unwrap();
+    let solve = ["solve", "small.toml", "--tolerance=1e-1", "--method", "half-space"];
+    let output = succeeded(&mut edgeline(folder.path(), &solve));
+    let text = String::from_utf8(output.stdout).unwrap();
+    // C = 2 R sqrt(W / pi), p0 = E* sqrt(W / pi), the load W E* R L with L = 10 C.
+    let root = (1e-4 / std::f64::consts::PI).sqrt();
+    let e_star = 1e6 / 1.82;
+    let [c, p0] = [2e-6 * root, e_star * root];
+    let load = 1e-4 * e_star * 1e-6 * 10.0 * c;
+    for (name, value, unit) in [("load", load, "N"), ("C", c * 1e3, "mm"), ("p0", p0 * 1e-6, "MPa")]
+    {
+        let shown = text.split(&format!("{name} ")).nth(1).unwrap();
+        let shown = shown.split(&format!(" {unit}")).next().unwrap();
+        let found: f64 = shown.parse().unwrap();
+        assert!((found / value - 1.0).abs() < 1e-4, "{name}: {text}");
+    }
+}
+
+/// The last line names every file of a run, pictures in two formats once.
+#[test]
+fn the_last_line_names_all_files_that_were_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let [line, cells] = ["--tolerance=1e-1", "--cells=16,32"];
+    for arguments in [
+        &["solve", "flush-short", line, "--laminae", "30", "--plots"][..],
+        &["solve", "flush-short", line, "--uncertain", "load_n=5%", "--samples", "8"],
+        &["solve", "flush-short", line, "--field", "--field-points", "3,3,3"],
+        &["solve", "flush-short", "--engine=cells", cells, "--loads=200", "--layers=1e-4"],
+        &["fatigue", "flush-short", line, "--places", "3,3"],
+    ] {
+        let output = succeeded(&mut edgeline(
+            folder.path(),
+            &[arguments, &["--method", "half-space", "--out", "o"]].concat(),
+        ));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let last = text.lines().last().unwrap();
+        let names = last.strip_prefix("wrote ").unwrap().strip_suffix(" into o").unwrap();
+        let both = |name: &str| match name.strip_suffix(".{svg,png}") {
+            Some(stem) => vec![format!("{stem}.png"), format!("{stem}.svg")],
+            None => vec![name.to_string()],
+        };
+        let mut named: Vec<String> = names.split(", ").flat_map(both).collect();
+        named.sort();
+        let out = folder.path().join("o");
+        // What the program keeps for itself is hidden.
+        let mut written = files(&out);
+        written.retain(|name| !name.starts_with('.'));
+        assert_eq!(named, written, "{arguments:?}");
+        std::fs::remove_dir_all(out).unwrap();
+    }
 }
 
 #[test]

@@ -146,6 +146,19 @@ fn records_solutions_and_given_limits_are_taken() {
     let own = errors(&folder.path().join("c/errors.csv"));
     let own = own.iter().find(|(place, _)| place.starts_with("quarter-space")).unwrap();
     assert!(own.1 < 1e-3, "{own:?}");
+    // What no limit takes is refused: a load that is met says nothing of curves.
+    let load =
+        "[[gate]]\nname = \"load\"\nmethod = \"quarter-space\"\nquantity = \"load\"\nlimit = 1\n";
+    fs::write(folder.path().join("load.toml"), load).unwrap();
+    for (arguments, wanted) in [
+        ([&*pressure, "--exclude-pressure", "0.1"], "add 0.2 to --exclude-pressure"),
+        (["/dev/null", "--gates", "/dev/null"], ": holds no gate; add [[gate]] tables"),
+        (["si.csv", "--gates", "load.toml"], "no gate of quarter-space takes any of its curves"),
+    ] {
+        let all = [&["compare", "case.toml", "--out", "no"], &arguments[..]].concat();
+        let message = refused(&mut edgeline(folder.path(), &all));
+        assert!(message.contains(wanted) && message.contains(arguments[0]), "{message}");
+    }
     // Given limits are not widened, and one that selects nothing fails.
     let gate = |measure: &str, limit: f64| {
         format!(
@@ -184,7 +197,16 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         ("x_m,y_m\n".into(), "has no column of a stress or a pressure"),
         ("x_m,y_m,p_pa,cpress_pa\n".into(), "columns 'p_pa' and 'cpress_pa' are the same thing"),
         ("x_m,y_m,p_pa\n".into(), "holds no points"),
-        ("x_m,y_m,p_pa\n0,7,0\n".into(), "has no point on the contact"),
+        ("x_m,y_m,p_pa\n0,3e-3,0\n".into(), "has no point on the contact"),
+        ("x_m,y_m,p_pa\n0,0,1e9\n0,7,0\n".into(), ":3: in our axes y = 7e0 m is outside the block"),
+        (
+            "# length_unit: m\n# length_unit: mm\nx,y,p_pa\n".into(),
+            ":2: length_unit is stated twice",
+        ),
+        (
+            "# body: block\nx_m,y_m,p_pa\n0,0,1e9\n".into(),
+            "states a body, but a pressure is that of both",
+        ),
         ("# length_unit: ft\nx,y,p_pa\n".into(), ":1: length_unit cannot be 'ft': give m, cm, mm"),
         (
             "# lenght_unit: mm\nx,y,p_pa\n".into(),
@@ -199,8 +221,10 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         assert!(message.contains("bad.csv") && message.contains(wanted), "{text}{message}");
     }
     fs::copy(folder.path().join("si.csv"), folder.path().join("mirror.csv")).unwrap();
+    fs::write(folder.path().join("middle.csv"), "x_m,y_m,p_pa\n0,0,2e9\n").unwrap();
     for (arguments, wanted) in [
         (["si.csv", "si.csv"].to_vec(), "name = si is not valid"),
+        (["middle.csv", "--body", "block"].to_vec(), "--body = given is not valid: a pressure"),
         (["mirror.csv"].to_vec(), "is called like a model or a code"),
         (["si.csv", "--axes", "x y"].to_vec(), "--axes = x y is not valid"),
     ] {
@@ -209,7 +233,11 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
         assert!(message.contains(wanted), "{message}");
     }
     assert!(!folder.path().join("out").exists());
-    // A file all of whose points are next to an end compares nothing.
+}
+
+#[test]
+fn a_file_all_of_whose_points_are_next_to_an_end_compares_nothing() {
+    let folder = bench();
     let end = 5.0 * 0.02 * (1e-3 / std::f64::consts::PI).sqrt();
     fs::write(folder.path().join("end.csv"), format!("x_m,y_m,p_pa\n0,{end},1e9\n")).unwrap();
     let output = edgeline(folder.path(), &["compare", "case.toml", "end.csv"]).output().unwrap();

@@ -181,6 +181,49 @@ fn errors_name_key_line_and_remedy() {
     assert!(message.contains("f.toml: there is no load"), "{message}");
 }
 
+/// The case of [`LOADED`] with these profiles.
+fn profiled(roller: &str, block: &str) -> crate::base::Result<Case> {
+    let profile = |body: &str, keys: &str| match keys {
+        "" => String::new(),
+        keys => format!("[{body}.profile]\n{keys}\n"),
+    };
+    parse(&format!("{LOADED}{}{}", profile("roller", roller), profile("block", block)))
+}
+
+#[test]
+fn a_drop_of_both_bodies_together_is_not_given_twice() {
+    let kinds = [
+        "kind = \"lundberg\"\ndesign_force_n = 500",
+        "kind = \"johns-gohar\"\ndesign_force_n = 500",
+        "kind = \"iso-16281\"",
+        "kind = \"fujiwara\"\ndesign_force_n = 500\nk1 = 1.5\nk2 = 0.6\nzm_m = 1e-5",
+    ];
+    for own in kinds {
+        for other in kinds {
+            let said = profiled(own, other).unwrap_err().to_string();
+            assert!(said.contains("block.profile.kind") && said.contains("both bodies"), "{said}");
+        }
+        profiled(own, "").unwrap();
+        profiled("kind = \"crown\"\nradius_m = 10", own).unwrap();
+    }
+}
+
+/// Beyond the force whose Hertz half-width b is a / 0.3033 the profile would be a straight line.
+#[test]
+fn a_force_under_which_johns_and_gohars_profile_does_not_drop_is_refused() {
+    let of =
+        |force: f64| profiled(&format!("kind = \"johns-gohar\"\ndesign_force_n = {force:e}"), "");
+    let (case, force) = (of(500.0).unwrap(), 500.0);
+    // b grows with the root of the force, and at the limit the drop vanishes.
+    let b = Case { load: Load { force_n: force, ..case.load }, ..case.clone() }.hertz().c_m;
+    let most = force * (10e-3 / 0.3033 / b).powi(2);
+    let profile = of(0.9999 * most).unwrap().profile(crate::base::BodyKind::Roller).unwrap();
+    assert!(profile.drop(10e-3) > 0.0);
+    let said = of(1.0001 * most).unwrap_err().to_string();
+    assert!(said.contains("roller.profile.design_force_n"), "{said}");
+    assert!(said.contains(&format!("less than {most:.4e} N")), "{said}");
+}
+
 #[test]
 fn missing_file_names_the_built_in_cases() {
     let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
@@ -357,6 +400,24 @@ fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
     for radius in ["1e-3", "3e-3", "7e-3", "0.011", "0.013"] {
         let case = case(radius, "2.3e11", "0.5").0.unwrap();
         assert!(Case::parse(&case.to_toml(), Path::new("again")).unwrap().is_same_problem(&case));
+    }
+}
+
+/// Numbers that do not follow from W, S_l and L_r are corrected where they stand.
+#[test]
+fn a_case_by_factors_keeps_the_remedies_of_its_other_numbers() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("heights.csv"), "0,0\n0,2\n").unwrap();
+    let surface = "[surface]\nheights = \"heights.csv\"\ndx_m = 1e-6\ndy_m = 1e-6\n";
+    for (more, wanted) in [
+        (surface, "the heights range over 2e0 m, more than a tenth of the roller's radius"),
+        (surface, "give heights in metres"),
+        ("eccentricity_m = 1.0\n", "f.toml:13: dimensionless.eccentricity_m = 1.0 is not valid"),
+        ("eccentricity_m = 1.0\n", "place it between the ends of the overlap"),
+    ] {
+        let text = format!("{DIMENSIONLESS}{more}");
+        let said = Case::parse(&text, &folder.path().join("f.toml")).unwrap_err().to_string();
+        assert!(said.contains(wanted) && !said.contains("follows from W"), "{said}");
     }
 }
 

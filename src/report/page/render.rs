@@ -7,7 +7,7 @@ use crate::base::number::{
 use crate::base::{Error, Result};
 use crate::report::plots;
 use crate::report::study_files::StudyFiles;
-use crate::study::{Engine, Source};
+use crate::study::Source;
 use minijinja::{Environment, context};
 
 const PAGE: &str = include_str!("page.html");
@@ -59,9 +59,8 @@ fn render(
         s => files.summary,
         caveats => CAVEATS,
         error_tables => errors::tables(files),
-        times => times::rows(files),
+        times => times::table(files),
         any_ratio => files.study.iter().any(|row| row.speedup.is_some()),
-        engines => engines(files),
         effects => effects::rows(files),
         details => solves::details(files),
         work => solves::work(files),
@@ -92,12 +91,6 @@ pub fn fill(name: &str, template: &str, data: minijinja::Value) -> Result<String
         .get_template(name)
         .and_then(|t| t.render(context! { css => STYLE, ..data }))
         .map_err(fault)
-}
-
-/// The references' names for readers, in the order of the times.
-fn engines(files: &StudyFiles) -> Vec<&str> {
-    let engines = files.sources().into_iter().filter_map(Source::engine);
-    engines.map(Engine::title).collect()
 }
 
 /// The formats of numbers in the templates.

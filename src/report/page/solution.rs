@@ -32,6 +32,8 @@ pub struct Label {
     pub program: String,
     /// When; left out if empty.
     pub date: String,
+    /// The relative residual asked for on cells, which take it in place of the case's tolerance.
+    pub residual: Option<f64>,
 }
 
 /// The pictures of `solution`, `plot-<name>.svg` and `.png`, and `summary.html`, which shows them
@@ -56,7 +58,7 @@ pub fn of_solution<D>(
     }
     let data = context! {
         case => case.name, by => label.by, program => label.program, date => label.date,
-        results => results(case, &solution.summary), inputs => inputs(case), notes => NOTES, pictures,
+        results => results(case, label, &solution.summary), inputs => inputs(case, label), notes => NOTES, pictures,
     };
     files.push(("summary.html".into(), fill(NAME, PAGE, data)?.into_bytes()));
     Ok(files)
@@ -67,8 +69,9 @@ fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", with_minus_signs(&significant(value, 5))).trim_end().to_string()
 }
 
-/// The numbers and the kinds of profiles of a case, as its file has them.
-fn inputs(case: &Case) -> Vec<[String; 2]> {
+/// The numbers and the kinds of profiles of a case, as its file has them, without a tolerance that
+/// had no part.
+fn inputs(case: &Case, label: &Label) -> Vec<[String; 2]> {
     let draft = Draft::of(case, Form::Load);
     let number = |key: &Key| {
         let value = key.get(&draft)?;
@@ -85,7 +88,8 @@ fn inputs(case: &Case) -> Vec<[String; 2]> {
     let factors =
         [("W", factors.load), ("S_l", factors.slenderness), ("L_r", factors.length_ratio)]
             .map(|(name, value)| [name.to_string(), with_unit(value, "")]);
-    let numbers = KEYS.iter().filter_map(number);
+    let unused = |key: &&Key| label.residual.is_some() && key.path == "accuracy.tolerance";
+    let numbers = KEYS.iter().filter(|key| !unused(key)).filter_map(number);
     numbers.chain(BodyKind::ALL.into_iter().filter_map(profile)).chain(factors).collect()
 }
 
@@ -97,7 +101,7 @@ fn capital(what: &str) -> String {
 }
 
 /// The results in numbers.
-fn results<D>(case: &Case, found: &Summary<D>) -> Vec<[String; 2]> {
+fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]> {
     let hertz = &found.hertz;
     let mm = |v: f64| with_unit(1e3 * v, "mm");
     let pressure =
@@ -126,7 +130,10 @@ fn results<D>(case: &Case, found: &Summary<D>) -> Vec<[String; 2]> {
     if found.centre_of_pressure_m[1] != 0.0 {
         rows.push(("Line of action at y", mm(found.centre_of_pressure_m[1])));
     }
-    rows.push(("Tolerance", with_unit(case.accuracy.tolerance, "p0")));
+    rows.push(match label.residual {
+        Some(residual) => ("Relative residual asked for", with_unit(residual, "")),
+        None => ("Tolerance", with_unit(case.accuracy.tolerance, "p0")),
+    });
     rows.push(("Load is met to", format!("{:.0e}", found.load_error_rel)));
     rows.push(("Run time", duration(found.seconds.total)));
     rows.into_iter().map(|(name, value)| [name.to_string(), value]).collect()

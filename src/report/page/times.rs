@@ -4,19 +4,33 @@ use crate::report::study_files::StudyFiles;
 use crate::study::Source;
 use serde_json::{Value, json};
 
-/// Times, one row a case with a cell for each model and each reference.
-pub(super) fn rows(files: &StudyFiles) -> Vec<Value> {
+/// Times: the names of the models and of the references, and one row a case with a cell for each of
+/// them, in the same order.
+pub(super) fn table(files: &StudyFiles) -> Value {
     let (engines, models): (Vec<&Source>, Vec<&Source>) =
         files.sources().into_iter().partition(|source| source.is_engine());
+    let titles = |sources: &[&Source]| -> Vec<String> {
+        sources.iter().map(|source| source.title().to_string()).collect()
+    };
     let cells = |case: &str, sources: &[&Source]| -> Vec<Value> {
         sources.iter().map(|source| cell(files, case, source)).collect()
     };
-    let cases = files.summary.cases.iter().map(|case| case.name.as_str());
-    let row = |case| {
-        let (methods, references) = (cells(case, &models), cells(case, &engines));
-        json!({ "case": case, "methods": methods, "references": references })
+    // Live FEM is divided by the time of the most complete model.
+    let best = files.summary.methods.last().map(|&method| Source::from(method));
+    let row = |case: &str| {
+        json!({
+            "case": case,
+            "methods": cells(case, &models),
+            "references": cells(case, &engines),
+            "best": best.as_ref().map(|best| cell(files, case, best)),
+        })
     };
-    cases.map(row).collect()
+    let rows = files.summary.cases.iter().map(|case| row(&case.name));
+    json!({
+        "methods": titles(&models),
+        "engines": titles(&engines),
+        "rows": rows.collect::<Vec<_>>(),
+    })
 }
 
 /// The times of a source in a case.

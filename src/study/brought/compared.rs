@@ -2,7 +2,7 @@
 
 use super::beside::{Beside, FileRun, GATED};
 use super::file::BroughtFile;
-use crate::base::Result;
+use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::study::errors::Range;
@@ -38,7 +38,7 @@ impl Comparison {
     /// Compares `files` with all models and with `references`, the recorded curves of the case.
     ///
     /// # Errors
-    /// As [`Beside::new`].
+    /// As [`Beside::new`]; [`Error::File`] for a file with curves that no limit holds.
     pub fn new(
         case: &Case,
         files: Vec<BroughtFile>,
@@ -51,7 +51,11 @@ impl Comparison {
             files.into_iter().map(|file| beside.file(file, references)).collect::<Result<_>>()?;
         let held = Held { limits, load_error_rel: beside.load_error_rel() };
         let mut outcomes: Vec<GateOutcome> = files.iter().flat_map(|f| held.gates(f)).collect();
-        outcomes.extend(held.idle_gates(&outcomes));
+        let idle = held.idle_gates(&outcomes);
+        if idle.is_empty() {
+            files.iter().try_for_each(|file| held.check(file))?;
+        }
+        outcomes.extend(idle);
         Ok(Self { case: case.clone(), range: range.clone(), files, outcomes })
     }
 }
@@ -66,9 +70,8 @@ struct Held<'a> {
 impl Held<'_> {
     /// The gates that a file's curves have numbers for.
     fn gates(&self, run: &FileRun) -> Vec<GateOutcome> {
-        let FileRun { case, file, errors, .. } = run;
-        let own = errors.iter().filter(|r| r.method == GATED.name());
-        let mut numbers = of_errors(case, GATED, own);
+        let FileRun { case, file, .. } = run;
+        let mut numbers = of_curves(run);
         numbers.push(Number {
             case: case.clone(),
             method: GATED,
@@ -97,6 +100,37 @@ impl Held<'_> {
         outcomes
     }
 
+    /// Refuses a file whose curves have numbers of which no gate takes any: that the load is met
+    /// says nothing of them.
+    fn check(&self, run: &FileRun) -> Result<()> {
+        let numbers = of_curves(run);
+        let of_curves = || self.gated().filter(|gate| gate.quantity != LOAD);
+        if numbers.is_empty() || of_curves().any(|gate| numbers.iter().any(|n| gate.takes(n))) {
+            return Ok(());
+        }
+        let same = |gate: &&Gate| numbers.iter().any(|n| n.quantity == gate.quantity);
+        let wanted = distances(of_curves().filter(same).filter_map(|gate| gate.excluded_c));
+        let [message, remedy] = if wanted.is_empty() {
+            [
+                "no gate of quarter-space takes any of its curves".to_string(),
+                "add a gate for what the file has, or leave the file out".to_string(),
+            ]
+        } else {
+            let own = distances(numbers.iter().filter_map(|n| n.excluded_c));
+            [
+                format!(
+                    "nothing of it is held to a limit: those of pressure are for points outside \
+                     {wanted} C of the edge, and it is compared outside {own} C"
+                ),
+                format!(
+                    "add {wanted} to --exclude-pressure, and points further from the edge, or give \
+                     limits of your own by --gates"
+                ),
+            ]
+        };
+        Err(Error::File { path: run.file.path.clone(), line: None, message, remedy })
+    }
+
     /// The gates of the gated model that a comparison has numbers for.
     fn gated(&self) -> impl Iterator<Item = &Gate> {
         let (Limits::Widened(gates) | Limits::Given(gates)) = self.limits;
@@ -114,6 +148,19 @@ impl Held<'_> {
         };
         self.gated().filter(idle).map(|gate| nothing_compared(&gate.name)).collect()
     }
+}
+
+/// The numbers of a file's curves against the gated model.
+fn of_curves(run: &FileRun) -> Vec<Number> {
+    of_errors(&run.case, GATED, run.errors.iter().filter(|r| r.method == GATED.name()))
+}
+
+/// Distances in words, each once.
+fn distances(all: impl Iterator<Item = f64>) -> String {
+    let mut all: Vec<f64> = all.collect();
+    all.sort_by(f64::total_cmp);
+    all.dedup();
+    all.iter().map(f64::to_string).collect::<Vec<_>>().join(" and ")
 }
 
 /// The gate of the load.

@@ -94,6 +94,10 @@ impl BroughtFile {
         let (columns, ignored) = find_columns(&header, &statements)
             .map_err(|message| refuse(path, Some(line), message))?;
         let mut table = Table::new(case, &statements, &columns, path, line)?;
+        if table.pressures && own.body.is_some() {
+            let message = "states a body, but a pressure is that of both: remove the line";
+            return Err(refuse(path, None, message.to_string()));
+        }
         for record in reader.records() {
             table.take(&record.map_err(of_csv)?)?;
         }
@@ -150,6 +154,7 @@ fn refuse(path: &Path, line: Option<usize>, message: String) -> Error {
 /// mistyped.
 fn read_statements(text: &str, path: &Path) -> Result<Statements> {
     let mut statements = Statements::default();
+    let mut stated: Vec<&str> = Vec::new();
     for (i, line) in text.lines().enumerate() {
         let line = line.trim();
         let Some(comment) = line.strip_prefix('#') else {
@@ -163,7 +168,13 @@ fn read_statements(text: &str, path: &Path) -> Result<Statements> {
         let distance = |(known, _): &(&str, &str)| strsim::damerau_levenshtein(known, key);
         let nearest = KEYS.iter().min_by_key(|k| distance(k)).expect("there are keys");
         let said = match distance(nearest) {
-            0 => statements.set(key, value),
+            0 if stated.contains(&key) => {
+                Err(format!("{key} is stated twice: keep the line that holds"))
+            }
+            0 => {
+                stated.push(key);
+                statements.set(key, value)
+            }
             // A short word is near to anything.
             1 | 2 if key.len() > 4 => {
                 Err(format!("'{key}' is no key; did you mean {}?", nearest.0))
@@ -382,6 +393,9 @@ impl<'a> Table<'a> {
         width_m: f64,
         p_pa: f64,
     ) -> Checked<(), String> {
+        // One body may be longer than the other, and nothing presses there.
+        let on = |body| self.moved_inside(body, [at_m[0], at_m[1], 0.0]);
+        on(BodyKind::Roller).or_else(|_| on(BodyKind::Block))?;
         let Curves { hertz, pressure, .. } = &mut self.curves;
         let known = pressure.iter().position(|line| line.name == name);
         let place = known.unwrap_or_else(|| {
