@@ -19,8 +19,8 @@ const COPIES: f64 = 3.0;
 type Array = ([usize; 2], Vec<f64>);
 
 /// Formats that are read, for messages.
-const FORMATS: &str =
-    "give a two-dimensional array of floats as .npy, .csv with a row for each x, or .x3p";
+const FORMATS: &str = "give a two-dimensional array of floats of 32 or 64 bits as .npy, \
+                       .csv with a row for each x, or .x3p";
 
 impl Heights {
     /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit
@@ -219,7 +219,11 @@ mod tests {
             ("a.npy", array("<f8", "False", "(4,)", &data), "shape (4,)"),
             ("a.npy", array("<f8", "False", "(2, x, 2)", &data), "shape (2, x, 2)"),
             ("a.npy", array("<f8", "False", "(18446744073709551615, 0)", &[]), "an empty array"),
-            ("a.npy", array("<i8", "False", "(2, 2)", &data), "type <i8"),
+            (
+                "a.npy",
+                array("<f2", "False", "(4, 4)", &data),
+                "type <f2; give a two-dimensional array of floats of 32 or 64 bits",
+            ),
             (
                 "a.npy",
                 array("<f8", "False", "(2, 3)", &data),
