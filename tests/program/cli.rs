@@ -516,7 +516,7 @@ fn a_measured_surface_is_pressed_on_cells() {
         assert!(more.join(plot).is_file(), "{plot}");
     }
     let refusals = [
-        ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
+        ("heights = \"holes.npy\"", steps, "holes.npy: heights = NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
         ("heights = \"none.npy\"", steps, "none.npy"),
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
