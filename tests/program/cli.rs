@@ -177,6 +177,7 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
         ("[load]", "[pose]\noffset_m = 0.02\n[load]", "the bodies overlap along y by 0e0 m"),
         ("[load]", "[pose]\ntilt_rad = 1e-3\n[load]", "a load with eccentricity_m finds its own"),
         ("[load]", "[pose]\ntilt = 1e-3\n[load]", "unknown key pose.tilt; did you mean tilt_rad?"),
+        (logarithmic, &table(""), "roller.profile.file = \"\" is not valid: the path of a file"),
         (logarithmic, &table("none.csv"), "none.csv"),
         (logarithmic, &table("back.csv"), "back.csv:4: y = 5e-3 m does not lie beyond"),
         (logarithmic, &table("short.csv"), "its points lie from y = -4e-3 to 4e-3 m"),
@@ -518,6 +519,7 @@ fn a_measured_surface_is_pressed_on_cells() {
     let refusals = [
         ("heights = \"holes.npy\"", steps, "holes.npy: heights = NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
+        ("heights = \"\"", steps, "surface.heights = \"\" is not valid: the path"),
         ("heights = \"none.npy\"", steps, "none.npy"),
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
