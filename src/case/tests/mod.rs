@@ -184,7 +184,18 @@ fn errors_name_key_line_and_remedy() {
 #[test]
 fn missing_file_names_the_built_in_cases() {
     let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
-    assert!(message.contains("no such file") && message.contains("flush-short"), "{message}");
+    assert!(message.contains("no such file; did you mean flush-short? "), "{message}");
+    let folder = tempfile::tempdir().unwrap();
+    for (path, wanted) in [
+        (folder.path(), ": is a folder; give a case file"),
+        (Path::new("-"), "-: no such file; for a case from standard input give /dev/stdin"),
+        (Path::new("factorial"), "is a study, not a case; run `edgeline study factorial`"),
+    ] {
+        let message = Case::find(path).unwrap_err().to_string();
+        assert!(message.contains(wanted) && message.contains("flush-short"), "{message}");
+    }
+    let message = Study::find(folder.path()).unwrap_err().to_string();
+    assert!(message.contains(": is a folder; give a study file"), "{message}");
     assert_eq!(Case::find(Path::new("flush-short")).unwrap().name, "flush-short");
 }
 
