@@ -27,6 +27,14 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
+    /// An error of the solution of a case, with the file of the case.
+    #[error("{}: {source}", path.display())]
+    Case {
+        /// The case file.
+        path: PathBuf,
+        /// The error.
+        source: Box<Error>,
+    },
     /// Reading or writing failed.
     #[error("cannot {action} {}: {source}{}", path.display(), remedy(source))]
     Io {

@@ -118,6 +118,10 @@ impl Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    solve(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn solve(arguments: &Arguments) -> Result<Exit> {
     let mut case = Case::find(&arguments.case)?;
     let mut options = Options::new(arguments.method);
     if !arguments.body.is_empty() {
@@ -130,7 +134,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         options.points = super::points::read(path, &case)?;
     }
     if arguments.engine(&case) == Engine::Cells {
-        return run_on_cells(&case, &options, &arguments);
+        return run_on_cells(&case, &options, arguments);
     }
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
@@ -150,7 +154,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         case.check_force("an uncertain case has a force")?;
     }
     arguments.uncertain.inputs(&case)?;
-    let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
+    let counts = if arguments.field { Some(field_counts(arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &options)?;
     let case = solved.case();
@@ -168,10 +172,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
     }
-    more.extend(pictures(case, &found, &arguments)?);
+    more.extend(pictures(case, &found, arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     solution::write(&found, &options, more, &arguments.out)?;
-    tell(case, &found, &arguments)
+    tell(case, &found, arguments)
 }
 
 /// What the slices of ISO/TS 16281 make of the ends, in words.

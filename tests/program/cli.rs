@@ -96,6 +96,13 @@ fn an_approach_gives_the_load_and_is_refused_where_a_force_is_needed() {
         assert!(said.contains(wanted) && said.contains("give force_n instead"), "{said}");
     }
     assert_eq!(files(path), ["a.toml"]);
+    let text = edgeline::case::builtin_case("half-short").unwrap().unwrap().to_toml();
+    let force = text.lines().find(|l| l.starts_with("force_n")).unwrap();
+    let text = text.replace(force, "approach_m = 1e-12");
+    let line = 1 + text.lines().position(|l| l.starts_with("approach_m")).unwrap();
+    std::fs::write(path.join("b.toml"), text).unwrap();
+    let said = refused(path, &["solve", "b.toml", "--tolerance", "3e-2"]);
+    assert!(said.contains(&format!("b.toml:{line}: load.approach_m = 1e-12 is not")), "{said}");
     let solve = ["solve", "a.toml", "--tolerance", "5e-3", "--json"];
     let run = edgeline(path, &solve).output().unwrap();
     let found: Value = serde_json::from_slice(&run.stdout).unwrap();

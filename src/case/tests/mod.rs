@@ -3,6 +3,7 @@ mod study;
 mod sweep;
 
 use super::*;
+use crate::base::Error;
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -197,6 +198,26 @@ fn missing_file_names_the_built_in_cases() {
     let message = Study::find(folder.path()).unwrap_err().to_string();
     assert!(message.contains(": is a folder; give a study file"), "{message}");
     assert_eq!(Case::find(Path::new("flush-short")).unwrap().name, "flush-short");
+}
+
+#[test]
+fn errors_of_a_solution_have_their_place_in_the_case_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.toml");
+    std::fs::write(&path, LOADED).unwrap();
+    let placed = |path: &Path, key: &str| {
+        let (key, reason, remedy) = (key.into(), "why".into(), "what to do".into());
+        let error = Error::Value { key, value: "9".into(), reason, remedy };
+        Case::place(path, error).to_string()
+    };
+    let said = placed(&path, "load.force_n");
+    assert!(said.ends_with("f.toml:12: load.force_n = 1000 is not valid: why; what to do"), "{said}");
+    for (path, key) in [(&*path, "--loads"), (Path::new("flush-short"), "load.force_n")] {
+        assert_eq!(placed(path, key), format!("{key} = 9 is not valid: why; what to do"));
+    }
+    let late = Error::NotConverged { iterations: 3, residual: 0.5, remedy: "wait".into() };
+    let said = Case::place(&path, late).to_string();
+    assert!(said.contains("f.toml: contact did not converge after 3 iterations"), "{said}");
 }
 
 #[test]
