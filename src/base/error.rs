@@ -134,6 +134,19 @@ pub enum Error {
     },
 }
 
+#[cfg(feature = "cli")]
+impl Error {
+    /// The error about a number of a case that comes from the `value` of an option.
+    pub fn of_option(self, option: &str, value: &str) -> Self {
+        match self {
+            Self::Value { reason, remedy, .. } => {
+                Self::Value { key: option.into(), value: value.into(), reason, remedy }
+            }
+            other => other,
+        }
+    }
+}
+
 /// The remedy for a system error, where the system's own message gives none.
 fn remedy(source: &std::io::Error) -> &'static str {
     use std::io::ErrorKind;

@@ -7,10 +7,10 @@ use super::uncertain_options::UncertainOptions;
 use super::values::{
     checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine,
 };
-use crate::base::number::duration;
+use crate::base::number::{duration, significant};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::{Case, Key};
+use crate::case::Case;
 use crate::host::{Lock, check_memory};
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
@@ -115,6 +115,43 @@ impl Arguments {
         let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
         self.engine.unwrap_or(own)
     }
+
+    /// Refuses options of the engine on cells.
+    fn check_no_cells(&self) -> Result<()> {
+        for (option, given) in [
+            ("cells", listed(&self.cells)),
+            ("loads", listed(&self.loads)),
+            ("layers", listed(&self.layers)),
+        ] {
+            if !given.is_empty() {
+                let reason = "only the engine on cells takes it";
+                return Err(unsuited((option, &given), reason, "add --engine cells"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses options of the engine along a line.
+    fn check_cells_alone(&self) -> Result<()> {
+        let remedy = "leave it out, or take --engine line";
+        let laminae = self.laminae.map_or_else(String::new, |count| count.to_string());
+        let flag = |given: bool| if given { "given".to_string() } else { String::new() };
+        for (option, given, reason) in [
+            ("field", flag(self.field), "the engine on cells writes no fields"),
+            ("stiffness", flag(self.stiffness), "the engine on cells does not compute them"),
+            ("laminae", laminae, "the engine on cells does not compute them"),
+            (
+                "uncertain",
+                self.uncertain.given(),
+                "the engine on cells is too slow for many solutions",
+            ),
+        ] {
+            if !given.is_empty() {
+                return Err(unsuited((option, &given), reason, remedy));
+            }
+        }
+        Ok(())
+    }
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
@@ -140,15 +177,7 @@ fn solve(arguments: &Arguments) -> Result<Exit> {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
     say_if_too_fine(&case);
-    if !arguments.cells.is_empty() {
-        return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
-    }
-    for (option, given) in [("loads", &arguments.loads), ("layers", &arguments.layers)] {
-        if !given.is_empty() {
-            let reason = "only the engine on cells computes them";
-            return Err(unsuited(option, reason, "add --engine cells"));
-        }
-    }
+    arguments.check_no_cells()?;
     options.check_line(&case)?;
     if arguments.uncertain.is_given() {
         case.check_force("an uncertain case has a force")?;
@@ -201,33 +230,23 @@ fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
 
 /// The same on uniform cells.
 fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result<Exit> {
-    if arguments.field {
-        return Err(unsuited("field", "the engine on cells writes no fields", "leave it out"));
-    }
-    for (option, given) in
-        [("stiffness", arguments.stiffness), ("laminae", arguments.laminae.is_some())]
-    {
-        if given {
-            let reason = "the engine on cells does not compute them";
-            return Err(unsuited(option, reason, "leave it out, or take --engine line"));
-        }
-    }
-    if arguments.uncertain.is_given() {
-        let reason = "the engine on cells is too slow for many solutions";
-        return Err(unsuited("uncertain", reason, "leave it out, or leave out --engine cells"));
-    }
+    arguments.check_cells_alone()?;
     let mut cells = CellOptions::default();
     match arguments.cells[..] {
         [] => {}
         [nx, ny] => cells.counts = Some([nx, ny]),
-        _ => return Err(unsuited("cells", "there are two directions", "give for example 64,128")),
+        _ => {
+            let given = ("cells", &*listed(&arguments.cells));
+            return Err(unsuited(given, "there are two directions", "give for example 64,128"));
+        }
     }
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
     let grid = check_cells(case, &cells)?;
-    for force in &arguments.loads {
-        Key::find("load.force_n").expect("a key of the list").check(*force)?;
+    for force_n in &arguments.loads {
+        let checked = case.clone().with_force(*force_n).check();
+        checked.map_err(|e| e.of_option("--loads", &significant(*force_n, 6)))?;
     }
     check_layers(case, options, &arguments.layers, grid.len())?;
     let _lock = Lock::claim(&arguments.out)?;
@@ -280,11 +299,16 @@ fn pictures<D>(
     page::of_solution(case, &label, found)
 }
 
-/// An option that does not suit the others.
-fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
+/// The values of a list as they are given to an option.
+fn listed<T: ToString>(values: &[T]) -> String {
+    values.iter().map(T::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// An option, with its value, that does not suit the others.
+fn unsuited((option, value): (&str, &str), reason: &str, remedy: &str) -> Error {
     Error::Value {
         key: format!("--{option}"),
-        value: "given".into(),
+        value: value.into(),
         reason: reason.into(),
         remedy: remedy.into(),
     }

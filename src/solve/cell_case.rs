@@ -9,6 +9,7 @@ use super::scene::Scene;
 use super::solved::{Solution, most_stressed};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
+use crate::base::number::significant;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -116,6 +117,7 @@ struct Region {
     given: Option<f64>,
     /// Half-spans and distances of the heights across and along (C).
     samples: Option<([f64; 2], [f64; 2])>,
+    c_m: f64,
 }
 
 impl Region {
@@ -126,7 +128,7 @@ impl Region {
             (heights.half_spans_m().map(|v| v / c_m), steps.map(|v| v / c_m))
         });
         let given = case.cells.map(|cells| cells.half_width_m / c_m);
-        Self { half_length: scene.half_length, counts: cells.counts, given, samples }
+        Self { half_length: scene.half_length, counts: cells.counts, given, samples, c_m }
     }
 
     /// The first grid to try.
@@ -156,7 +158,23 @@ impl Region {
             Some(_) => f64::INFINITY,
             None => self.samples.map_or(f64::INFINITY, covered),
         };
-        Grid::new(nx, ny, half_width.min(most), self.half_length)
+        let grid = Grid::new(nx, ny, half_width.min(most), self.half_length);
+        match self.samples {
+            Some((_, steps)) if self.counts.is_none() => grid.map_err(|e| self.unlike(steps, e)),
+            _ => grid,
+        }
+    }
+
+    /// The error about cells that follow from the `steps` between the samples (C).
+    fn unlike(&self, steps: [f64; 2], error: Error) -> Error {
+        let Error::Value { reason, .. } = error else { return error };
+        let [dx_m, dy_m] = steps.map(|step| significant(step * self.c_m, 6));
+        Error::Value {
+            key: "surface.dx_m".into(),
+            reason: format!("with dy_m = {dy_m}, {reason}"),
+            value: dx_m,
+            remedy: "check both distances of the samples (m), or give --cells".into(),
+        }
     }
 
     /// Even numbers of cells twice as long as wide, longer only where there would be too many; with

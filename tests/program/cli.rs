@@ -410,7 +410,10 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
     }
     assert!(cells["load_error_rel"].as_f64().unwrap() < 1e-12);
     for (arguments, wanted) in [
-        (&["--cells", "64,64"][..], "--engine cells"),
+        (&["--cells", "64,64"][..], "--cells = 64,64 is not valid"),
+        (&["--loads", "1,2.5"], "--loads = 1,2.5 is not valid: only the engine on cells takes it"),
+        (&["--engine", "cells", "--loads", "5,-1"], "--loads = -1 is not valid: the load in"),
+        (&["--engine", "cells", "--loads", "1e12"], "--loads = 1e12 is not valid: W = w"),
         (&["--engine", "cells", "--cells", "64"], "64,128"),
         (&["--engine", "cells", "--cells", "512,8"], "as long as wide"),
         (
@@ -531,6 +534,11 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 1e-8\ndy_m = 3e-5",
+            "surface.dx_m = 1e-8 is not valid: with dy_m = 3e-5, the cells are",
+        ),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
         ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
         ("heigths = \"waves.npy\"", steps, "did you mean heights?"),

@@ -211,7 +211,10 @@ fn errors_of_a_solution_have_their_place_in_the_case_file() {
         Case::place(path, error).to_string()
     };
     let said = placed(&path, "load.force_n");
-    assert!(said.ends_with("f.toml:12: load.force_n = 1000 is not valid: why; what to do"), "{said}");
+    assert!(
+        said.ends_with("f.toml:12: load.force_n = 1000 is not valid: why; what to do"),
+        "{said}"
+    );
     for (path, key) in [(&*path, "--loads"), (Path::new("flush-short"), "load.force_n")] {
         assert_eq!(placed(path, key), format!("{key} = 9 is not valid: why; what to do"));
     }
