@@ -287,6 +287,7 @@ impl<'d> Entry<'d> {
                 let item = |value| Entry { document: self.document, key: self.key.clone(), value };
                 Ok(items.iter().map(item).collect())
             }
+            DeValue::Array(_) => Err(self.refuse("the list is empty", "give one or more values")),
             _ => Err(self.refuse("a list belongs here", "write [first, second]")),
         }
     }

@@ -278,7 +278,8 @@ fn study_errors_name_key_line_and_remedy() {
         1 + DEFAULT_STUDY.lines().position(|l| l.starts_with(key)).expect("key in the study")
     };
     for (key, with, wanted) in [
-        ("W = ", "W = []", "factors.W = [] is not valid: a list belongs here"),
+        ("W = ", "W = []", "factors.W = [] is not valid: the list is empty"),
+        ("centre = ", "cases = []", "cases = [] is not valid: the list is empty"),
         ("W = ", "W = 1e-4", "factors.W = 1e-4 is not valid: a list belongs here"),
         ("W = ", "W = [1e-4, 1e-4]", "factors.W = 1e-4 is not valid: this level is there already"),
         ("W = ", "W = [1e-4, -1]", "factors.W = -1 is not valid"),
