@@ -160,6 +160,9 @@ fn remedy(source: &std::io::Error) -> &'static str {
         }
         ErrorKind::NotFound => "; check the path, and that nobody removed it meanwhile",
         ErrorKind::IsADirectory => "; give a file, not a folder",
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "; a file is in the way: give another path, or move it away"
+        }
         _ => "",
     }
 }

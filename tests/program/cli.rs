@@ -237,6 +237,7 @@ fn output_folder_that_cannot_be_made_exits_with_two() {
     for out in ["taken", "taken/below"] {
         let said = refused(folder.path(), &["solve", "flush-short", "--out", out]);
         assert!(said.contains("cannot create the folder taken"), "{said}");
+        assert!(said.contains("; a file is in the way: give another path"), "{said}");
     }
     assert_eq!(files(folder.path()), ["taken"]);
 }
