@@ -137,7 +137,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     for file in &summary.files {
         if !file.left_out.is_empty() {
             let left_out = file.left_out.join(", ");
-            say(&format!("note: {}: all points are next to an edge: {left_out}", file.name));
+            say(&format!(
+                "note: {}: too few points away from the edges, of which a curve takes two in a row: {left_out}",
+                file.name
+            ));
         }
     }
     if arguments.json {
