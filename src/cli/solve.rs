@@ -64,7 +64,8 @@ pub(super) struct Arguments {
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
-    /// CSV file of further points, with the columns body,x_m,y_m,z_m
+    /// CSV file of further points, with the columns body,x_m,y_m,z_m; lines that begin with # are
+    /// comments
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     points: Option<PathBuf>,
     /// Also write pictures of pressure and stresses, and a page about the case

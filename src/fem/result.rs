@@ -3,6 +3,7 @@
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::host::csv_fault;
 use crate::solve::Scene;
 use crate::stress::curves::{across_contact, curves_on, every_name};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
@@ -356,7 +357,7 @@ struct Csv<'t> {
 impl<'t> Csv<'t> {
     fn parse(text: &'t str, path: &'t Path, wanted: &[&str]) -> Result<Self> {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|e| nonsense(path, Some(1), e.to_string()))?.clone();
+        let header = reader.headers().map_err(|e| nonsense(path, Some(1), csv_fault(&e)))?.clone();
         let find = |name: &str| header.iter().position(|h| h == name);
         let columns = wanted
             .iter()
@@ -374,7 +375,7 @@ impl<'t> Csv<'t> {
             Ok(record) => Ok(Row { path, record, columns: columns.clone(), mesh }),
             Err(e) => {
                 let line = e.position().map(|p| p.line() as usize);
-                Err(nonsense(path, line, e.to_string()))
+                Err(nonsense(path, line, csv_fault(&e)))
             }
         })
     }
