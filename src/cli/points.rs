@@ -1,5 +1,6 @@
 //! The file of points that `edgeline solve --points` takes.
 
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{check_memory, csv_fault, read_text};
@@ -76,7 +77,7 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
         let at_m = [row.x_m, row.y_m, row.z_m];
         Extent::of(case, row.body).check(at_m).map_err(|outside| {
             let Outside { axis, value_m, reason, remedy } = outside;
-            refuse(line, format!("{axis}_m = {value_m:e} {reason}: {remedy}"))
+            refuse(line, format!("{axis}_m = {} {reason}: {remedy}", stated(value_m)))
         })?;
         points.push(Point { body: row.body, at_m });
     }
@@ -116,9 +117,9 @@ mod tests {
             ("block,0,zero,0", ":3: "),
             ("block,nan,0,0", ":3: x_m = NaN is not a finite number"),
             ("block,0,0,-1e-9", ":3: z_m = -1e-9 is outside the block"),
-            ("block,0,1,0", ":3: y_m = 1e0 is outside the block"),
-            ("roller,0,0.002,0", ":3: y_m = 2e-3 is outside the roller"),
-            ("roller,0,0,0.0201", ":3: z_m = 2.01e-2 is outside the roller"),
+            ("block,0,1,0", ":3: y_m = 1 is outside the block"),
+            ("roller,0,0.002,0", ":3: y_m = 0.002 is outside the roller"),
+            ("roller,0,0,0.0201", ":3: z_m = 0.0201 is outside the roller"),
         ] {
             let message = read_text(&format!("{head}{row}\n")).unwrap_err().to_string();
             assert!(message.contains(wanted), "{row}: {message}");

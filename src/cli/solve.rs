@@ -7,7 +7,7 @@ use super::uncertain_options::UncertainOptions;
 use super::values::{
     checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine,
 };
-use crate::base::number::{duration, significant};
+use crate::base::number::{duration, stated};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -247,7 +247,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     let grid = check_cells(case, &cells)?;
     for force_n in &arguments.loads {
         let checked = case.clone().with_force(*force_n).check();
-        checked.map_err(|e| e.of_option("--loads", &significant(*force_n, 6)))?;
+        checked.map_err(|e| e.of_option("--loads", &stated(*force_n)))?;
     }
     check_layers(case, options, &arguments.layers, grid.len())?;
     let _lock = Lock::claim(&arguments.out)?;

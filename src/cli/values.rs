@@ -1,6 +1,7 @@
 //! Values of options that several subcommands share.
 
 use super::output::say;
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Key};
@@ -69,7 +70,9 @@ pub fn say_if_too_fine(case: &Case) {
     let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
     if asked < finest {
         say(&format!(
-            "note: the finest resolution is that of a tolerance of {finest:e}, which {asked:e} takes, too"
+            "note: the finest resolution is that of a tolerance of {}, which {} takes, too",
+            stated(finest),
+            stated(asked)
         ));
     }
 }
@@ -88,8 +91,8 @@ fn checked(tolerance: f64, (low, high): (f64, f64), what: &str, usual: &str) -> 
     }
     Err(Error::Value {
         key: "--tolerance".into(),
-        value: tolerance.to_string(),
-        reason: format!("it is {what} between {low:e} and {high:e}"),
+        value: stated(tolerance),
+        reason: format!("it is {what} between {} and {}", stated(low), stated(high)),
         remedy: format!("give for example {usual}"),
     })
 }

@@ -1,6 +1,6 @@
 //! The finite-element codes, declared here and nowhere else.
 
-use crate::base::number::significant;
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sliding};
@@ -75,7 +75,7 @@ impl Code {
         };
         if let Some(radius_m) = case.block.radius_m {
             let remedy = "remove it, or solve the case with `edgeline solve`";
-            let value = format!("{radius_m:e}");
+            let value = stated(radius_m);
             return refuse(
                 "block.radius_m",
                 value,
@@ -117,7 +117,7 @@ fn uneven(case: &Case) -> (&'static str, String) {
     ];
     let mut given = keys.into_iter().filter_map(|(key, value)| Some((key, value?)));
     match given.find(|(_, value)| *value != 0.0) {
-        Some((key, value)) => (key, significant(value, 6)),
+        Some((key, value)) => (key, stated(value)),
         // Only a table has other drops on its other side.
         None => ("profile", "a table that is not even".into()),
     }

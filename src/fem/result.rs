@@ -1,5 +1,6 @@
 //! The output of the finite-element program: `fem.json`, `curves.csv`, `pressure.csv`.
 
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -59,7 +60,11 @@ impl FemSummary {
             ("equilibrium_residual", self.equilibrium_residual),
         ] {
             if value.is_nan() || value.abs() > 1e-6 {
-                return Err(nonsense(path, None, format!("{name} = {value:e} is more than 1e-6")));
+                return Err(nonsense(
+                    path,
+                    None,
+                    format!("{name} = {} is more than 1e-6", stated(value)),
+                ));
             }
         }
         for (name, value) in [

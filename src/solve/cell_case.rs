@@ -9,7 +9,7 @@ use super::scene::Scene;
 use super::solved::{Solution, most_stressed};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
-use crate::base::number::significant;
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -97,7 +97,7 @@ pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
     if scene.slides {
         return Err(Error::Value {
             key: "sliding.friction".into(),
-            value: format!("{:e}", case.sliding.friction),
+            value: stated(case.sliding.friction),
             reason: "cells carry pressures only".into(),
             remedy: "solve this case with --engine line, or without friction".into(),
         });
@@ -168,7 +168,7 @@ impl Region {
     /// The error about cells that follow from the `steps` between the samples (C).
     fn unlike(&self, steps: [f64; 2], error: Error) -> Error {
         let Error::Value { reason, .. } = error else { return error };
-        let [dx_m, dy_m] = steps.map(|step| significant(step * self.c_m, 6));
+        let [dx_m, dy_m] = steps.map(|step| stated(step * self.c_m));
         Error::Value {
             key: "surface.dx_m".into(),
             reason: format!("with dy_m = {dy_m}, {reason}"),

@@ -12,6 +12,7 @@ use super::scene::Scene;
 use super::shaping::Shaping;
 use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::case::Case;
 use crate::stress::curves::{Span, across_contact, curves_on};
@@ -133,7 +134,7 @@ impl SolvedCase {
         for (i, at) in points.iter().enumerate() {
             extent.check(at.map(|v| v * self.hertz.c_m)).map_err(|outside| Error::Value {
                 key: format!("{} of point {} ({})", outside.axis, i + 1, body.name()),
-                value: format!("{:e} m", outside.value_m),
+                value: format!("{} m", stated(outside.value_m)),
                 reason: format!("it {}", outside.reason),
                 remedy: outside.remedy,
             })?;

@@ -7,7 +7,7 @@
 //! input; it sees what is not linear, too. Both use places in metres that do not move with the
 //! inputs.
 
-use crate::base::number::significant;
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Draft, Form, KEYS, Key};
@@ -70,13 +70,13 @@ impl Input {
         let deviation = deviation.filter(|d| *d > 0.0).ok_or_else(|| {
             refuse(format!(
                 "'{amount}' is no standard deviation of {}: it is greater than zero",
-                significant(value, 6)
+                stated(value)
             ))
         })?;
         if value != 0.0 && deviation > MOST_RELATIVE * value.abs() {
             return Err(refuse(format!(
                 "a deviation of more than half the value {} is no small one",
-                significant(value, 6)
+                stated(value)
             )));
         }
         let input = Self { key, value, deviation };
@@ -96,8 +96,8 @@ impl Input {
         draft.case().map_err(|e| match e {
             Error::Value { reason, .. } => Error::Value {
                 key: "--uncertain".into(),
-                value: format!("{}={}", self.key.path, significant(self.deviation, 6)),
-                reason: format!("a sample is {}, and {reason}", significant(moved, 6)),
+                value: format!("{}={}", self.key.path, stated(self.deviation)),
+                reason: format!("a sample is {}, and {reason}", stated(moved)),
                 remedy: "give a smaller deviation, or leave it out".into(),
             },
             other => other,

@@ -64,7 +64,7 @@ fn half_a_measure_is_refused() {
         ("dang_van_beta_pa = 4e8", "dang_van_alpha"),
         ("yield_pa = 1e9", "fatemi_socie_k"),
         ("fatemi_socie_k = 0.6", "yield_pa"),
-        ("dang_van_alpha = -1.0", "0 and 1e1"),
+        ("dang_van_alpha = -1.0", "0 and 10"),
     ] {
         let text = format!("{CASE}fatigue = {{ {fatigue} }}\n");
         fs::write(folder.path().join("case.toml"), text).unwrap();

@@ -119,7 +119,7 @@ const MISTAKES: &[Mistake] = &[
     (
         "L_r = 0.5",
         "L_r = 2e3",
-        "f.toml:12: dimensionless.L_r = 2e3 is not valid: L_r = L1 / L2 lies between 1e-3 and 1e3",
+        "f.toml:12: dimensionless.L_r = 2e3 is not valid: L_r = L1 / L2 lies between 0.001 and 1000",
     ),
     ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
     ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
@@ -286,7 +286,7 @@ fn study_errors_name_key_line_and_remedy() {
         (
             "L_r = ",
             "L_r = [0.5, 1500]",
-            "factors.L_r = 1500 is not valid: L_r = L1 / L2 lies between 1e-3 and 1e3",
+            "factors.L_r = 1500 is not valid: L_r = L1 / L2 lies between 0.001 and 1000",
         ),
         ("S_l = ", "S_1 = [5]", "unknown key factors.S_1; did you mean S_l?"),
         ("centre = ", "centre = 1", "centre = 1 is not valid"),
@@ -380,8 +380,8 @@ fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
         (case, study)
     };
     for (radius, young, slenderness, wanted) in [
-        ("1e4", "210e9", "1e4", "the roller's length in metres lies between 1e-9 and 1e4"),
-        ("5e3", "210e9", "2", "the block's length in metres lies between 1e-9 and 1e4"),
+        ("1e4", "210e9", "1e4", "the roller's length in metres lies between 1e-9 and 10000"),
+        ("5e3", "210e9", "2", "the block's length in metres lies between 1e-9 and 10000"),
         ("1e4", "1e14", "0.5", "the load in newtons lies between 1e-12 and 1e15"),
     ] {
         let (case, study) = case(radius, young, slenderness);

@@ -101,7 +101,7 @@ fn what_is_wrong_with_a_row_belongs_to_the_row() {
     let sweep = parse(&GRID.replace("[0.5, 1.0]", "[0.5, 1500]")).unwrap();
     assert!(case(&sweep, 0).is_ok());
     let said = case(&sweep, 1).unwrap_err().to_string();
-    assert!(said.starts_with("dimensionless.L_r = 1.5e3 is not valid: L_r"), "{said}");
+    assert!(said.starts_with("dimensionless.L_r = 1500 is not valid: L_r"), "{said}");
 }
 
 #[test]
