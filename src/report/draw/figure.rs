@@ -109,7 +109,8 @@ impl Sample<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::look;
+    use super::super::panel::{Bar, look};
+    use super::super::picture::INK;
     use super::*;
     use crate::study::Engine;
 
@@ -125,6 +126,23 @@ mod tests {
         let [first, second, third] = places(400.0)[..] else { panic!("three names") };
         assert!(first.1 == second.1 && second.0 > first.0);
         assert_eq!(third, (LEGEND_LEFT, LEGEND_TOP + LEGEND_ROW));
+    }
+
+    #[test]
+    fn a_number_at_the_right_end_is_not_cut() {
+        let bar = |value| Bar { name: String::new(), value, colour: INK, strong: true };
+        let panel = Panel { bars: vec![bar(0.002_499), bar(0.001)], ..Default::default() };
+        let figure = Figure {
+            columns: 1,
+            panels: vec![panel],
+            panel_size: (380, 300),
+            ..Default::default()
+        };
+        let svg = figure.draw().to_svg();
+        let before = svg.split(">0.0025<").next().unwrap();
+        let x = before.rsplit(" x=\"").next().unwrap().split('"').next().unwrap();
+        let right = x.parse::<f64>().unwrap() + 0.5 * letters::width("0.0025", TEXT);
+        assert!(right < 380.0 && right > 360.0, "{right}");
     }
 
     #[test]
