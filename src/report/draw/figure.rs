@@ -62,10 +62,11 @@ impl Figure {
     }
 
     /// The names in the legend, what they stand for, and where each entry begins; entries that
-    /// leave no place for another one in `width` are followed by a new row.
+    /// leave no place for another one in `width` are followed by a new row. What has no point in
+    /// any panel is not named.
     fn legend(&self, width: f64) -> Vec<(&str, Sample<'_>, Point)> {
         let series = self.panels.iter().flat_map(|p| &p.series);
-        let series = series.map(|s| (s.name.as_str(), Sample::Series(s)));
+        let series = series.filter(|s| !s.points.is_empty()).map(|s| (s.name.as_str(), Sample::Series(s)));
         let shades = self.panels.iter().filter_map(|p| p.shade.as_ref());
         let shades = shades.map(|s| (s.name.as_str(), Sample::Shade));
         let mut all: Vec<(&str, Sample, Point)> = Vec::new();
@@ -119,7 +120,9 @@ mod tests {
         let series = ["one", "a name of some length", "another name of some length"].map(|name| {
             Series::curve(name, look(&Engine::fenicsx().into()), vec![(0.0, 1.0), (1.0, 2.0)])
         });
-        let panel = Panel { series: series.to_vec(), ..Default::default() };
+        let nothing = Series { name: "nothing".into(), points: Vec::new(), ..series[0].clone() };
+        let series = [&[nothing], &series[..]].concat();
+        let panel = Panel { series, ..Default::default() };
         let figure = Figure { columns: 1, panels: vec![panel], ..Default::default() };
         let places = |width| figure.legend(width).iter().map(|(.., p)| *p).collect::<Vec<_>>();
         assert!(places(1000.0).iter().all(|(_, y)| *y == LEGEND_TOP));
