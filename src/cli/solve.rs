@@ -12,6 +12,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::host::{Lock, check_memory};
+use crate::report::plots::PROGRAM;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
     CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, check_cells,
@@ -294,7 +295,7 @@ fn pictures<D>(
     let engine = if arguments.engine(case) == Engine::Cells { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
-        program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
+        program: PROGRAM.into(),
         date: now(),
     };
     page::of_solution(case, &label, found)

@@ -70,6 +70,6 @@ impl UncertainOptions {
         }
         let sampling = (self.samples, self.seed);
         let found = propagate(case, method, curves, self.inputs(case)?, sampling)?;
-        Ok(uncertainty::contents(&found, method))
+        Ok(uncertainty::contents(&case.name, &found, method))
     }
 }

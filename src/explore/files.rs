@@ -4,6 +4,7 @@ use crate::base::Result;
 use crate::base::stop::go_on;
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::report::plots::PROGRAM;
 use crate::report::study_files::pretty;
 use crate::report::{page, solution};
 use crate::solve::{Options, SolvedCase};
@@ -53,11 +54,8 @@ pub fn made(case: &Case, method: EdgeModel, file: &str) -> Result<Vec<u8>> {
         let table = solution::tables(&found, &options).into_iter().find(|t| t.name == table);
         return Ok(table.expect("a solution has these tables").to_csv().into_bytes());
     }
-    let label = page::Label {
-        by: method.to_string(),
-        program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
-        date: String::new(),
-    };
+    let label =
+        page::Label { by: method.to_string(), program: PROGRAM.into(), date: String::new() };
     let files = page::of_solution(case, &label, &found)?;
     Ok(files.into_iter().find(|(name, _)| name == file).expect("a solution has these pictures").1)
 }

@@ -14,6 +14,7 @@ use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
 use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::curves::{Span, across_contact, curves_on};
 use crate::stress::grid::on_grid;
@@ -86,6 +87,11 @@ impl SolvedCase {
     /// The case; with the force that was found, if the approach was given.
     pub fn case(&self) -> &Case {
         &self.case
+    }
+
+    /// The edge model.
+    pub fn method(&self) -> EdgeModel {
+        self.options.method
     }
 
     /// The scales.

@@ -592,7 +592,9 @@ fn uncertain_inputs_leave_bands() {
         table.iter().any(|r| r["body"] == "contact") && table.iter().any(|r| r["body"] == "roller")
     );
     assert!(table.iter().all(|r| number(r, "low_pa") <= number(r, "high_pa")));
-    assert!(text("a", "plot-uncertainty.svg").contains("two standard deviations"));
+    let plot = text("a", "plot-uncertainty.svg");
+    let origin = concat!("flush-short, quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
+    assert!(plot.contains("two standard deviations") && plot.contains(origin), "{origin}");
     let said =
         refused(folder.path(), &["solve", "flush-short", "--uncertain", "lod_n=5%", "--out", "d"]);
     assert!(said.contains("lod_n") && !folder.path().join("d").exists(), "{said}");

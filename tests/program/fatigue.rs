@@ -30,6 +30,9 @@ fn a_passage_is_written_with_its_critical_places() {
                 let name = format!("fatigue-{body}-{measure}.{form}");
                 assert!(names.contains(&name), "{name} is not in {names:?}");
             }
+            let svg = fs::read_to_string(out.join(format!("fatigue-{body}-{measure}.svg")));
+            let origin = concat!(", quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
+            assert!(svg.unwrap().contains(&format!("{origin}: {body}<")), "{measure}");
         }
         assert!(names.contains(&format!("fatigue-{body}.vtr")));
     }

@@ -36,6 +36,13 @@ impl Figure {
         Self { title, columns: 1, panels: vec![panel], panel_size: (820, 430) }
     }
 
+    /// The same figure with a title above its panel, for what leaves no room beside the title.
+    #[must_use]
+    pub fn of_what(mut self, what: &str) -> Self {
+        self.panels.iter_mut().for_each(|panel| panel.title = what.to_string());
+        self
+    }
+
     /// The figure as shapes.
     pub fn draw(&self) -> Picture {
         let columns = self.columns.max(1);
@@ -66,7 +73,8 @@ impl Figure {
     /// any panel is not named.
     fn legend(&self, width: f64) -> Vec<(&str, Sample<'_>, Point)> {
         let series = self.panels.iter().flat_map(|p| &p.series);
-        let series = series.filter(|s| !s.points.is_empty()).map(|s| (s.name.as_str(), Sample::Series(s)));
+        let series =
+            series.filter(|s| !s.points.is_empty()).map(|s| (s.name.as_str(), Sample::Series(s)));
         let shades = self.panels.iter().filter_map(|p| p.shade.as_ref());
         let shades = shades.map(|s| (s.name.as_str(), Sample::Shade));
         let mut all: Vec<(&str, Sample, Point)> = Vec::new();
