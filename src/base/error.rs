@@ -27,6 +27,14 @@ pub enum Error {
         /// What to do.
         remedy: String,
     },
+    /// An error of the solution of a case, with the file of the case.
+    #[error("{}: {source}", path.display())]
+    Case {
+        /// The case file.
+        path: PathBuf,
+        /// The error.
+        source: Box<Error>,
+    },
     /// Reading or writing failed.
     #[error("cannot {action} {}: {source}{}", path.display(), remedy(source))]
     Io {
@@ -126,6 +134,19 @@ pub enum Error {
     },
 }
 
+#[cfg(feature = "cli")]
+impl Error {
+    /// The error about a number of a case that comes from the `value` of an option.
+    pub fn of_option(self, option: &str, value: &str) -> Self {
+        match self {
+            Self::Value { reason, remedy, .. } => {
+                Self::Value { key: option.into(), value: value.into(), reason, remedy }
+            }
+            other => other,
+        }
+    }
+}
+
 /// The remedy for a system error, where the system's own message gives none.
 fn remedy(source: &std::io::Error) -> &'static str {
     use std::io::ErrorKind;
@@ -139,6 +160,9 @@ fn remedy(source: &std::io::Error) -> &'static str {
         }
         ErrorKind::NotFound => "; check the path, and that nobody removed it meanwhile",
         ErrorKind::IsADirectory => "; give a file, not a folder",
+        ErrorKind::AlreadyExists | ErrorKind::NotADirectory => {
+            "; a file is in the way: give another path, or move it away"
+        }
         _ => "",
     }
 }

@@ -19,6 +19,11 @@ pub fn significant(value: f64, digits: usize) -> String {
     without_trailing_zeros(&format!("{value:.decimals$}")).to_string()
 }
 
+/// A number in a message: all digits that people give, and none that rounding leaves.
+pub fn stated(value: f64) -> String {
+    significant(value, 10)
+}
+
 /// As [`significant`], with a sign whichever it is: a change.
 pub fn signed(value: f64, digits: usize) -> String {
     let sign = if value < 0.0 { "" } else { "+" };
@@ -92,6 +97,8 @@ mod tests {
         assert_eq!(texts, ["0", "0", "12.5", "123457", "-0.00012346", "100000", "0.3"]);
         let texts = [1e-5, 1.234e-5, -2.5e6, 999_999.9, 0.000_099_999_9].map(|v| significant(v, 3));
         assert_eq!(texts, ["1e-5", "1.23e-5", "-2.5e6", "1e6", "0.0001"]);
+        let texts = [0.0, 1.0, 12.5e-3, 1.000_000_000_000_566_4e-7, 210e9].map(stated);
+        assert_eq!(texts, ["0", "1", "0.0125", "1e-7", "2.1e11"]);
         assert_eq!([0.001_94, -0.139].map(|v| signed(v, 3)), ["+0.00194", "-0.139"]);
         assert_eq!([f64::NAN, f64::INFINITY].map(|v| significant(v, 3)), ["NaN", "inf"]);
     }

@@ -73,23 +73,33 @@ impl Draft {
         if is_given(path) {
             return Draft::read(path);
         }
-        path.to_str().and_then(builtin_draft).unwrap_or_else(|| {
-            let names: Vec<&str> = BUILTIN_CASES.iter().map(|(name, _)| *name).collect();
-            // A path is not meant for one.
-            let word = path.to_str().filter(|word| !word.contains(['/', '.']));
-            let meant = word.map(|word| format!("did you mean {}? ", nearest(word, &names)));
-            let meant = meant.unwrap_or_default();
-            Err(Error::File {
-                path: path.to_path_buf(),
-                line: None,
-                message: "no such file".into(),
-                remedy: format!(
-                    "{meant}give a case file, or a built-in case: {}",
-                    names.join(", ")
-                ),
-            })
-        })
+        path.to_str().and_then(builtin_draft).unwrap_or_else(|| Err(not_found(path)))
     }
+}
+
+/// The error about a `path` at which there is neither a case file nor a built-in case.
+fn not_found(path: &Path) -> Error {
+    let names = BUILTIN_CASES.map(|(name, _)| name);
+    // A path is not meant for a name.
+    let word = path.to_str().filter(|word| !word.contains(['/', '.'])).unwrap_or_default();
+    let is_study = BUILTIN_STUDIES.iter().any(|(name, _)| *name == word);
+    let meant = match word {
+        "-" => "for a case from standard input give /dev/stdin, or ".to_string(),
+        _ if is_study => format!("run `edgeline study {word}`, or "),
+        "" => String::new(),
+        _ => format!("did you mean {}? ", nearest(word, &names)),
+    };
+    Error::File {
+        path: path.to_path_buf(),
+        line: None,
+        message: if is_study { "is a study, not a case" } else { nothing_at(path) }.into(),
+        remedy: format!("{meant}give a case file, or a built-in case: {}", names.join(", ")),
+    }
+}
+
+/// What there is at a `path` without a file.
+pub(super) fn nothing_at(path: &Path) -> &'static str {
+    if path.is_dir() { "is a folder" } else { "no such file" }
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@ use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::profile_table::read_profile_table;
 use super::surface_table::read_surface;
-use crate::base::{BodyKind, Result};
+use crate::base::{BodyKind, Error, Result};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -35,6 +35,27 @@ impl Case {
     /// As [`Case::read`].
     pub fn parse(text: &str, path: &Path) -> Result<Case> {
         Draft::parse(text, path)?.case()
+    }
+
+    /// An `error` that the solution of the case at `path` gave, with its place: the line of the key
+    /// that it names, or the file. A built-in case has neither.
+    pub fn place(path: &Path, error: Error) -> Error {
+        // A pipe cannot be read again.
+        if !path.is_file() {
+            return error;
+        }
+        match &error {
+            Error::Value { key, .. } if key.contains('.') => {
+                let Ok(text) = read_text(path) else { return error };
+                let Ok(document) = Document::parse(path, &text) else { return error };
+                let root = document.root();
+                if root.find(key).is_some() { root.place(error) } else { error }
+            }
+            Error::NotConverged { .. } | Error::Unsound { .. } | Error::Uncovered { .. } => {
+                Error::Case { path: path.to_path_buf(), source: Box::new(error) }
+            }
+            _ => error,
+        }
     }
 }
 

@@ -243,9 +243,15 @@ impl<'d> Entry<'d> {
     /// written of the case may stand anywhere.
     ///
     /// # Errors
-    /// [`Error::File`] if it is no string, or if a folder has a name that no case file can have.
+    /// [`Error::File`] if it is no string or an empty one, or if a folder has a name that no case
+    /// file can have.
     pub fn beside(&self, path: &Path) -> Result<PathBuf> {
-        let place = path.parent().unwrap_or(Path::new("")).join(self.string()?);
+        let own = self.string()?;
+        if own.is_empty() {
+            let remedy = "write its path, relative to this file or from the root";
+            return Err(self.refuse("the path of a file belongs here", remedy));
+        }
+        let place = path.parent().unwrap_or(Path::new("")).join(own);
         let place = std::path::absolute(&place).map_err(|source| Error::Io {
             action: "find",
             path: place,
@@ -281,6 +287,7 @@ impl<'d> Entry<'d> {
                 let item = |value| Entry { document: self.document, key: self.key.clone(), value };
                 Ok(items.iter().map(item).collect())
             }
+            DeValue::Array(_) => Err(self.refuse("the list is empty", "give one or more values")),
             _ => Err(self.refuse("a list belongs here", "write [first, second]")),
         }
     }

@@ -4,6 +4,7 @@ use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::Case;
 use super::profile::ProfileKind;
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 
 /// A quantity that differs between the cases of a study.
@@ -141,7 +142,8 @@ impl FactorKey {
         match self {
             Self::Number(key) => key.check(level),
             Self::EndDrop(_) if !(low..=high).contains(&level) => {
-                let reason = format!("an end drop lies between {low:e} and {high:e} C^2 / (2 R)");
+                let [low, high] = [low, high].map(stated);
+                let reason = format!("an end drop lies between {low} and {high} C^2 / (2 R)");
                 Err(self.refuse(reason, "give it in these units; for no drop remove the profile"))
             }
             Self::Eccentricity if level.abs() >= 1.0 => {

@@ -4,6 +4,7 @@
 use super::document::Table;
 use super::draft::{Draft, Form};
 use super::model::{Cells, Factors};
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 
 /// Whether a file must contain a number.
@@ -142,22 +143,31 @@ impl Key {
     /// [`Error::Value`].
     pub fn check(&self, value: f64) -> Result<()> {
         let (low, high) = self.range;
-        if (low..=high).contains(&value) && self.is_legal.is_none_or(|legal| legal(value)) {
+        if self.takes(value) {
             return Ok(());
         }
         let reason = match self.rule {
             _ if !value.is_finite() => "a finite number belongs here".to_string(),
             Some(rule) => rule.to_string(),
             None if value <= 0.0 && low > 0.0 => format!("{} is greater than zero", self.what),
-            None => format!("{} lies between {low:e} and {high:e}", self.what),
+            None => format!("{} lies between {} and {}", self.what, stated(low), stated(high)),
         };
         Err(self.refuse(value, reason, self.remedy))
     }
 
     /// An error about a value.
     pub(super) fn refuse(&self, value: f64, reason: String, remedy: &str) -> Error {
-        let (key, value) = (self.path.to_string(), format!("{value:e}"));
-        Error::Value { key, value, reason, remedy: remedy.to_string() }
+        // A value just beyond a limit is not that limit.
+        let rounded = stated(value);
+        let is_limit = !self.takes(value) && rounded.parse().is_ok_and(|v| self.takes(v));
+        let value = if is_limit { format!("{value:e}") } else { rounded };
+        Error::Value { key: self.path.to_string(), value, reason, remedy: remedy.to_string() }
+    }
+
+    /// Whether a value is legal.
+    fn takes(&self, value: f64) -> bool {
+        let (low, high) = self.range;
+        (low..=high).contains(&value) && self.is_legal.is_none_or(|legal| legal(value))
     }
 
     /// The same key with a further condition on its legal values.
@@ -341,7 +351,7 @@ pub static KEYS: [Key; 44] = [
     key!("block.radius_m", "block_radius_m", "the radius of a raceway in metres, negative if concave,",
         PLACES, "-0.05", OPTIONAL, some .block.radius_m)
         .only(|radius| radius.abs() >= LENGTHS.0)
-        .ruled("a raceway's radius lies between -1e4 and 1e4 m and is not zero",
+        .ruled("a raceway's radius lies between -10000 and 10000 m and is not zero",
             "remove it for a flat block"),
     profile_key!(block, radius_m),
     profile_key!(block, amplitude_m),
@@ -357,7 +367,7 @@ pub static KEYS: [Key; 44] = [
         WITH_FACTORS, factors.slenderness),
     key!("dimensionless.L_r", "L_r", "the length ratio L_r", Factors::LENGTH_RATIO_RANGE, "1.0",
         WITH_FACTORS, factors.length_ratio)
-        .ruled("L_r = L1 / L2 lies between 1e-3 and 1e3", "write 1 for flush ends"),
+        .ruled("L_r = L1 / L2 lies between 0.001 and 1000", "write 1 for flush ends"),
     key!("dimensionless.eccentricity_m", "dimensionless_eccentricity_m", ECCENTRICITY, PLACES, "0.0",
         Presence::OptionalWith(Form::Factors), some .load.eccentricity_m),
     key!("load.force_n", "force_n", "the load in newtons", FORCES, "1000.0", GIVES_LOAD,

@@ -1,5 +1,6 @@
 //! The file of a measured profile: CSV with the columns `y_m` and `drop_m`.
 
+use crate::base::number::stated;
 use crate::base::profile::Table;
 use crate::base::{Error, Result};
 use crate::host;
@@ -49,7 +50,7 @@ pub(super) fn read_profile_table(path: &Path) -> Result<Table> {
             ));
         };
         if places.last().is_some_and(|last| y <= *last) {
-            let message = format!("y = {y:e} m does not lie beyond the line before it");
+            let message = format!("y = {} m does not lie beyond the line before it", stated(y));
             return Err(refuse(line, message, "sort the lines by y, with one drop for each y"));
         }
         places.push(y);

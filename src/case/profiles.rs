@@ -2,6 +2,7 @@
 
 use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
+use crate::base::number::{significant, stated};
 use crate::base::{BodyKind, Error, HertzScales, Profile, Result};
 use std::f64::consts::PI;
 
@@ -112,8 +113,8 @@ impl Case {
         let half = to;
         if let Some(straight) = spec.straight_m.filter(|s| *s >= 2.0 * half) {
             let reason = "the straight part is as long as the body, so nothing is left to relieve";
-            let remedy = format!("it is less than the length, {:e} m", 2.0 * half);
-            return refuse("straight_m", format!("{straight:e}"), reason.into(), remedy);
+            let remedy = format!("it is less than the length, {} m", stated(2.0 * half));
+            return refuse("straight_m", stated(straight), reason.into(), remedy);
         }
         match (spec.kind, &spec.table) {
             (ProfileKind::Table, None) => {
@@ -130,9 +131,10 @@ impl Case {
                 let rounding = 1e-9 * half;
                 if first > from + rounding || last < to - rounding {
                     let file = spec.file.clone().unwrap_or_default();
+                    let [first, last, from, to] = [first, last, from, to].map(stated);
                     let reason = format!(
-                        "its points lie from y = {first:e} to {last:e} m and the body from {from:e} \
-                         to {to:e} m"
+                        "its points lie from y = {first} to {last} m and the body from {from} to \
+                         {to} m"
                     );
                     let remedy = "give drops up to both ends".to_string();
                     return refuse("file", format!("{:?}", file.display()), reason, remedy);
@@ -147,10 +149,11 @@ impl Case {
         // What has no limit at the end is judged just before it.
         let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
         if deepest >= DEEPEST * self.roller.radius_m {
-            let (radius, value) = (self.roller.radius_m, format!("{kind:?}"));
+            let (radius, value) = (stated(self.roller.radius_m), format!("{kind:?}"));
             let reason = format!(
-                "the profile drops by {deepest:.3e} m at the body's end, which no small slope allows \
-                 (the roller's radius is {radius:e} m)"
+                "the profile drops by {} m at the body's end, which no small slope allows \
+                 (the roller's radius is {radius} m)",
+                significant(deepest, 4)
             );
             return refuse("kind", value, reason, "check the units of the profile (m, N)".into());
         }
@@ -188,7 +191,7 @@ fn check_numbers(spec: &ProfileSpec, place: &str) -> Result<()> {
     for key in ProfileSpec::NUMBERS {
         let (own, value, reason) = match spec.number(key) {
             Some(value) if !wanted.contains(&key) => {
-                (key, format!("{value:e}"), format!("a {kind} profile has no such number"))
+                (key, stated(value), format!("a {kind} profile has no such number"))
             }
             None if wanted.contains(&key) => {
                 let reason = format!("a {kind} profile needs {key}, which is missing");

@@ -1,6 +1,6 @@
 //! The study file: a factorial design around one pair of bodies, and further cases, or these alone.
 
-use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given};
+use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given, nothing_at};
 use super::case_file::{entries, keys_of, name, only_tables, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, nearest, read_text};
@@ -88,7 +88,7 @@ impl Study {
                 Error::File {
                     path: path.to_path_buf(),
                     line: None,
-                    message: "no such file".into(),
+                    message: nothing_at(path).into(),
                     remedy: format!("give a study file, or a built-in study: {}", names.join(", ")),
                 }
             },

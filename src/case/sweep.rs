@@ -9,6 +9,7 @@ use super::keys::Key;
 use super::levels::Levels;
 use super::model::Case;
 use super::sweep_table::{RowCells, Table};
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use std::path::Path;
 
@@ -155,7 +156,7 @@ impl Sweep {
                     let reason = "the case has no profile with this number".to_string();
                     let remedy =
                         "give the base case such a profile, or remove the column".to_string();
-                    let (key, value) = (key.path.to_string(), format!("{value:e}"));
+                    let (key, value) = (key.path.to_string(), stated(value));
                     return Err(Error::Value { key, value, reason, remedy });
                 }
                 key.set(&mut draft, value);

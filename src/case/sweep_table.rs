@@ -2,6 +2,7 @@
 
 use super::levels::MAX_ROWS;
 use crate::base::{Error, Result};
+use crate::host::csv_fault;
 use csv::{ErrorKind, ReaderBuilder, StringRecord};
 use std::fs::File;
 use std::io::Read;
@@ -103,15 +104,13 @@ impl Table {
 
     fn broken(&self, error: csv::Error) -> Error {
         let line = error.position().map(|p| p.line() as usize);
-        let text = error.to_string();
+        let fault = csv_fault(&error);
         match error.into_kind() {
             ErrorKind::Io(source) => self.unread(source),
-            ErrorKind::Utf8 { .. } => {
-                self.refuse(line, "is not UTF-8 text", "save it as UTF-8".into())
-            }
+            ErrorKind::Utf8 { .. } => self.refuse(line, &fault, "save it as UTF-8".into()),
             _ => {
                 let remedy = "give as many cells in every row as in the header";
-                self.refuse(line, &text, remedy.into())
+                self.refuse(line, &fault, remedy.into())
             }
         }
     }

@@ -1,6 +1,7 @@
 //! Measured surfaces: heights on a regular grid, and the gap of a contact with them.
 
 use super::grid::Grid;
+use crate::base::number::{significant, stated};
 use crate::base::{Error, Result};
 use crate::contact::Gap;
 use serde::{Deserialize, Serialize};
@@ -60,7 +61,7 @@ impl Heights {
         }
         for (step, key) in steps_m.into_iter().zip(["dx_m", "dy_m"]) {
             if !(step.is_finite() && step > 0.0) {
-                let value = format!("{step:e}");
+                let value = stated(step);
                 return refuse(
                     key,
                     value,
@@ -180,10 +181,15 @@ impl Heights {
         let spans = self.half_spans_m().into_iter().zip(wanted).zip(["x", "y"]);
         for ((span, wanted), axis) in spans {
             if span < wanted * (1.0 - 1e-9) {
+                let [nx, ny] = self.shape;
+                let [span, wanted] = [span, wanted].map(|v| significant(v, 4));
                 return Err(Error::Value {
                     key: "surface.heights".into(),
-                    value: format!("{span:.3e} m on either side of the middle along {axis}"),
-                    reason: format!("the cells reach {wanted:.3e} m"),
+                    value: format!("{nx} x {ny} samples"),
+                    reason: format!(
+                        "along {axis} they reach {span} m to either side of the middle, and the \
+                         cells {wanted} m"
+                    ),
                     remedy: "give more samples, or check dx_m and dy_m; along x, [cells] half_width_m makes the region smaller"
                         .into(),
                 });
@@ -233,7 +239,7 @@ mod tests {
             |shape, steps, values| Heights::new(shape, steps, values).unwrap_err().to_string();
         assert!(said([1, 4], [1.0; 2], vec![0.0; 4]).contains("two samples or more"));
         assert!(said([2, 2], [1.0; 2], vec![0.0; 5]).contains("2 x 2 with 5 values"));
-        assert!(said([2, 2], [1.0, 0.0], vec![0.0; 4]).starts_with("dy_m = 0e0 is not valid"));
+        assert!(said([2, 2], [1.0, 0.0], vec![0.0; 4]).starts_with("dy_m = 0 is not valid"));
         let holes = said([2, 2], [1.0; 2], vec![0.0, 0.0, f64::NAN, 0.0]);
         assert!(holes.starts_with("heights = NaN at [1, 0] is not valid"), "{holes}");
     }
@@ -246,6 +252,6 @@ mod tests {
         let want = Straight.at(0.01, 0.02) - 0.5 * (1.0 + 2.0 * 0.1 + 5.0 * 0.2);
         assert!((gap.at(0.01, 0.02) - want).abs() < 1e-14);
         let said = RoughGap::new(&Straight, &heights, &grid, 20.0, 2.0).err().unwrap().to_string();
-        assert!(said.contains("along x") && said.contains("reach 7.5"), "{said}");
+        assert!(said.contains("along x") && said.contains("cells 0.75 m"), "{said}");
     }
 }

@@ -19,8 +19,8 @@ const COPIES: f64 = 3.0;
 type Array = ([usize; 2], Vec<f64>);
 
 /// Formats that are read, for messages.
-const FORMATS: &str =
-    "give a two-dimensional array of floats as .npy, .csv with a row for each x, or .x3p";
+const FORMATS: &str = "give a two-dimensional array of floats of 32 or 64 bits as .npy, \
+                       .csv with a row for each x, or .x3p";
 
 impl Heights {
     /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit
@@ -30,8 +30,8 @@ impl Heights {
     ///
     /// # Errors
     /// [`Error::Io`] when it cannot be read, [`Error::File`] and [`Error::Memory`] before a file is
-    /// read that is too large, [`Error::File`] when it has another format, and [`Error::Value`] as
-    /// [`Heights::new`].
+    /// read that is too large, and [`Error::File`] when it has another format or other numbers than
+    /// [`Heights::new`] takes.
     pub fn read(path: &Path, steps_m: [f64; 2]) -> Result<Self> {
         let io = |source| Error::Io { action: "read", path: path.to_path_buf(), source };
         let too_large = |has: String| Error::File {
@@ -62,7 +62,7 @@ impl Heights {
     /// Reads the `content` of a file; the name of its `path` says in which format.
     ///
     /// # Errors
-    /// [`Error::File`] when it has another format, and [`Error::Value`] as [`Heights::new`].
+    /// [`Error::File`] when it has another format or other numbers than [`Heights::new`] takes.
     pub fn parse(content: &[u8], path: &Path, steps_m: [f64; 2]) -> Result<Self> {
         let refuse = |(line, message): (Option<usize>, String)| Error::File {
             path: path.to_path_buf(),
@@ -73,18 +73,25 @@ impl Heights {
         #[cfg(feature = "cli")]
         if Self::has_steps(path) {
             let (shape, own_m, values) = x3p::read(content).map_err(|e| refuse((None, e)))?;
-            return Self::new(shape, own_m, values);
+            return Self::new(shape, own_m, values).map_err(|e| within(path, e));
         }
         let is_csv = has_extension(path, "csv");
         let read = if is_csv { csv(content) } else { npy(content).map_err(|e| (None, e)) };
         let (shape, values) = read.map_err(refuse)?;
-        Self::new(shape, steps_m, values)
+        Self::new(shape, steps_m, values).map_err(|e| within(path, e))
     }
 
     /// Whether a file of this name has the distances of its samples itself.
     pub fn has_steps(path: &Path) -> bool {
         cfg!(feature = "cli") && has_extension(path, "x3p")
     }
+}
+
+/// An error of the heights in the file at `path`, which is the one to change.
+fn within(path: &Path, error: Error) -> Error {
+    let Error::Value { key, value, reason, remedy } = error else { return error };
+    let message = format!("{key} = {value} is not valid: {reason}");
+    Error::File { path: path.to_path_buf(), line: None, message, remedy }
 }
 
 fn has_extension(path: &Path, name: &str) -> bool {
@@ -99,10 +106,10 @@ fn csv(content: &[u8]) -> std::result::Result<Array, (Option<usize>, String)> {
     for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
         let before = values.len();
         for word in line.split(',').map(str::trim) {
-            let value = word.parse::<f64>();
-            values.push(
-                value.map_err(|_| (Some(i + 1), format!("has '{word}' where a height belongs")))?,
-            );
+            let value = word.parse().ok().filter(|height: &f64| height.is_finite());
+            values.push(value.ok_or_else(|| {
+                (Some(i + 1), format!("has '{word}' where a finite height belongs"))
+            })?);
         }
         let own = values.len() - before;
         if *columns.get_or_insert(own) != own {
@@ -219,7 +226,11 @@ mod tests {
             ("a.npy", array("<f8", "False", "(4,)", &data), "shape (4,)"),
             ("a.npy", array("<f8", "False", "(2, x, 2)", &data), "shape (2, x, 2)"),
             ("a.npy", array("<f8", "False", "(18446744073709551615, 0)", &[]), "an empty array"),
-            ("a.npy", array("<i8", "False", "(2, 2)", &data), "type <i8"),
+            (
+                "a.npy",
+                array("<f2", "False", "(4, 4)", &data),
+                "type <f2; give a two-dimensional array of floats of 32 or 64 bits",
+            ),
             (
                 "a.npy",
                 array("<f8", "False", "(2, 3)", &data),
@@ -228,11 +239,13 @@ mod tests {
             (
                 "a.npy",
                 array("<f8", "False", "(2, 2)", &f64::NAN.to_le_bytes().repeat(4)),
-                "NaN at [0, 0]",
+                "a.npy: heights = NaN at [0, 0] is not valid",
             ),
             ("a.csv", b"1,2\n3\n".to_vec(), "a.csv:2: has 1 heights"),
             ("a.csv", b"1,2\n3,x\n".to_vec(), "a.csv:2: has 'x'"),
+            ("a.csv", b"1,2\n\n3,nan\n".to_vec(), "a.csv:3: has 'nan' where a finite height"),
             ("a.csv", b"\xff".to_vec(), "not text"),
+            ("a.csv", b"1\n".to_vec(), "a.csv: heights = 1 x 1 with 1 values is not valid"),
             ("a.csv", b"".to_vec(), "0 x 0"),
         ] {
             let said = read(name, &content).unwrap_err().to_string();

@@ -122,7 +122,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let pressures = |file: &BroughtFile| file.curves.stress.is_empty();
     if arguments.stated.body.is_some() && brought.iter().all(pressures) {
-        return Err(unsuited("body", "a pressure is that of both bodies", "leave it out"));
+        return Err(unsuited(
+            ("body", "given"),
+            "a pressure is that of both bodies",
+            "leave it out",
+        ));
     }
     let records = Records::read(arguments.reference.as_deref())?;
     let first = records.find(&case)?.map(|record| (Engine::fenicsx(), Ok(record)));
@@ -142,7 +146,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     for file in &summary.files {
         if !file.left_out.is_empty() {
             let left_out = file.left_out.join(", ");
-            say(&format!("note: {}: all points are next to an edge: {left_out}", file.name));
+            say(&format!(
+                "note: {}: too few points away from the edges, of which a curve takes two in a row: {left_out}",
+                file.name
+            ));
         }
     }
     if arguments.json {

@@ -3,7 +3,7 @@
 use super::output::{Exit, print, print_json, say};
 use super::progress::progress_bar;
 use super::values::{checked_tolerance, edge_model};
-use crate::base::number::significant;
+use crate::base::number::{significant, stated};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Design};
@@ -112,8 +112,8 @@ fn text(design: &Design, found: &Optimum, arguments: &Arguments, seconds: f64) -
     ];
     for (load, before) in found.loads.iter().zip(&found.before) {
         let place = match (load.case.load.eccentricity_m, load.case.pose.tilt_rad) {
-            (Some(e), _) => format!(" at y = {e:e} m"),
-            (None, Some(tilt)) => format!(", tilted by {tilt:e}"),
+            (Some(e), _) => format!(" at y = {} m", stated(e)),
+            (None, Some(tilt)) => format!(", tilted by {}", stated(tilt)),
             (None, None) => String::new(),
         };
         let before = before.map_or(String::new(), |before| {

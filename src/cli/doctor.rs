@@ -68,6 +68,8 @@ struct Interpreter {
     path: String,
     /// The option or variable that names it, or the usual place.
     source: &'static str,
+    /// Whether there is such a file.
+    found: bool,
     /// Versions of the imported packages; `None` if it does not import dolfinx.
     imports: Option<BTreeMap<String, String>>,
 }
@@ -111,7 +113,8 @@ fn fem_findings(arguments: &Arguments) -> FemFindings {
         if imports.is_some() && chosen.is_none() {
             chosen = Some(path.clone());
         }
-        interpreters.push(Interpreter { path: path.display().to_string(), source, imports });
+        let (found, path) = (tools::is_there(&path), path.display().to_string());
+        interpreters.push(Interpreter { path, source, found, imports });
     }
     FemFindings {
         ready: gmsh.is_some() && chosen.is_some(),
@@ -140,13 +143,14 @@ fn text(findings: &Findings) -> String {
         format!("recorded finite-element cases: {}", findings.records),
         format!("gmsh: {}", or(&fem.gmsh, "not found")),
     ];
-    for Interpreter { path, source, imports } in &fem.interpreters {
+    for Interpreter { path, source, found, imports } in &fem.interpreters {
         let imports = match imports {
             Some(versions) => {
                 let all = versions.iter().map(|(name, version)| format!("{name} {version}"));
                 all.collect::<Vec<_>>().join(", ")
             }
-            None => "does not import dolfinx".to_string(),
+            None if *found => "does not import dolfinx".to_string(),
+            None => "not found".to_string(),
         };
         let mark = if fem.interpreter.as_ref() == Some(path) { " <- used" } else { "" };
         lines.push(format!("interpreter {path} ({source}): {imports}{mark}"));

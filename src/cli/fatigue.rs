@@ -47,12 +47,16 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    find(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn find(arguments: &Arguments) -> Result<Exit> {
     let mut case = Case::find(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
     say_if_too_fine(&case);
-    let counts = places(&arguments)?;
+    let counts = places(arguments)?;
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &Options::new(arguments.method))?;
     // Half-spaces are judged under the same force, where it is the approach that is given.

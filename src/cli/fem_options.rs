@@ -33,7 +33,7 @@ impl<T> OfLive<T> {
         match &self.given {
             Some(option) if source == FemSource::Recorded => {
                 let reason = "it has no effect on recorded finite elements";
-                Err(unsuited(option, reason, "add --fem live, or leave it out"))
+                Err(unsuited((option, "given"), reason, "add --fem live, or leave it out"))
             }
             _ => Ok(()),
         }
@@ -97,7 +97,7 @@ pub(super) struct FemOptions {
     /// Linear solver of the finite elements
     #[arg(long, default_value = "direct", value_parser = one_of(&LinearSolver::ALL, LinearSolver::name))]
     linear: LinearSolver,
-    /// MPI processes per finite-element run
+    /// MPI processes per finite-element run, at most as many as there are processors
     #[arg(long, default_value_t = 1, value_name = "N")]
     ranks: usize,
     /// Interpreter that imports dolfinx (for CalculiX: numpy) [default: $EDGELINE_PYTHON,

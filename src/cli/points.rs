@@ -1,8 +1,9 @@
 //! The file of points that `edgeline solve --points` takes.
 
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::host::{check_memory, read_text};
+use crate::host::{check_memory, csv_fault, read_text};
 use crate::solve::{Extent, Outside, Point};
 use crate::stress::BodyKind;
 use serde::Deserialize;
@@ -26,7 +27,7 @@ struct Row {
 }
 
 /// Reads points from a CSV file with the columns `body,x_m,y_m,z_m`, all within the bodies of
-/// `case`.
+/// `case`. Lines that begin with `#` are comments.
 ///
 /// # Errors
 /// [`Error::File`] with the line of the first row that is not such a point, [`Error::Memory`] when
@@ -55,23 +56,28 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
                  into that body"
             .into(),
     };
-    let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_reader(text.as_bytes());
-    let header = reader.headers().map_err(|e| refuse(Some(1), e.to_string()))?.clone();
+    let mut reader = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .trim(csv::Trim::All)
+        .from_reader(text.as_bytes());
+    // A record begins where the one before it ended: comments and empty lines are before it.
+    let line_of = |at: &csv::Position| {
+        let rest = text.get(at.byte() as usize..).unwrap_or_default();
+        let other = |line: &&str| line.is_empty() || line.starts_with('#');
+        at.line() + rest.lines().take_while(other).count() as u64
+    };
+    let of_csv = |e: csv::Error| refuse(e.position().map(line_of), csv_fault(&e));
+    let header = reader.headers().map_err(of_csv)?.clone();
     let mut points = Vec::new();
     for record in reader.records() {
-        let record = record.map_err(|e| refuse(e.position().map(|p| p.line()), e.to_string()))?;
-        let line = record.position().map(|p| p.line());
-        let row: Row = record.deserialize(Some(&header)).map_err(|e| {
-            let text = match e.kind() {
-                csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
-                _ => e.to_string(),
-            };
-            refuse(line, text)
-        })?;
+        let record = record.map_err(of_csv)?;
+        let line = record.position().map(line_of);
+        let row: Row =
+            record.deserialize(Some(&header)).map_err(|e| refuse(line, csv_fault(&e)))?;
         let at_m = [row.x_m, row.y_m, row.z_m];
         Extent::of(case, row.body).check(at_m).map_err(|outside| {
             let Outside { axis, value_m, reason, remedy } = outside;
-            refuse(line, format!("{axis}_m = {value_m:e} {reason}: {remedy}"))
+            refuse(line, format!("{axis}_m = {} {reason}: {remedy}", stated(value_m)))
         })?;
         points.push(Point { body: row.body, at_m });
     }
@@ -93,8 +99,8 @@ mod tests {
 
     #[test]
     fn points_are_read_in_their_order() {
-        let points =
-            read_text("x_m,y_m,z_m,body\n0, 1e-4,0,roller\n1e-4,-0.002,3e-4,block\n").unwrap();
+        let text = "# mine\nx_m,y_m,z_m,body\n0, 1e-4,0,roller\n# a\n1e-4,-0.002,3e-4,block\n";
+        let points = read_text(text).unwrap();
         let wanted = [
             Point { body: BodyKind::Roller, at_m: [0.0, 1e-4, 0.0] },
             Point { body: BodyKind::Block, at_m: [1e-4, -0.002, 3e-4] },
@@ -106,19 +112,22 @@ mod tests {
     fn bad_points_are_refused_with_their_line() {
         let head = "body,x_m,y_m,z_m\nblock,0,0,0\n";
         for (row, wanted) in [
-            ("block,0,0", ":3: "),
+            ("block,0,0", ":3: has 3 cells where the header has 4; give the columns"),
             ("blok,0,0,0", ":3: unknown variant `blok`"),
             ("block,0,zero,0", ":3: "),
             ("block,nan,0,0", ":3: x_m = NaN is not a finite number"),
             ("block,0,0,-1e-9", ":3: z_m = -1e-9 is outside the block"),
-            ("block,0,1,0", ":3: y_m = 1e0 is outside the block"),
-            ("roller,0,0.002,0", ":3: y_m = 2e-3 is outside the roller"),
-            ("roller,0,0,0.0201", ":3: z_m = 2.01e-2 is outside the roller"),
+            ("block,0,1,0", ":3: y_m = 1 is outside the block"),
+            ("roller,0,0.002,0", ":3: y_m = 0.002 is outside the roller"),
+            ("roller,0,0,0.0201", ":3: z_m = 0.0201 is outside the roller"),
         ] {
             let message = read_text(&format!("{head}{row}\n")).unwrap_err().to_string();
             assert!(message.contains(wanted), "{row}: {message}");
             assert!(message.contains("give the columns"), "{row}: {message}");
         }
+        let late =
+            read_text("# mine\nbody,x_m,y_m,z_m\n\n# a\nblock,0,0,-1\n").unwrap_err().to_string();
+        assert!(late.contains(":5: z_m = "), "{late}");
         assert!(read_text("body,x_m,y_m\nblock,0,0\n").unwrap_err().to_string().contains("z_m"));
         assert!(
             read_text(head.lines().next().unwrap()).unwrap_err().to_string().contains("no points")

@@ -7,11 +7,12 @@ use super::uncertain_options::UncertainOptions;
 use super::values::{
     checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine, unsuited,
 };
-use crate::base::number::{duration, significant};
+use crate::base::number::{duration, significant, stated};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::{Case, Key};
+use crate::case::Case;
 use crate::host::{Lock, check_memory};
+use crate::report::plots::PROGRAM;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
     CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary, check_cells,
@@ -64,7 +65,8 @@ pub(super) struct Arguments {
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
-    /// CSV file of further points, with the columns body,x_m,y_m,z_m
+    /// CSV file of further points, with the columns body,x_m,y_m,z_m; lines that begin with # are
+    /// comments
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath)]
     points: Option<PathBuf>,
     /// Also write pictures of pressure and stresses, and a page about the case
@@ -115,9 +117,50 @@ impl Arguments {
         let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
         self.engine.unwrap_or(own)
     }
+
+    /// Refuses options of the engine on cells.
+    fn check_no_cells(&self) -> Result<()> {
+        for (option, given) in [
+            ("cells", listed(&self.cells)),
+            ("loads", listed(&self.loads)),
+            ("layers", listed(&self.layers)),
+        ] {
+            if !given.is_empty() {
+                let reason = "only the engine on cells takes it";
+                return Err(unsuited((option, &given), reason, "add --engine cells"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses options of the engine along a line.
+    fn check_cells_alone(&self) -> Result<()> {
+        let remedy = "leave it out, or take --engine line";
+        let laminae = self.laminae.map_or_else(String::new, |count| count.to_string());
+        let flag = |given: bool| if given { "given".to_string() } else { String::new() };
+        for (option, given, reason) in [
+            ("field", flag(self.field), "the engine on cells writes no fields"),
+            ("stiffness", flag(self.stiffness), "the engine on cells does not compute them"),
+            ("laminae", laminae, "the engine on cells does not compute them"),
+            (
+                "uncertain",
+                self.uncertain.given(),
+                "the engine on cells is too slow for many solutions",
+            ),
+        ] {
+            if !given.is_empty() {
+                return Err(unsuited((option, &given), reason, remedy));
+            }
+        }
+        Ok(())
+    }
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
+    solve(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn solve(arguments: &Arguments) -> Result<Exit> {
     let mut case = Case::find(&arguments.case)?;
     let mut options = Options::new(arguments.method);
     if !arguments.body.is_empty() {
@@ -130,27 +173,19 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         options.points = super::points::read(path, &case)?;
     }
     if arguments.engine(&case) == Engine::Cells {
-        return run_on_cells(&case, &options, &arguments);
+        return run_on_cells(&case, &options, arguments);
     }
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
     say_if_too_fine(&case);
-    if !arguments.cells.is_empty() {
-        return Err(unsuited("cells", "only the engine on cells has them", "add --engine cells"));
-    }
-    for (option, given) in [("loads", &arguments.loads), ("layers", &arguments.layers)] {
-        if !given.is_empty() {
-            let reason = "only the engine on cells computes them";
-            return Err(unsuited(option, reason, "add --engine cells"));
-        }
-    }
+    arguments.check_no_cells()?;
     options.check_line(&case)?;
     if arguments.uncertain.is_given() {
         case.check_force("an uncertain case has a force")?;
     }
     arguments.uncertain.inputs(&case)?;
-    let counts = if arguments.field { Some(field_counts(&arguments)?) } else { None };
+    let counts = if arguments.field { Some(field_counts(arguments)?) } else { None };
     let _lock = Lock::claim(&arguments.out)?;
     let solved = SolvedCase::new(&case, &options)?;
     let case = solved.case();
@@ -168,10 +203,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));
     }
-    more.extend(pictures(case, &found, None, &arguments)?);
+    more.extend(pictures(case, &found, None, arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     let names = solution::write(&found, &options, more, &arguments.out)?;
-    tell(case, &found, &names, &arguments)
+    tell(case, &found, &names, arguments)
 }
 
 /// What the slices of ISO/TS 16281 make of the ends, in words.
@@ -197,33 +232,23 @@ fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
 
 /// The same on uniform cells.
 fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result<Exit> {
-    if arguments.field {
-        return Err(unsuited("field", "the engine on cells writes no fields", "leave it out"));
-    }
-    for (option, given) in
-        [("stiffness", arguments.stiffness), ("laminae", arguments.laminae.is_some())]
-    {
-        if given {
-            let reason = "the engine on cells does not compute them";
-            return Err(unsuited(option, reason, "leave it out, or take --engine line"));
-        }
-    }
-    if arguments.uncertain.is_given() {
-        let reason = "the engine on cells is too slow for many solutions";
-        return Err(unsuited("uncertain", reason, "leave it out, or leave out --engine cells"));
-    }
+    arguments.check_cells_alone()?;
     let mut cells = CellOptions::default();
     match arguments.cells[..] {
         [] => {}
         [nx, ny] => cells.counts = Some([nx, ny]),
-        _ => return Err(unsuited("cells", "there are two directions", "give for example 64,128")),
+        _ => {
+            let given = ("cells", &*listed(&arguments.cells));
+            return Err(unsuited(given, "there are two directions", "give for example 64,128"));
+        }
     }
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
     let grid = check_cells(case, &cells)?;
-    for force in &arguments.loads {
-        Key::find("load.force_n").expect("a key of the list").check(*force)?;
+    for force_n in &arguments.loads {
+        let checked = case.clone().with_force(*force_n).check();
+        checked.map_err(|e| e.of_option("--loads", &stated(*force_n)))?;
     }
     check_layers(case, options, &arguments.layers, grid.len())?;
     let _lock = Lock::claim(&arguments.out)?;
@@ -271,11 +296,16 @@ fn pictures<D>(
     let engine = if residual.is_some() { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
-        program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
+        program: PROGRAM.into(),
         date: now(),
         residual,
     };
     page::of_solution(case, &label, found)
+}
+
+/// The values of a list as they are given to an option.
+fn listed<T: ToString>(values: &[T]) -> String {
+    values.iter().map(T::to_string).collect::<Vec<_>>().join(",")
 }
 
 /// Prints what was found, and the `names` of the files.

@@ -110,13 +110,21 @@ impl StudyOptions {
         self.live.check(self.fem)?;
         if self.fem == FemSource::Live && self.reference.is_some() {
             let reason = "recorded curves have no effect on live finite elements";
-            return Err(unsuited("reference", reason, "leave it out, or leave out --fem live"));
+            return Err(unsuited(
+                ("reference", "given"),
+                reason,
+                "leave it out, or leave out --fem live",
+            ));
         }
         let has_images = self.methods_of(usual).contains(&EdgeModel::Guilbault)
             || with_cells && published::is_chosen(&self.methods);
         if self.psi.is_some() && !has_images {
             let reason = "only guilbault has images with such a weight";
-            return Err(unsuited("psi", reason, "leave it out, or add guilbault to --methods"));
+            return Err(unsuited(
+                ("psi", "given"),
+                reason,
+                "leave it out, or add guilbault to --methods",
+            ));
         }
         Ok(())
     }

@@ -29,6 +29,11 @@ impl UncertainOptions {
         !self.uncertain.is_empty()
     }
 
+    /// The inputs as they are given; empty without one.
+    pub(super) fn given(&self) -> String {
+        self.uncertain.join(", ")
+    }
+
     /// The uncertain numbers of `case`.
     ///
     /// # Errors
@@ -65,6 +70,6 @@ impl UncertainOptions {
         }
         let sampling = (self.samples, self.seed);
         let found = propagate(case, method, curves, self.inputs(case)?, sampling)?;
-        Ok(uncertainty::contents(&found, method))
+        Ok(uncertainty::contents(&case.name, &found, method))
     }
 }

@@ -1,6 +1,7 @@
 //! Values of options that several subcommands share.
 
 use super::output::say;
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Key};
@@ -9,10 +10,10 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::ops::RangeInclusive;
 
 /// An option that does not suit the others.
-pub(super) fn unsuited(option: &str, reason: &str, remedy: &str) -> Error {
+pub(super) fn unsuited((option, value): (&str, &str), reason: &str, remedy: &str) -> Error {
     Error::Value {
         key: format!("--{option}"),
-        value: "given".into(),
+        value: value.into(),
         reason: reason.into(),
         remedy: remedy.into(),
     }
@@ -79,7 +80,9 @@ pub fn say_if_too_fine(case: &Case) {
     let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
     if asked < finest {
         say(&format!(
-            "note: the finest resolution is that of a tolerance of {finest:e}, which {asked:e} takes, too"
+            "note: the finest resolution is that of a tolerance of {}, which {} takes, too",
+            stated(finest),
+            stated(asked)
         ));
     }
 }
@@ -98,8 +101,8 @@ fn checked(tolerance: f64, (low, high): (f64, f64), what: &str, usual: &str) -> 
     }
     Err(Error::Value {
         key: "--tolerance".into(),
-        value: tolerance.to_string(),
-        reason: format!("it is {what} between {low:e} and {high:e}"),
+        value: stated(tolerance),
+        reason: format!("it is {what} between {} and {}", stated(low), stated(high)),
         remedy: format!("give for example {usual}"),
     })
 }

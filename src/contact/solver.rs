@@ -183,7 +183,9 @@ fn solve_once(
     Err(Error::NotConverged {
         iterations: settings.max_iterations,
         residual: last,
-        remedy: "ask for a coarser [accuracy] tolerance, or check the case's lengths".into(),
+        remedy: "ask for a coarser [accuracy] tolerance if it is below 0.1, or check the case's \
+                 lengths"
+            .into(),
     })
 }
 

@@ -4,6 +4,7 @@ use crate::base::Result;
 use crate::base::stop::go_on;
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::report::plots::PROGRAM;
 use crate::report::study_files::pretty;
 use crate::report::{page, solution};
 use crate::solve::{Options, SolvedCase};
@@ -55,7 +56,7 @@ pub fn made(case: &Case, method: EdgeModel, file: &str) -> Result<Vec<u8>> {
     }
     let label = page::Label {
         by: method.to_string(),
-        program: concat!("edgeline ", env!("CARGO_PKG_VERSION")).into(),
+        program: PROGRAM.into(),
         date: String::new(),
         residual: None,
     };

@@ -56,8 +56,10 @@ function labelOf(key) {
   const text = key.what.replace(/ in (metres|pascals|newtons|radians)/, "").replace(/, a fraction of p0$/, "").replace(/^(the|a) /, "").replace(/^(roller|block)'s /, "");
   return text[0].toUpperCase() + text.slice(1);
 }
-const TITLES = { load: "Load", dimensionless: "Load and lengths", pose: "How the bodies stand", accuracy: "Accuracy", cells: "Cells (not used here)", fatigue: "Fatigue (not used here)" };
-const titleOf = (table) => TITLES[table] || table[0].toUpperCase() + table.slice(1).replace(".", ", ");
+const TITLES = { load: "Load", dimensionless: "Load and lengths", pose: "How the bodies stand", accuracy: "Accuracy" };
+// Tables without part in what is shown; a surface needs its file, which a page does not have.
+const UNUSED = ["cells", "fatigue", "surface"];
+const titleOf = (table) => (TITLES[table] || table[0].toUpperCase() + table.slice(1).replace(".", ", ")) + (UNUSED.includes(table) ? " (not used here)" : "");
 const plain = (v, digits = 6) => significant(v, digits).replace(/\u2212/g, "-");
 const fields = new Map();
 
@@ -110,6 +112,7 @@ function makeField(key) {
     check = document.createElement("input");
     check.type = "checkbox";
     check.dataset.key = key.path;
+    check.disabled = key.table === "surface";
     check.setAttribute("aria-label", `Give ${labelOf(key)}`);
     label.prepend(check);
     check.addEventListener("change", () => {
@@ -188,7 +191,7 @@ function makeFields() {
       const group = document.createElement("details");
       group.className = "group";
       group.dataset.table = name;
-      group.open = !["cells", "fatigue"].includes(name) && (innerWidth >= 960 || first.includes(name));
+      group.open = !UNUSED.includes(name) && (innerWidth >= 960 || first.includes(name));
       group.innerHTML = "<summary></summary>";
       group.firstChild.textContent = titleOf(name);
       groups.set(name, group);

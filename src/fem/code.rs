@@ -1,7 +1,7 @@
 //! The finite-element codes, declared here and nowhere else.
 
-use crate::base::BodyKind;
-use crate::base::{Error, Result};
+use crate::base::number::stated;
+use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Sliding};
 use crate::solve::Scene;
@@ -75,7 +75,7 @@ impl Code {
         };
         if let Some(radius_m) = case.block.radius_m {
             let remedy = "remove it, or solve the case with `edgeline solve`";
-            let value = format!("{radius_m:e}");
+            let value = stated(radius_m);
             return refuse(
                 "block.radius_m",
                 value,
@@ -88,10 +88,12 @@ impl Code {
         if self == Code::Fenicsx {
             return Ok(());
         }
-        let remedy = "remove it, or take --engine fenicsx";
+        // `edgeline deck` has no other engine, so the remedy is a command of its own.
+        let remedy = "remove it, or solve the case with `edgeline fem --engine fenicsx`";
         if !Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric() {
+            let (key, value) = uneven(case);
             let reason = "the deck models a quarter of the bodies, which takes a scene that is symmetric along y";
-            return refuse("pose or eccentricity", case.name.clone(), reason, remedy);
+            return refuse(key, value, reason, remedy);
         }
         if case.sliding != Sliding::default() {
             let (value, reason) =
@@ -103,5 +105,45 @@ impl Code {
             return refuse("profile", case.name.clone(), reason, remedy);
         }
         Ok(())
+    }
+}
+
+/// The key, with its value, that makes a scene differ on both sides of y = 0.
+fn uneven(case: &Case) -> (&'static str, String) {
+    let keys = [
+        ("load.eccentricity_m", case.load.eccentricity_m),
+        ("pose.tilt_rad", case.pose.tilt_rad),
+        ("pose.offset_m", Some(case.pose.offset_m)),
+    ];
+    let mut given = keys.into_iter().filter_map(|(key, value)| Some((key, value?)));
+    match given.find(|(_, value)| *value != 0.0) {
+        Some((key, value)) => (key, stated(value)),
+        // Only a table has other drops on its other side.
+        None => ("profile", "a table that is not even".into()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    #[test]
+    fn what_a_deck_does_not_take_is_named_with_a_command_that_takes_it() {
+        let refused = |case: &Case| Code::Calculix.check(case).unwrap_err().to_string();
+        let find = |name: &str| Case::find(Path::new(name)).unwrap();
+        for (name, wanted) in [
+            ("sliding-flush", "sliding.friction = 0.3 is not valid"),
+            ("eccentric-flush", "load.eccentricity_m = 0.00015 is not valid"),
+            ("offset-flush-end", "pose.offset_m = "),
+            ("crown-inside", "profile = crown-inside is not valid"),
+        ] {
+            let said = refused(&find(name));
+            assert!(said.starts_with(wanted), "{said}");
+            assert!(said.contains("`edgeline fem --engine fenicsx`"), "{said}");
+        }
+        let mut case = find("flush-short");
+        case.pose.tilt_rad = Some(-1e-4);
+        assert!(refused(&case).starts_with("pose.tilt_rad = -0.0001 "), "{}", refused(&case));
     }
 }

@@ -18,6 +18,8 @@ use crate::host::{
     Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there,
     remove_marker, write_set, write_whole,
 };
+use std::ffi::OsString;
+use std::num::NonZero;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Duration;
@@ -74,6 +76,12 @@ impl Driver {
             let (key, value) = ("engine", settings.code.name().to_string());
             let reason = "CalculiX runs as one process with its own direct solver".to_string();
             return refuse(key, value, reason, "leave out --ranks and --linear");
+        }
+        let processors = std::thread::available_parallelism().map_or(1, NonZero::get);
+        if settings.ranks > processors {
+            let reason = format!("it is more than this machine has processors, {processors}");
+            let remedy = "give at most as many; more of them only wait for each other";
+            return refuse("ranks", settings.ranks.to_string(), reason, remedy);
         }
         // Refuses a mesh that is too large for this machine before it is made.
         check_memory(
@@ -213,6 +221,8 @@ pub const DECK_FILES: [&str; 9] = [
 
 /// Makes a folder, and claims it for this process: its full path, and the lock.
 fn claim(folder: &Path) -> Result<(PathBuf, Lock)> {
+    // Before anything is made there.
+    search_path(&std::path::absolute(folder).unwrap_or_else(|_| folder.to_path_buf()))?;
     let lock = Lock::claim(folder)?;
     // The mark of the processes must not depend on how the folder is named.
     let folder = folder.canonicalize().map_err(|source| Error::Io {
@@ -223,6 +233,23 @@ fn claim(folder: &Path) -> Result<(PathBuf, Lock)> {
     // The process of an earlier run is dead; so are its children, unless the kernel cannot tell.
     kill_marked(&folder);
     Ok((folder, lock))
+}
+
+/// Where the interpreter looks for modules: below `folder` first.
+///
+/// # Errors
+/// [`Error::Value`] for a folder whose name a search path cannot hold.
+fn search_path(folder: &Path) -> Result<OsString> {
+    let mut path = vec![folder.join("work/package")];
+    if let Some(more) = std::env::var_os("PYTHONPATH") {
+        path.extend(std::env::split_paths(&more));
+    }
+    std::env::join_paths(path).map_err(|e| Error::Value {
+        key: "--out".into(),
+        value: folder.display().to_string(),
+        reason: format!("Python's search path cannot hold it: {e}"),
+        remedy: "choose an output folder without that character".into(),
+    })
 }
 
 /// One run in progress.
@@ -328,16 +355,7 @@ impl Run<'_> {
         timeout: Duration,
         timeout_option: &str,
     ) -> Result<()> {
-        let mut path = vec![self.work.join("package")];
-        if let Some(more) = std::env::var_os("PYTHONPATH") {
-            path.extend(std::env::split_paths(&more));
-        }
-        let path = std::env::join_paths(path).map_err(|e| Error::Value {
-            key: "PYTHONPATH".into(),
-            value: self.work.display().to_string(),
-            reason: e.to_string(),
-            remedy: "choose an output folder without that character".into(),
-        })?;
+        let path = search_path(self.folder)?;
         command
             .args(["-m", "edgeline_fem", stage])
             .arg(self.work.join("request.json"))

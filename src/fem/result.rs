@@ -1,8 +1,10 @@
 //! The output of the finite-element program: `fem.json`, `curves.csv`, `pressure.csv`.
 
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
+use crate::host::csv_fault;
 use crate::solve::Scene;
 use crate::stress::curves::{across_contact, curves_on, every_name};
 use crate::stress::{BodyKind, CurveSpec, Curves, PressureLine, StressCurve};
@@ -58,7 +60,11 @@ impl FemSummary {
             ("equilibrium_residual", self.equilibrium_residual),
         ] {
             if value.is_nan() || value.abs() > 1e-6 {
-                return Err(nonsense(path, None, format!("{name} = {value:e} is more than 1e-6")));
+                return Err(nonsense(
+                    path,
+                    None,
+                    format!("{name} = {} is more than 1e-6", stated(value)),
+                ));
             }
         }
         for (name, value) in [
@@ -356,7 +362,7 @@ struct Csv<'t> {
 impl<'t> Csv<'t> {
     fn parse(text: &'t str, path: &'t Path, wanted: &[&str]) -> Result<Self> {
         let mut reader = csv::Reader::from_reader(text.as_bytes());
-        let header = reader.headers().map_err(|e| nonsense(path, Some(1), e.to_string()))?.clone();
+        let header = reader.headers().map_err(|e| nonsense(path, Some(1), csv_fault(&e)))?.clone();
         let find = |name: &str| header.iter().position(|h| h == name);
         let columns = wanted
             .iter()
@@ -374,7 +380,7 @@ impl<'t> Csv<'t> {
             Ok(record) => Ok(Row { path, record, columns: columns.clone(), mesh }),
             Err(e) => {
                 let line = e.position().map(|p| p.line() as usize);
-                Err(nonsense(path, line, e.to_string()))
+                Err(nonsense(path, line, csv_fault(&e)))
             }
         })
     }

@@ -146,6 +146,14 @@ pub fn is_slow_blas(name: &str) -> bool {
     name.starts_with("blas/")
 }
 
+/// Whether there is a file where a program is named, or on the PATH if it is named alone.
+pub fn is_there(program: &Path) -> bool {
+    match program.to_str() {
+        Some(name) if !name.contains(std::path::is_separator) => which(name).is_some(),
+        _ => program.is_file(),
+    }
+}
+
 /// The path of a program on the PATH.
 pub fn which(program: &str) -> Option<PathBuf> {
     let path = std::env::var_os("PATH")?;

@@ -22,6 +22,7 @@ pub(crate) use {
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,
     signals::check_interrupt,
+    text::csv_fault,
 };
 
 pub(crate) use memory::check_memory;

@@ -36,6 +36,19 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     })
 }
 
+/// What is wrong with the text of a CSV table, without the place, which errors have before it.
+#[cfg(feature = "cli")]
+pub fn csv_fault(error: &csv::Error) -> String {
+    match error.kind() {
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            format!("has {len} cells where the header has {expected_len}")
+        }
+        csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text".to_string(),
+        csv::ErrorKind::Deserialize { err, .. } => err.to_string(),
+        _ => error.to_string(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -2,7 +2,7 @@
 //! optimum, pictures, and `summary.json`.
 
 use super::columns::{Columns, Value};
-use super::draw::{Colour, Figure, Look, Marker, Panel, Rule, Series};
+use super::draw::{Colour, Figure, INK, Look, Marker, Panel, Rule, Series};
 use super::study_files::pretty;
 use crate::base::number::significant;
 use crate::case::{Case, Design, Objective, Parameter};
@@ -193,6 +193,11 @@ fn look(i: usize) -> Look {
     all[i % all.len()]
 }
 
+/// The look of a profile's line, unlike those of all loads: figures have one legend.
+fn profile_look(dash: Option<(f64, f64)>) -> Look {
+    Look { colour: INK, dash, marker: Marker::Disc }
+}
+
 /// The objective over each parameter: the trials, and the line through the optimum; and over the
 /// trials.
 fn parameters(design: &Design, found: &Optimum) -> Figure {
@@ -258,8 +263,10 @@ fn pressures(design: &Design, found: &Optimum, case: &Case) -> Figure {
             (0..PROFILE_POINTS).map(place).map(|u| ((middle + u) * MM, profile.drop(u) * UM));
         Some(Series { markers: false, ..Series::curve(name, own, line.collect()) })
     };
-    let series =
-        [profile(&design.case, "as the case has it", look(1)), profile(case, "designed", look(0))];
+    let series = [
+        profile(&design.case, "as the case has it", profile_look(Some((1.0, 3.0)))),
+        profile(case, "designed", profile_look(None)),
+    ];
     let drop = Panel {
         title: "Profile".into(),
         x_label: "y (mm)".into(),
@@ -293,5 +300,17 @@ fn pressures(design: &Design, found: &Optimum, case: &Case) -> Figure {
         columns: 2,
         panels: vec![drop, pressure],
         panel_size: (470, 330),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_load_looks_like_a_profile() {
+        let profiles = [profile_look(None), profile_look(Some((1.0, 3.0)))];
+        assert!((0..MOST_LINES).all(|i| !profiles.contains(&look(i))));
+        assert!((0..MOST_LINES).all(|i| look(i).colour != INK && profiles[0] != profiles[1]));
     }
 }

@@ -3,6 +3,7 @@
 
 use super::columns::{Columns, Values};
 use super::draw::{Figure, Map};
+use super::plots::origin;
 use super::vtk::VtkGrid;
 use crate::base::{BodyKind, HertzScales};
 use crate::case::{Case, Fatigue, Sliding};
@@ -211,7 +212,7 @@ pub fn contents(
         let name = passage.body.name();
         files.push((format!("fatigue-{name}.vtr"), grid(passage, hertz).to_vtr()));
         for measure in MEASURES.iter().filter(|m| m.value(&passage.measures[0]).is_some()) {
-            let picture = figure(case, measure, passage).draw();
+            let picture = figure(&origin(&case.name, &own.method), measure, passage).draw();
             let file = format!("fatigue-{name}-{}", measure.name.replace('_', "-"));
             files.push((format!("{file}.svg"), picture.to_svg().into_bytes()));
             files.push((format!("{file}.png"), picture.to_png()));
@@ -279,7 +280,7 @@ fn grid(passage: &Passage, hertz: &HertzScales) -> VtkGrid {
 
 /// A map of a measure, whose largest value is marked. Near an edge it shows no more than the
 /// largest value outside.
-fn figure(case: &Case, measure: &Measure, passage: &Passage) -> Figure {
+fn figure(origin: &str, measure: &Measure, passage: &Passage) -> Figure {
     let most = passage.critical(|m| measure.value(m)).map_or(f64::INFINITY, |m| m.value);
     let shown = |(place, m): (usize, &Measures)| {
         let value = measure.value(m).unwrap_or(f64::NAN);
@@ -287,11 +288,8 @@ fn figure(case: &Case, measure: &Measure, passage: &Passage) -> Figure {
         if passage.counts(place) { value } else { value.min(most * (1.0 - 1e-9)) }
     };
     let values = passage.measures.iter().enumerate().map(shown).collect();
-    let title = format!("{}, {}: {}", case.name, passage.body.name(), measure.label);
+    let title = format!("{origin}: {}", passage.body.name());
     let axes = [passage.y.clone(), passage.z.clone()];
-    Figure::of_map(
-        title,
-        ["y / C", "z / C"],
-        Map { label: measure.label.to_string(), axes, down: true, values },
-    )
+    let map = Map { label: measure.label.to_string(), axes, down: true, values };
+    Figure::of_map(title, ["y / C", "z / C"], map).of_what(measure.label)
 }

@@ -6,8 +6,10 @@
 //! symmetric about y = 0.
 
 use super::draw::{Figure, Map};
+use super::plots::origin;
 use super::vtk::VtkGrid;
 use crate::base::{Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::solve::SolvedCase;
 use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edges};
@@ -65,6 +67,7 @@ struct Quarter<'a> {
     axes: [Vec<f64>; 3],
     stress: GridStress,
     case: &'a Case,
+    method: EdgeModel,
     body: BodyKind,
     /// Whether x and y have one side only, which is mirrored.
     folded: [bool; 2],
@@ -77,7 +80,8 @@ impl<'a> Quarter<'a> {
         let [x, y, z] = axes.clone();
         let stress = solved.on_grid(body, &stress::Grid { x, y, z })?;
         let folded = [solved.case().sliding.friction == 0.0, solved.is_symmetric()];
-        Ok(Self { axes, stress, case: solved.case(), body, folded })
+        let (case, method) = (solved.case(), solved.method());
+        Ok(Self { axes, stress, case, method, body, folded })
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
@@ -204,11 +208,12 @@ impl<'a> Quarter<'a> {
                       axes: [&Vec<f64>; 2],
                       down,
                       value: &dyn Fn(usize, usize) -> f64| {
-            let (case, body, n) = (&self.case.name, self.body.name(), axes[0].len());
-            let title = format!("{case}, {body}: von Mises stress at {place}");
+            let n = axes[0].len();
+            let title = format!("{}: {}", origin(&self.case.name, self.method), self.body.name());
             let values = (0..n * axes[1].len()).map(|i| value(i % n, i / n)).collect();
             let (label, axes) = ("von Mises / p0".to_string(), axes.map(Clone::clone));
-            Figure::of_map(title, labels, Map { label, axes, down, values })
+            let figure = Figure::of_map(title, labels, Map { label, axes, down, values });
+            figure.of_what(&format!("von Mises stress at {place}"))
         };
         let depth = format!("z = {:.2} C (critical depth)", z[critical]);
         [

@@ -3,7 +3,7 @@
 
 use crate::base::number::significant;
 use crate::base::{Error, Result};
-use crate::host::{check_memory, read_text};
+use crate::host::{check_memory, csv_fault, read_text};
 use crate::study::Range;
 use serde::Serialize;
 use serde::de::{DeserializeOwned, IntoDeserializer, value};
@@ -257,7 +257,7 @@ pub fn from_csv<'a, R: Row>(
     };
     let columns = R::columns(layout.into());
     let mut reader = csv::Reader::from_reader(text.as_bytes());
-    let of_csv = |e: csv::Error| refuse(e.position().map(|p| p.line()), e.to_string());
+    let of_csv = |e: csv::Error| refuse(e.position().map(|p| p.line()), csv_fault(&e));
     let header = reader.headers().map_err(of_csv)?;
     let wanted = columns.concat();
     if let Some(missing) = wanted.iter().find(|name| !header.iter().any(|h| h == *name)) {

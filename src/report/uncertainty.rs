@@ -1,21 +1,23 @@
 //! The files of uncertain inputs: `uncertainty.csv`, `uncertainty.json` and a plot with bands.
 
 use super::draw::{Figure, Panel, Series, look};
+use super::plots::origin;
 use super::study_files::pretty;
 use super::table::number;
 use crate::base::BodyKind;
+use crate::base::number::significant;
 use crate::body::EdgeModel;
 use crate::stress::Quantity;
 use crate::study::CONTACT;
-use crate::study::uncertain::{Place, Spread, Uncertain};
+use crate::study::uncertain::{Input, Place, Spread, Uncertain};
 use serde_json::{Map, Value, json};
 
-/// The files, by name.
-pub fn contents(found: &Uncertain, method: EdgeModel) -> Vec<(String, Vec<u8>)> {
+/// The files about the case of this name, by name.
+pub fn contents(case: &str, found: &Uncertain, method: EdgeModel) -> Vec<(String, Vec<u8>)> {
     [
         ("uncertainty.csv", table(found)),
         ("uncertainty.json", pretty(&summary(found))),
-        ("plot-uncertainty.svg", figure(found, method).draw().to_svg()),
+        ("plot-uncertainty.svg", figure(case, found, method).draw().to_svg()),
     ]
     .map(|(name, text)| (name.to_string(), text.into_bytes()))
     .into()
@@ -110,7 +112,10 @@ const SHOWN: [Shown; 4] = [
 ];
 
 /// Pressure and von Mises stress with bands of two standard deviations.
-fn figure(found: &Uncertain, method: EdgeModel) -> Figure {
+fn figure(case: &str, found: &Uncertain, method: EdgeModel) -> Figure {
+    let input = |i: &Input| format!("{} ± {}", i.key.path, significant(i.deviation, 3));
+    let inputs: Vec<String> = found.inputs.iter().map(input).collect();
+    let name = format!("{} (band: two standard deviations)", inputs.join(", "));
     let panel = |shown: Shown| {
         let Shown { body, curve, axis, quantity, title } = shown;
         let own = found.curves.iter().filter(move |(place, _)| {
@@ -122,11 +127,7 @@ fn figure(found: &Uncertain, method: EdgeModel) -> Figure {
         let series = Series {
             markers: false,
             band: Some(band),
-            ..Series::curve(
-                &format!("{method} (band: two standard deviations)"),
-                look(&method.into()),
-                points,
-            )
+            ..Series::curve(&name, look(&method.into()), points)
         };
         (!series.points.is_empty()).then(|| Panel {
             title: title.to_string(),
@@ -136,13 +137,8 @@ fn figure(found: &Uncertain, method: EdgeModel) -> Figure {
             ..Panel::default()
         })
     };
-    let inputs: Vec<String> = found
-        .inputs
-        .iter()
-        .map(|i| format!("{} ± {}", i.key.path, crate::base::number::significant(i.deviation, 3)))
-        .collect();
     Figure {
-        title: format!("uncertain {}: {} samples", inputs.join(", "), found.samples),
+        title: format!("{}: {} samples", origin(case, method), found.samples),
         columns: 2,
         panels: SHOWN.into_iter().filter_map(panel).collect(),
         panel_size: (460, 310),

@@ -3,6 +3,7 @@
 use super::options::Options;
 use super::scene::Scene;
 use super::solved_scene::{Approaches, SolvedScene};
+use crate::base::number::{significant, stated};
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Result};
 use crate::body::Resolution;
@@ -194,12 +195,13 @@ impl<'a> Search<'a> {
 
     fn out_of_range(&self, end: f64, off: f64) -> Error {
         let wanted = self.wanted_m;
-        let (force, reached) = (end.powf(1.0 / POWER), wanted * (1.0 + off));
+        let [force, reached] =
+            [end.powf(1.0 / POWER), wanted * (1.0 + off)].map(|v| significant(v, 4));
         let most = if off > 0.0 { "least" } else { "largest" };
         Error::Value {
             key: "load.approach_m".into(),
-            value: format!("{wanted:e}"),
-            reason: format!("under the {most} legal force, {force:.3e} N, it is {reached:.3e} m"),
+            value: stated(wanted),
+            reason: format!("under the {most} legal force, {force} N, it is {reached} m"),
             remedy: "check the units of the approach, the lengths and the radius (m), and the moduli (Pa)"
                 .into(),
         }

@@ -10,6 +10,7 @@ use super::shaping::Shaping;
 use super::solved::{Solution, most_stressed};
 use super::solved_scene::Seconds;
 use super::summary::{CriticalSummary, Summary};
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -97,7 +98,7 @@ pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
     if scene.slides {
         return Err(Error::Value {
             key: "sliding.friction".into(),
-            value: format!("{:e}", case.sliding.friction),
+            value: stated(case.sliding.friction),
             reason: "cells carry pressures only".into(),
             remedy: "solve this case with --engine line, or without friction".into(),
         });
@@ -141,6 +142,7 @@ struct Region {
     given: Option<f64>,
     /// Half-spans and distances of the heights across and along (C).
     samples: Option<([f64; 2], [f64; 2])>,
+    c_m: f64,
 }
 
 impl Region {
@@ -151,7 +153,7 @@ impl Region {
             (heights.half_spans_m().map(|v| v / c_m), steps.map(|v| v / c_m))
         });
         let given = case.cells.map(|cells| cells.half_width_m / c_m);
-        Self { half_length: scene.half_length, counts: cells.counts, given, samples }
+        Self { half_length: scene.half_length, counts: cells.counts, given, samples, c_m }
     }
 
     /// The first grid to try.
@@ -181,7 +183,23 @@ impl Region {
             Some(_) => f64::INFINITY,
             None => self.samples.map_or(f64::INFINITY, covered),
         };
-        Grid::new(nx, ny, half_width.min(most), self.half_length)
+        let grid = Grid::new(nx, ny, half_width.min(most), self.half_length);
+        match self.samples {
+            Some((_, steps)) if self.counts.is_none() => grid.map_err(|e| self.unlike(steps, e)),
+            _ => grid,
+        }
+    }
+
+    /// The error about cells that follow from the `steps` between the samples (C).
+    fn unlike(&self, steps: [f64; 2], error: Error) -> Error {
+        let Error::Value { reason, .. } = error else { return error };
+        let [dx_m, dy_m] = steps.map(|step| stated(step * self.c_m));
+        Error::Value {
+            key: "surface.dx_m".into(),
+            reason: format!("with dy_m = {dy_m}, {reason}"),
+            value: dx_m,
+            remedy: "check both distances of the samples (m), or give --cells".into(),
+        }
     }
 
     /// Even numbers of cells twice as long as wide, longer only where there would be too many; with

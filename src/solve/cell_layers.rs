@@ -3,6 +3,7 @@
 use super::extent::Extent;
 use super::options::Options;
 use super::scene::Scene;
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 use crate::case::Case;
 use crate::cells::{CellPressure, EndLoads, Layer, add_ends, layer};
@@ -32,7 +33,7 @@ pub fn check_layers(case: &Case, options: &Options, depths_m: &[f64], cells: usi
         for (i, depth_m) in depths_m.iter().enumerate() {
             Extent::of(case, *body).check_axis(2, *depth_m).map_err(|outside| Error::Value {
                 key: format!("depth of layer {}", i + 1),
-                value: format!("{depth_m:e} m"),
+                value: format!("{} m", stated(*depth_m)),
                 reason: format!("it {}", outside.reason),
                 remedy: outside.remedy,
             })?;

@@ -1,5 +1,6 @@
 //! The extent of a body, within which stresses can be computed.
 
+use crate::base::number::stated;
 use crate::case::Case;
 use crate::stress::BodyKind;
 
@@ -59,8 +60,8 @@ impl Extent {
         Err(Outside {
             axis: "z",
             value_m: z_m,
-            reason: format!("is outside the {} at x = {x_m:e} m", self.body.name()),
-            remedy: format!("keep 0 <= z <= {through_m:e} m there"),
+            reason: format!("is outside the {} at x = {} m", self.body.name(), stated(x_m)),
+            remedy: format!("keep 0 <= z <= {} m there", stated(through_m)),
         })
     }
 
@@ -84,18 +85,21 @@ impl Extent {
         } else if inside {
             return Ok(());
         } else if axis == 0 {
-            (format!("is beside the {name}"), format!("keep |x| <= {:e} m", self.half_width_m))
+            (
+                format!("is beside the {name}"),
+                format!("keep |x| <= {} m", stated(self.half_width_m)),
+            )
         } else if axis == 1 {
             let [from, to] = self.ends_m;
             let remedy = match from == -to {
-                true => format!("keep |y| <= {to:e} m"),
-                false => format!("keep y from {from:e} to {to:e} m"),
+                true => format!("keep |y| <= {} m", stated(to)),
+                false => format!("keep y from {} to {} m", stated(from), stated(to)),
             };
             (format!("is outside the {name}"), remedy)
         } else if self.body == BodyKind::Block {
             (format!("is outside the {name}"), "keep z >= 0".to_string())
         } else {
-            (format!("is outside the {name}"), format!("keep 0 <= z <= {:e} m", self.depth_m))
+            (format!("is outside the {name}"), format!("keep 0 <= z <= {} m", stated(self.depth_m)))
         };
         Err(Outside { axis: ["x", "y", "z"][axis], value_m, reason, remedy })
     }

@@ -1,6 +1,7 @@
 //! Limits of grids of points.
 
 use super::extent::{Extent, Outside};
+use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::stress::{BodyKind, Grid};
@@ -29,7 +30,7 @@ pub fn check_grid(case: &Case, body: BodyKind, grid: &Grid) -> Result<()> {
     }
     let outside = |outside: Outside| {
         let (value, reason) =
-            (format!("{:e} m", outside.value_m), format!("it {}", outside.reason));
+            (format!("{} m", stated(outside.value_m)), format!("it {}", outside.reason));
         refuse(outside.axis, value, reason, outside.remedy)
     };
     let (extent, c_m) = (Extent::of(case, body), case.hertz().c_m);

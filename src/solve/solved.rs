@@ -12,7 +12,9 @@ use super::scene::Scene;
 use super::shaping::Shaping;
 use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
+use crate::base::number::stated;
 use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::curves::{Span, across_contact, curves_on};
 use crate::stress::grid::on_grid;
@@ -87,6 +89,11 @@ impl SolvedCase {
         &self.case
     }
 
+    /// The edge model.
+    pub fn method(&self) -> EdgeModel {
+        self.options.method
+    }
+
     /// The scales.
     pub fn hertz(&self) -> &HertzScales {
         &self.hertz
@@ -133,7 +140,7 @@ impl SolvedCase {
         for (i, at) in points.iter().enumerate() {
             extent.check(at.map(|v| v * self.hertz.c_m)).map_err(|outside| Error::Value {
                 key: format!("{} of point {} ({})", outside.axis, i + 1, body.name()),
-                value: format!("{:e} m", outside.value_m),
+                value: format!("{} m", stated(outside.value_m)),
                 reason: format!("it {}", outside.reason),
                 remedy: outside.remedy,
             })?;

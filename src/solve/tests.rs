@@ -57,7 +57,7 @@ fn bad_grids_are_refused() {
     assert!(refused(Grid { z: vec![-1e-9], ..good.clone() }).contains("keep 0 <= z"));
     let beside = -1.001 * case.roller.radius_m / case.hertz().c_m;
     let said = refused(Grid { x: vec![beside], ..good.clone() });
-    assert!(said.contains("is beside the roller; keep |x| <= 1e-2 m"), "{said}");
+    assert!(said.contains("is beside the roller; keep |x| <= 0.01 m"), "{said}");
     let beyond = 2.0 * case.roller.radius_m / case.hertz().c_m * 1.001;
     let said = refused(Grid { z: vec![beyond], ..good.clone() });
     assert!(said.contains("grid z (roller)") && said.contains("outside the roller"), "{said}");

@@ -7,6 +7,7 @@
 //! input; it sees what is not linear, too. Both use places in metres that do not move with the
 //! inputs.
 
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Draft, Form, KEYS, Key};
@@ -54,13 +55,12 @@ impl Input {
         let name = if name == "load_n" { "load.force_n" } else { name };
         let draft = Draft::of(case, Form::Load);
         let fits = |key: &&Key| key.fits(&draft) && !OTHERS.contains(&key.table());
-        let named = |key: &&Key| key.path == name || key.column == name;
-        let key = KEYS.iter().filter(fits).find(named).ok_or_else(|| {
-            let known: Vec<&str> = KEYS.iter().filter(fits).map(|k| k.path).collect();
-            refuse(format!("the case has no number {name}; it has {}", known.join(", ")))
+        let given = || KEYS.iter().filter(fits).filter_map(|key| Some((key, key.get(&draft)?)));
+        let named = |(key, _): &(&Key, f64)| key.path == name || key.column == name;
+        let (key, value) = given().find(named).ok_or_else(|| {
+            let known: Vec<&str> = given().map(|(key, _)| key.path).collect();
+            refuse(format!("the case gives no number {name}; it gives {}", known.join(", ")))
         })?;
-        let value =
-            key.get(&draft).ok_or_else(|| refuse(format!("the case does not give {name}")))?;
         let number =
             |text: &str| text.trim().parse::<f64>().ok().filter(|v| v.is_finite() && *v > 0.0);
         let deviation = match amount.trim().strip_suffix('%') {
@@ -69,22 +69,39 @@ impl Input {
         };
         let deviation = deviation.filter(|d| *d > 0.0).ok_or_else(|| {
             refuse(format!(
-                "'{amount}' is no standard deviation of {value:e}: it is greater than zero"
+                "'{amount}' is no standard deviation of {}: it is greater than zero",
+                stated(value)
             ))
         })?;
         if value != 0.0 && deviation > MOST_RELATIVE * value.abs() {
             return Err(refuse(format!(
-                "a deviation of more than half the value {value:e} is no small one"
+                "a deviation of more than half the value {} is no small one",
+                stated(value)
             )));
         }
-        Ok(Self { key, value, deviation })
+        let input = Self { key, value, deviation };
+        // Before anything is solved: first order takes one deviation to both sides.
+        input.moved(case, 1.0).and_then(|_| input.moved(case, -1.0))?;
+        Ok(input)
     }
 
     /// The case with this number moved by `deviations`.
+    ///
+    /// # Errors
+    /// [`Error::Value`] that names `--uncertain`, if that is no legal case.
     fn moved(&self, case: &Case, deviations: f64) -> Result<Case> {
         let mut draft = Draft::of(case, Form::Load);
-        self.key.set(&mut draft, self.value + deviations * self.deviation);
-        draft.case()
+        let moved = self.value + deviations * self.deviation;
+        self.key.set(&mut draft, moved);
+        draft.case().map_err(|e| match e {
+            Error::Value { reason, .. } => Error::Value {
+                key: "--uncertain".into(),
+                value: format!("{}={}", self.key.path, stated(self.deviation)),
+                reason: format!("a sample is {}, and {reason}", stated(moved)),
+                remedy: "give a smaller deviation, or leave it out".into(),
+            },
+            other => other,
+        })
     }
 }
 
@@ -355,15 +372,21 @@ mod tests {
     fn inputs_that_mean_nothing_are_refused() {
         for (text, wanted) in [
             ("load_n", "a number and its standard deviation"),
-            ("lod_n=5%", "the case has no number lod_n; it has roller.radius_m"),
+            ("lod_n=5%", "the case gives no number lod_n; it gives roller.radius_m"),
             ("load_n=5x", "'5x' is no standard deviation"),
             ("load_n=-5%", "'-5%' is no standard deviation"),
             ("load_n=80%", "no small one"),
-            ("W=5%", "the case has no number W"),
-            ("accuracy.tolerance=5%", "the case has no number"),
+            ("W=5%", "the case gives no number W"),
+            ("load.approach_m=1e-7", "the case gives no number load.approach_m"),
+            ("accuracy.tolerance=5%", "the case gives no number"),
+            (
+                "sliding.friction=0.1",
+                "--uncertain = sliding.friction=0.1 is not valid: a sample is -0.1, and the friction",
+            ),
         ] {
             let said = Input::parse(text, &case()).unwrap_err().to_string();
             assert!(said.contains(wanted), "{text}: {said}");
+            assert!(!said.contains(", load.approach_m"), "{said}");
         }
         let radius = Input::parse("roller.radius_m=1e-5", &case()).unwrap();
         assert_eq!(radius.deviation, 1e-5);

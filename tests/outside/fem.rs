@@ -113,6 +113,8 @@ fn missing_tools_are_named_with_what_to_install() {
     assert!(said.contains("size = 0.01 is not valid"), "{said}");
     let said = refused(bench.fake("").args(["--ranks", "0"]));
     assert!(said.contains("ranks = 0 is not valid"), "{said}");
+    let said = refused(bench.fake("").args(["--ranks", "100000"]));
+    assert!(said.contains("ranks = 100000 is not valid: it is more than this"), "{said}");
     let said = refused(bench.fake("").args(["--mesh-timeout", "-1"]));
     assert!(said.contains("--mesh-timeout"), "{said}");
     assert_eq!(bench.notes(), [""; 0]);
@@ -135,6 +137,10 @@ fn doctor_says_what_is_missing() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(said.contains("does not import dolfinx") && said.contains("apt-get"), "{said}");
+    let none = ["doctor", "--gmsh", gmsh, "--python", "no-such-python"];
+    let output = edgeline(bench.folder.path(), &none).output().unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("no-such-python (--python): not found"), "{said}");
     let output = doctor("", &["--gmsh", "no-such-gmsh", "--fem", "--json"]);
     assert_eq!(output.status.code(), Some(2));
     let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();

@@ -44,7 +44,7 @@ fn wrong_usage_exits_with_two() {
     let said = refused(folder.path(), &["solve", "flush-short", "--method", "quarter"]);
     assert!(said.contains("quarter-space"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "2"]);
-    assert!(said.contains("--tolerance") && said.contains("1e-1"), "{said}");
+    assert!(said.contains("--tolerance") && said.contains("0.1"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "-1"]);
     assert!(said.contains("--tolerance = -1 is not valid"), "{said}");
     // Refused for its memory or, if that suffices, for the number of points.
@@ -96,6 +96,13 @@ fn an_approach_gives_the_load_and_is_refused_where_a_force_is_needed() {
         assert!(said.contains(wanted) && said.contains("give force_n instead"), "{said}");
     }
     assert_eq!(files(path), ["a.toml"]);
+    let text = edgeline::case::builtin_case("half-short").unwrap().unwrap().to_toml();
+    let force = text.lines().find(|l| l.starts_with("force_n")).unwrap();
+    let text = text.replace(force, "approach_m = 1e-12");
+    let line = 1 + text.lines().position(|l| l.starts_with("approach_m")).unwrap();
+    std::fs::write(path.join("b.toml"), text).unwrap();
+    let said = refused(path, &["solve", "b.toml", "--tolerance", "3e-2"]);
+    assert!(said.contains(&format!("b.toml:{line}: load.approach_m = 1e-12 is not")), "{said}");
     let solve = ["solve", "a.toml", "--tolerance", "5e-3", "--json"];
     let run = edgeline(path, &solve).output().unwrap();
     let found: Value = serde_json::from_slice(&run.stdout).unwrap();
@@ -177,9 +184,10 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
         ("[load]", "[pose]\noffset_m = 0.02\n[load]", "the bodies overlap along y by 0e0 m"),
         ("[load]", "[pose]\ntilt_rad = 1e-3\n[load]", "a load with eccentricity_m finds its own"),
         ("[load]", "[pose]\ntilt = 1e-3\n[load]", "unknown key pose.tilt; did you mean tilt_rad?"),
+        (logarithmic, &table(""), "roller.profile.file = \"\" is not valid: the path of a file"),
         (logarithmic, &table("none.csv"), "none.csv"),
-        (logarithmic, &table("back.csv"), "back.csv:4: y = 5e-3 m does not lie beyond"),
-        (logarithmic, &table("short.csv"), "its points lie from y = -4e-3 to 4e-3 m"),
+        (logarithmic, &table("back.csv"), "back.csv:4: y = 0.005 m does not lie beyond"),
+        (logarithmic, &table("short.csv"), "its points lie from y = -0.004 to 0.004 m"),
         (
             "length_m = 12e-3",
             "length_m = 12e-3\nradius_m = -9e-3",
@@ -229,6 +237,7 @@ fn output_folder_that_cannot_be_made_exits_with_two() {
     for out in ["taken", "taken/below"] {
         let said = refused(folder.path(), &["solve", "flush-short", "--out", out]);
         assert!(said.contains("cannot create the folder taken"), "{said}");
+        assert!(said.contains("; a file is in the way: give another path"), "{said}");
     }
     assert_eq!(files(folder.path()), ["taken"]);
 }
@@ -239,7 +248,7 @@ fn bad_points_exit_with_two_and_leave_nothing() {
     std::fs::write(folder.path().join("p.csv"), "body,x_m,y_m,z_m\nblock,0,0,-1\n").unwrap();
     let arguments = ["solve", "flush-short", "--points", "p.csv", "--out", "o"];
     let said = refused(folder.path(), &arguments);
-    assert!(said.contains("p.csv:2: z_m = -1e0 is outside the block"), "{said}");
+    assert!(said.contains("p.csv:2: z_m = -1 is outside the block"), "{said}");
     assert_eq!(files(folder.path()), ["p.csv"]);
 }
 
@@ -402,7 +411,10 @@ fn solve_on_cells_writes_arrays_beside_its_files() {
     }
     assert!(cells["load_error_rel"].as_f64().unwrap() < 1e-12);
     for (arguments, wanted) in [
-        (&["--cells", "64,64"][..], "--engine cells"),
+        (&["--cells", "64,64"][..], "--cells = 64,64 is not valid"),
+        (&["--loads", "1,2.5"], "--loads = 1,2.5 is not valid: only the engine on cells takes it"),
+        (&["--engine", "cells", "--loads", "5,-1"], "--loads = -1 is not valid: the load in"),
+        (&["--engine", "cells", "--loads", "1e12"], "--loads = 1e12 is not valid: W = w"),
         (&["--engine", "cells", "--cells", "64"], "64,128"),
         (&["--engine", "cells", "--cells", "512,8"], "as long as wide"),
         (
@@ -520,8 +532,9 @@ fn a_measured_surface_is_pressed_on_cells() {
         assert!(more.join(plot).is_file(), "{plot}");
     }
     let refusals = [
-        ("heights = \"holes.npy\"", steps, "NaN at [3, 7]"),
+        ("heights = \"holes.npy\"", steps, "holes.npy: heights = NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
+        ("heights = \"\"", steps, "surface.heights = \"\" is not valid: the path"),
         ("heights = \"none.npy\"", steps, "none.npy"),
         ("heights = \"metres.npy\"", steps, "the heights range over 2e0 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
@@ -537,6 +550,11 @@ fn a_measured_surface_is_pressed_on_cells() {
             "heights = \"waves.npy\"",
             "dx_m = 1e-5\ndy_m = 30",
             "than the contact is long, 2.523e-3 m",
+        ),
+        (
+            "heights = \"waves.npy\"",
+            "dx_m = 1e-8\ndy_m = 3e-5",
+            "surface.dx_m = 1e-8 is not valid: with dy_m = 3e-5, the cells are",
         ),
         ("heights = \"waves.npy\"\ndetrend = \"plan\"", steps, "did you mean plane?"),
         ("heights = \"waves.npy\"\nheigths = 1", steps, "did you mean heights?"),
@@ -649,7 +667,9 @@ fn uncertain_inputs_leave_bands() {
         table.iter().any(|r| r["body"] == "contact") && table.iter().any(|r| r["body"] == "roller")
     );
     assert!(table.iter().all(|r| number(r, "low_pa") <= number(r, "high_pa")));
-    assert!(text("a", "plot-uncertainty.svg").contains("two standard deviations"));
+    let plot = text("a", "plot-uncertainty.svg");
+    let origin = concat!("flush-short, quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
+    assert!(plot.contains("two standard deviations") && plot.contains(origin), "{origin}");
     let said =
         refused(folder.path(), &["solve", "flush-short", "--uncertain", "lod_n=5%", "--out", "d"]);
     assert!(said.contains("lod_n") && !folder.path().join("d").exists(), "{said}");

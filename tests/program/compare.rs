@@ -238,13 +238,19 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
 #[test]
 fn a_file_all_of_whose_points_are_next_to_an_end_compares_nothing() {
     let folder = bench();
+    // Nor has a curve of one point a length.
     let end = 5.0 * 0.02 * (1e-3 / std::f64::consts::PI).sqrt();
-    fs::write(folder.path().join("end.csv"), format!("x_m,y_m,p_pa\n0,{end},1e9\n")).unwrap();
-    let output = edgeline(folder.path(), &["compare", "case.toml", "end.csv"]).output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
-    let text = said(&output);
-    assert!(
-        text.contains("nothing was compared") && text.contains("next to an edge: contact"),
-        "{text}"
-    );
+    for (text, name) in [
+        (format!("x_m,y_m,p_pa\n0,{end},1e9\n"), "contact points"),
+        ("curve,x_m,y_m,p_pa\nmiddle,0,0,1e9\n".into(), "contact middle"),
+    ] {
+        fs::write(folder.path().join("few.csv"), text).unwrap();
+        let output =
+            edgeline(folder.path(), &["compare", "case.toml", "few.csv"]).output().unwrap();
+        assert_eq!(output.status.code(), Some(1));
+        let text = said(&output);
+        let why = "too few points away from the edges, of which a curve takes two in a row";
+        let wanted = format!("{why}: {name}");
+        assert!(text.contains("nothing was compared") && text.contains(&wanted), "{text}");
+    }
 }

@@ -30,6 +30,9 @@ fn a_passage_is_written_with_its_critical_places() {
                 let name = format!("fatigue-{body}-{measure}.{form}");
                 assert!(names.contains(&name), "{name} is not in {names:?}");
             }
+            let svg = fs::read_to_string(out.join(format!("fatigue-{body}-{measure}.svg")));
+            let origin = concat!(", quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
+            assert!(svg.unwrap().contains(&format!("{origin}: {body}<")), "{measure}");
         }
         assert!(names.contains(&format!("fatigue-{body}.vtr")));
     }
@@ -64,7 +67,7 @@ fn half_a_measure_is_refused() {
         ("dang_van_beta_pa = 4e8", "dang_van_alpha"),
         ("yield_pa = 1e9", "fatemi_socie_k"),
         ("fatemi_socie_k = 0.6", "yield_pa"),
-        ("dang_van_alpha = -1.0", "0 and 1e1"),
+        ("dang_van_alpha = -1.0", "0 and 10"),
     ] {
         let text = format!("{CASE}fatigue = {{ {fatigue} }}\n");
         fs::write(folder.path().join("case.toml"), text).unwrap();

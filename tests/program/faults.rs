@@ -521,6 +521,7 @@ fn folders_may_be_called_anything() {
     let mut fem = edgeline(folder, &["fem", "flush-short", "--out", "a:b"]);
     let said = refused(fem.arg("--python").arg(fake("python3")).arg("--gmsh").arg(fake("gmsh")));
     assert!(said.contains("choose an output folder without that character"), "{said}");
+    assert!(said.contains("--out = ") && !folder.join("a:b").exists(), "{said}");
     let mut fem = edgeline(folder, &["fem", "flush-short", "--out", "o", "--gmsh"]);
     let said = refused(fem.arg(OsStr::from_bytes(b"\xff")));
     assert!(said.contains("a path that is not UTF-8 cannot be handed on"), "{said}");

@@ -3,6 +3,7 @@ mod study;
 mod sweep;
 
 use super::*;
+use crate::base::Error;
 use proptest::prelude::*;
 use std::path::Path;
 
@@ -118,7 +119,7 @@ const MISTAKES: &[Mistake] = &[
     (
         "L_r = 0.5",
         "L_r = 2e3",
-        "f.toml:12: dimensionless.L_r = 2e3 is not valid: L_r = L1 / L2 lies between 1e-3 and 1e3",
+        "f.toml:12: dimensionless.L_r = 2e3 is not valid: L_r = L1 / L2 lies between 0.001 and 1000",
     ),
     ("L_r = 0.5", "", "f.toml:9: dimensionless.L_r is missing"),
     ("W = 5e-4", "W = -5e-4", "f.toml:10: dimensionless.W = -5e-4 is not valid"),
@@ -227,8 +228,42 @@ fn a_force_under_which_johns_and_gohars_profile_does_not_drop_is_refused() {
 #[test]
 fn missing_file_names_the_built_in_cases() {
     let message = Case::find(Path::new("flush-shirt")).unwrap_err().to_string();
-    assert!(message.contains("no such file") && message.contains("flush-short"), "{message}");
+    assert!(message.contains("no such file; did you mean flush-short? "), "{message}");
+    let folder = tempfile::tempdir().unwrap();
+    for (path, wanted) in [
+        (folder.path(), ": is a folder; give a case file"),
+        (Path::new("-"), "-: no such file; for a case from standard input give /dev/stdin"),
+        (Path::new("factorial"), "is a study, not a case; run `edgeline study factorial`"),
+    ] {
+        let message = Case::find(path).unwrap_err().to_string();
+        assert!(message.contains(wanted) && message.contains("flush-short"), "{message}");
+    }
+    let message = Study::find(folder.path()).unwrap_err().to_string();
+    assert!(message.contains(": is a folder; give a study file"), "{message}");
     assert_eq!(Case::find(Path::new("flush-short")).unwrap().name, "flush-short");
+}
+
+#[test]
+fn errors_of_a_solution_have_their_place_in_the_case_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("f.toml");
+    std::fs::write(&path, LOADED).unwrap();
+    let placed = |path: &Path, key: &str| {
+        let (key, reason, remedy) = (key.into(), "why".into(), "what to do".into());
+        let error = Error::Value { key, value: "9".into(), reason, remedy };
+        Case::place(path, error).to_string()
+    };
+    let said = placed(&path, "load.force_n");
+    assert!(
+        said.ends_with("f.toml:12: load.force_n = 1000 is not valid: why; what to do"),
+        "{said}"
+    );
+    for (path, key) in [(&*path, "--loads"), (Path::new("flush-short"), "load.force_n")] {
+        assert_eq!(placed(path, key), format!("{key} = 9 is not valid: why; what to do"));
+    }
+    let late = Error::NotConverged { iterations: 3, residual: 0.5, remedy: "wait".into() };
+    let said = Case::place(&path, late).to_string();
+    assert!(said.contains("f.toml: contact did not converge after 3 iterations"), "{said}");
 }
 
 #[test]
@@ -286,14 +321,15 @@ fn study_errors_name_key_line_and_remedy() {
         1 + DEFAULT_STUDY.lines().position(|l| l.starts_with(key)).expect("key in the study")
     };
     for (key, with, wanted) in [
-        ("W = ", "W = []", "factors.W = [] is not valid: a list belongs here"),
+        ("W = ", "W = []", "factors.W = [] is not valid: the list is empty"),
+        ("centre = ", "cases = []", "cases = [] is not valid: the list is empty"),
         ("W = ", "W = 1e-4", "factors.W = 1e-4 is not valid: a list belongs here"),
         ("W = ", "W = [1e-4, 1e-4]", "factors.W = 1e-4 is not valid: this level is there already"),
         ("W = ", "W = [1e-4, -1]", "factors.W = -1 is not valid"),
         (
             "L_r = ",
             "L_r = [0.5, 1500]",
-            "factors.L_r = 1500 is not valid: L_r = L1 / L2 lies between 1e-3 and 1e3",
+            "factors.L_r = 1500 is not valid: L_r = L1 / L2 lies between 0.001 and 1000",
         ),
         ("S_l = ", "S_1 = [5]", "unknown key factors.S_1; did you mean S_l?"),
         ("centre = ", "centre = 1", "centre = 1 is not valid"),
@@ -387,8 +423,8 @@ fn what_follows_from_factors_is_held_to_the_ranges_of_files() {
         (case, study)
     };
     for (radius, young, slenderness, wanted) in [
-        ("1e4", "210e9", "1e4", "the roller's length in metres lies between 1e-9 and 1e4"),
-        ("5e3", "210e9", "2", "the block's length in metres lies between 1e-9 and 1e4"),
+        ("1e4", "210e9", "1e4", "the roller's length in metres lies between 1e-9 and 10000"),
+        ("5e3", "210e9", "2", "the block's length in metres lies between 1e-9 and 10000"),
         ("1e4", "1e14", "0.5", "the load in newtons lies between 1e-12 and 1e15"),
     ] {
         let (case, study) = case(radius, young, slenderness);

@@ -361,7 +361,7 @@ fn errors_of_generators_name_the_line_and_the_remedy() {
         ),
         ("[\"D = AB\"]", factors, "the generator of C is a product of the factors A to B"),
         ("[\"C = A\"]", factors, "it gives two factors the same levels"),
-        ("[]", factors, "a list belongs here"),
+        ("[]", factors, "the list is empty"),
         ("\"C = AB\"", factors, "a list belongs here"),
         ("[3]", factors, "a text belongs here"),
     ] {

@@ -36,6 +36,13 @@ impl Figure {
         Self { title, columns: 1, panels: vec![panel], panel_size: (820, 430) }
     }
 
+    /// The same figure with a title above its panel, for what leaves no room beside the title.
+    #[must_use]
+    pub fn of_what(mut self, what: &str) -> Self {
+        self.panels.iter_mut().for_each(|panel| panel.title = what.to_string());
+        self
+    }
+
     /// The figure as shapes.
     pub fn draw(&self) -> Picture {
         let columns = self.columns.max(1);
@@ -62,10 +69,12 @@ impl Figure {
     }
 
     /// The names in the legend, what they stand for, and where each entry begins; entries that
-    /// leave no place for another one in `width` are followed by a new row.
+    /// leave no place for another one in `width` are followed by a new row. What has no point in
+    /// any panel is not named.
     fn legend(&self, width: f64) -> Vec<(&str, Sample<'_>, Point)> {
         let series = self.panels.iter().flat_map(|p| &p.series);
-        let series = series.map(|s| (s.name.as_str(), Sample::Series(s)));
+        let series =
+            series.filter(|s| !s.points.is_empty()).map(|s| (s.name.as_str(), Sample::Series(s)));
         let shades = self.panels.iter().filter_map(|p| p.shade.as_ref());
         let shades = shades.map(|s| (s.name.as_str(), Sample::Shade));
         let mut all: Vec<(&str, Sample, Point)> = Vec::new();
@@ -109,7 +118,8 @@ impl Sample<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::look;
+    use super::super::panel::{Bar, look};
+    use super::super::picture::INK;
     use super::*;
     use crate::study::Engine;
 
@@ -118,13 +128,32 @@ mod tests {
         let series = ["one", "a name of some length", "another name of some length"].map(|name| {
             Series::curve(name, look(&Engine::fenicsx().into()), vec![(0.0, 1.0), (1.0, 2.0)])
         });
-        let panel = Panel { series: series.to_vec(), ..Default::default() };
+        let nothing = Series { name: "nothing".into(), points: Vec::new(), ..series[0].clone() };
+        let series = [&[nothing], &series[..]].concat();
+        let panel = Panel { series, ..Default::default() };
         let figure = Figure { columns: 1, panels: vec![panel], ..Default::default() };
         let places = |width| figure.legend(width).iter().map(|(.., p)| *p).collect::<Vec<_>>();
         assert!(places(1000.0).iter().all(|(_, y)| *y == LEGEND_TOP));
         let [first, second, third] = places(400.0)[..] else { panic!("three names") };
         assert!(first.1 == second.1 && second.0 > first.0);
         assert_eq!(third, (LEGEND_LEFT, LEGEND_TOP + LEGEND_ROW));
+    }
+
+    #[test]
+    fn a_number_at_the_right_end_is_not_cut() {
+        let bar = |value| Bar { name: String::new(), value, colour: INK, strong: true };
+        let panel = Panel { bars: vec![bar(0.002_499), bar(0.001)], ..Default::default() };
+        let figure = Figure {
+            columns: 1,
+            panels: vec![panel],
+            panel_size: (380, 300),
+            ..Default::default()
+        };
+        let svg = figure.draw().to_svg();
+        let before = svg.split(">0.0025<").next().unwrap();
+        let x = before.rsplit(" x=\"").next().unwrap().split('"').next().unwrap();
+        let right = x.parse::<f64>().unwrap() + 0.5 * letters::width("0.0025", TEXT);
+        assert!(right < 380.0 && right > 360.0, "{right}");
     }
 
     #[test]

@@ -13,4 +13,4 @@ mod svg;
 pub use contour::Map;
 pub use figure::Figure;
 pub use panel::{Bar, Look, Marker, Note, Panel, Rule, Series, Shade, look};
-pub use picture::{Colour, Picture};
+pub use picture::{Colour, INK, Picture};

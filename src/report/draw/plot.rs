@@ -28,6 +28,8 @@ pub struct Plot<'a> {
     panel: &'a Panel,
     /// Place of the panel's corner, room for labels of the axes included.
     corner: Point,
+    /// Where that room ends on the right.
+    edge: f64,
     left: f64,
     right: f64,
     top: f64,
@@ -51,7 +53,7 @@ impl<'a> Plot<'a> {
         let (left, right) = (corner.0 + left, corner.0 + width - room);
         let x = Axis { low: x.0, high: x.1, log: panel.log.0, from: left, to: right };
         let (top, bottom) = (corner.1 + ABOVE, corner.1 + height - BELOW);
-        Self { panel, corner, left, right, top, bottom, x, y }
+        Self { panel, corner, edge: corner.0 + width, left, right, top, bottom, x, y }
     }
 
     /// Adds the panel's shapes.
@@ -97,6 +99,8 @@ impl<'a> Plot<'a> {
             let style = if tick.text.is_some() { style } else { style.faded(0.5) };
             picture.line(vec![(at, from + mark), (at, to)], style);
             if let Some(text) = tick.text {
+                // A number at the very end is moved, not cut.
+                let at = at.min(self.edge - 0.5 * letters::width(&text, TEXT) - 2.0);
                 picture.text(Text::new(text, (at, self.bottom + 14.0), Anchor::Middle));
             }
         }

@@ -3,10 +3,12 @@
 mod all;
 mod case;
 mod effects;
+mod origin;
 mod solution;
 mod symbol;
 mod times;
 
 pub use all::{all, named};
+pub use origin::{PROGRAM, origin};
 pub use solution::of_solution;
 pub use symbol::Shown;
