@@ -209,8 +209,8 @@ mod tests {
     }
 
     /// Loads with the power of an end, once as they are and once folded: the same integrals against
-    /// a smooth function, whichever end is the nearer one to the middle, with and without a like one
-    /// at the same distance.
+    /// a smooth function, whichever end is nearer to the middle, with and without a like one at the
+    /// same distance.
     #[test]
     fn folded_loads_keep_the_power_of_an_end() {
         let line = |exponents: [Option<f64>; 2]| {

@@ -74,7 +74,7 @@ impl LongWaves {
 }
 
 /// How loads and displacements at wavenumber `k` follow from those at a longer or shorter wave,
-/// `from`, of a body of half-length `half`, with free ends or without, under a load of one `parity`.
+/// `from`, of a body of half-length `half`, `freed` or not, under a load of one `parity`.
 pub fn growth(k: f64, from: f64, (half, freed): (f64, bool), parity: Parity) -> f64 {
     if freed && parity == Parity::Odd && k * half < BENDS { from / k } else { 1.0 }
 }

@@ -85,7 +85,7 @@ impl Stack {
         }
     }
 
-    /// The factor of the share of layer number `layer` in the loads of `body` at the wavenumber `k`.
+    /// The factor of the share of layer number `layer` in the loads of `body` at wavenumber `k`.
     pub(crate) fn growth(&self, body: &Body, k: f64, layer: usize) -> f64 {
         match &self.long {
             Some(_) => growth(k, self.nodes[layer], (body.half, body.end.freed), body.parity),

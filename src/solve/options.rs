@@ -114,9 +114,9 @@ mod tests {
     fn points_outside_a_body_are_refused() {
         let mut options = Options::new(EdgeModel::Mirror);
         for (body, at_m, wanted) in [
-            (BodyKind::Roller, [0.0, 0.0, 0.0201], "z of point 2 (roller) = 2.01e-2 m"),
+            (BodyKind::Roller, [0.0, 0.0, 0.0201], "z of point 2 (roller) = 0.0201 m"),
             (BodyKind::Roller, [f64::NAN, 0.0, 0.0], "x of point 2 (roller) = NaN m"),
-            (BodyKind::Block, [0.0, -1.0, 0.0], "y of point 2 (block) = -1e0 m"),
+            (BodyKind::Block, [0.0, -1.0, 0.0], "y of point 2 (block) = -1 m"),
             (BodyKind::Block, [0.0, 0.0, -1e-9], "z of point 2 (block) = -1e-9 m"),
         ] {
             // A block has no floor.

@@ -13,8 +13,10 @@
 //!   - M_x = m (2 (1 + nu) / (3 + nu) + c k z) e^(-k z) sin(k x),
 //!   - M_xz = m ((1 + nu) / (3 + nu) + c k z) e^(-k z) cos(k x).
 //!
-//!   Their integrals over k are those of a moment at one point of the edge. The shear forces are the
-//!   derivatives of a harmonic function.
+//!   Their integrals over k are those of a moment at one point of the edge. The shear forces are
+//!   the derivatives of a harmonic function. Kirchhoff's free edge carries a torque, and a shear
+//!   force that balances it. What takes both from the true edge is torsion, which decays over the
+//!   plate's thickness: harmonic functions of y and z.
 //! - A half-space, with images or without, is under forces at points (Boussinesq).
 
 use super::field::Field;
@@ -27,6 +29,10 @@ use std::f64::consts::PI;
 /// Distance from the contact, in half-lengths of the body, beyond which a point is far. Waves so
 /// long that they reach it are few, and the equations of free faces are close to singular for them.
 const FAR: f64 = 10.0;
+
+/// Depth of the edge's layer, in half-lengths of the body, and terms of its series.
+const LAYER: f64 = 8.0;
+const TERMS: u32 = 60;
 
 /// A load on a piece of the line: its place from the body's middle, its length and its force.
 struct Piece {
@@ -100,7 +106,16 @@ impl Field<'_> {
                 yz: parabolic * q_z,
             }
         };
-        let pressure = stress(&|y| self.load().endless(y, x, z), bent(x, z, nu));
+        let mut pressure = stress(&|y| self.load().endless(y, x, z), bent(x, z, nu));
+        if z < LAYER * half {
+            let [_, _, torque, ..] = bent(x, 0.0, nu);
+            let [xz, xy, yz] = untwisted(y, z, half);
+            let twist = -1.5 * moment * torque / half.powi(3);
+            pressure.xz += twist * xz;
+            pressure.xy += twist * xy;
+            // Beside a moment at one point the torque of the edge falls like 1 / x.
+            pressure.yz -= twist / x * yz;
+        }
         let traction = self.traction().map_or(StressTensor::default(), |own| {
             stress(&|y| own.endless_along(y, x, z), twisted(x, z, nu))
         });
@@ -157,6 +172,22 @@ fn bent(x: f64, z: f64, nu: f64) -> Bending {
     [moments[0], moments[1], moments[2], -share * k_sin, -share * k_cos]
 }
 
+/// Stresses xz and xy of the layer that takes the shear stress xz = y from the edge z = 0 of a
+/// plate of half-thickness `half`, and per change of that along x the stress yz.
+fn untwisted(y: f64, z: f64, half: f64) -> [f64; 3] {
+    let mut sum = [0.0; 3];
+    for n in 0..TERMS {
+        let wave = f64::from(2 * n + 1) * PI / (2.0 * half);
+        let sign = if n % 2 == 0 { 1.0 } else { -1.0 };
+        let size = sign * 2.0 / (half * wave * wave) * (-wave * z).exp();
+        let (sin, cos) = (wave * y).sin_cos();
+        sum[0] -= size * sin;
+        sum[1] += size * cos;
+        sum[2] += size / wave * cos;
+    }
+    sum
+}
+
 /// The plate under a torque at x = 0 of its edge, by tractions along x.
 fn twisted(x: f64, z: f64, nu: f64) -> Bending {
     let [cos, z_cos, sin, z_sin, k_cos, k_sin] = integrals(x, z);
@@ -190,6 +221,18 @@ mod tests {
             let edge = |x: f64| of(x, 0.0, nu);
             let shear = edge(1.5)[4] + (edge(1.5 + step)[2] - edge(1.5 - step)[2]) / (2.0 * step);
             assert!(edge(1.5)[1].abs() < 1e-12 && shear.abs() < 1e-6, "{shear}");
+        }
+    }
+
+    /// The layer takes from the edge what Kirchhoff's plate leaves there, and is free on the faces.
+    #[test]
+    fn the_edge_is_untwisted() {
+        let half = 1.3;
+        for y in [-1.1, 0.2, 0.9] {
+            let [xz, _, yz] = untwisted(y, 0.0, half);
+            assert!((xz + y).abs() < 2e-2 && (yz - 0.5 * (half * half - y * y)).abs() < 1e-4);
+            let [_, on_face, yz] = untwisted(half, 0.4, half);
+            assert!(on_face.abs() < 1e-12 && yz.abs() < 1e-12);
         }
     }
 }

@@ -964,9 +964,9 @@ fn in_body(stress: &WaveStress) -> [f64; 6] {
 }
 
 /// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
-/// gives those of the flat body at each of `zs` for a list of x, and for the place that each of them
-/// belongs to, under the plane `contact`. The slopes along x are difference quotients, whose points
-/// share all sums.
+/// gives those of the flat body at each of `zs` for a list of x, and for the place that each of
+/// them belongs to, under the plane `contact`. The slopes along x are difference quotients, whose
+/// points share all sums.
 fn rounded(
     xs: &[f64],
     zs: &[f64],

@@ -154,8 +154,8 @@ impl Waves {
 }
 
 impl PartLoads {
-    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`]; `grown` as
-    /// in [`nodal_loads`].
+    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`]; `grown`
+    /// as in [`nodal_loads`].
     fn new<S: AsRef<[f64]>>(
         (body, grown): (&Body, &dyn Fn(usize, usize) -> f64),
         k: &[f64],

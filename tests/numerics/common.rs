@@ -30,6 +30,19 @@ pub fn sequence<const D: usize>(index: usize) -> [f64; D] {
     std::array::from_fn(|d| (0.5 + (index + 1) as f64 * root.powi(-(d as i32 + 1))).fract())
 }
 
+/// The scenes that `EDGELINE_SCENES` asks for, a number of them or a range like `5000..10000`;
+/// without it `few` of them, `stride` apart.
+pub fn wanted_scenes(few: usize, stride: usize) -> Vec<usize> {
+    let number = |n: &str| n.parse::<usize>().expect("a number of scenes, or a range of them");
+    match std::env::var("EDGELINE_SCENES").ok() {
+        None => (0..few).map(|i| stride * i).collect(),
+        Some(wanted) => {
+            let (from, to) = wanted.split_once("..").unwrap_or(("0", &wanted));
+            (number(from)..number(to)).collect()
+        }
+    }
+}
+
 /// Largest difference of two stresses' components.
 pub fn apart(a: &StressTensor, b: &StressTensor) -> f64 {
     let pairs = a.components().into_iter().zip(b.components());

@@ -5,7 +5,7 @@
 //! 5,000 and prints the worst of each law and every scene without an answer; with `5000..10000`,
 //! the next 5,000. Without the variable sixty run.
 
-use crate::common::{sequence, worse};
+use crate::common::{sequence, wanted_scenes, worse};
 use edgeline::base::profile::Table;
 use edgeline::base::{Error, Material};
 use edgeline::body::EdgeModel;
@@ -208,14 +208,7 @@ fn run(index: usize) -> edgeline::base::Result<Broken> {
 
 #[test]
 fn real_rollers_end_in_sound_answers_or_say_why_not() {
-    let wanted = std::env::var("EDGELINE_SCENES").ok();
-    let number = |n: &str| n.parse::<usize>().expect("a number of scenes, or a range of them");
-    // A small number of scenes is spread over the whole sequence.
-    let indices: Vec<usize> =
-        match wanted.as_deref().map(|w| w.split_once("..").unwrap_or(("0", w))) {
-            Some((from, to)) => (number(from)..number(to)).collect(),
-            None => (0..FEW).map(|i| STRIDE * i).collect(),
-        };
+    let indices = wanted_scenes(FEW, STRIDE);
     let count = indices.len();
     let outcomes: Vec<(usize, edgeline::base::Result<Broken>)> =
         indices.into_par_iter().map(|i| (i, run(i))).collect();

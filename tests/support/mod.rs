@@ -32,11 +32,12 @@ pub fn number(row: &Row, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
 }
 
-/// The sorted names in a folder.
+/// The sorted names in a folder, but for the program's list of them.
 pub fn files(folder: &Path) -> Vec<String> {
     let entries = fs::read_dir(folder).unwrap();
     let mut names: Vec<String> =
         entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.retain(|name| !(name.starts_with('.') && name.ends_with(".files")));
     names.sort();
     names
 }

@@ -187,6 +187,12 @@ fn every_factor_is_a_key() {
     }
 }
 
+/// Whether an error is about this value of a key, which it rounds or, beside a limit, does not.
+fn names(said: &str, key: &Key, value: f64) -> bool {
+    let shown = [format!("{value:e}"), stated(value)];
+    shown.iter().any(|value| said.starts_with(&format!("{} = {value} is not valid: ", key.path)))
+}
+
 #[test]
 fn keys_are_told_apart_and_their_examples_are_legal() {
     for (i, key) in KEYS.iter().enumerate() {
@@ -199,10 +205,7 @@ fn keys_are_told_apart_and_their_examples_are_legal() {
         assert_eq!(zero, key.range.0 <= 0.0 && key.path != "block.radius_m", "{}", key.path);
         for beyond in [key.range.0.next_down(), key.range.1.next_up(), f64::NAN, f64::INFINITY] {
             let said = key.check(beyond).unwrap_err().to_string();
-            assert!(
-                said.starts_with(&format!("{} = {beyond:e} is not valid: ", key.path)),
-                "{said}"
-            );
+            assert!(names(&said, key, beyond), "{said}");
         }
     }
 }
@@ -216,10 +219,7 @@ fn every_key_is_checked_as_a_part_of_its_case() {
         let low = key.range.0 - 1.0;
         key.set(&mut draft, low);
         let said = draft.case().unwrap_err().to_string();
-        let shown = [format!("{low:e}"), stated(low)];
-        let starts =
-            |low: &String| said.starts_with(&format!("{} = {low} is not valid: ", key.path));
-        assert!(shown.iter().any(starts), "{said}");
+        assert!(names(&said, key, low), "{said}");
     }
 }
 
