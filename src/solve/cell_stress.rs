@@ -142,15 +142,18 @@ fn sums(
     };
     let fields = PerBody { block: field(BodyKind::Block), roller: field(BodyKind::Roller) };
     let lines = line_loads(pressure, 0.0);
-    let contact = |y: f64| local_contact(scene, &lines, y);
+    let contact = |kind: BodyKind, y: f64| {
+        let overlap = [-scene.half_length, scene.half_length];
+        local_contact(scene, &lines, y).on_line(y, overlap, fields[kind].faces)
+    };
     let curve = |spec: &CurveSpec| -> Vec<RoundStress> {
         let rows: Vec<&[[f64; 3]]> =
             spec.points.chunk_by(|a, b| a[1] == b[1] && a[2] == b[2]).collect();
-        let row = |row: &&[[f64; 3]]| fields[spec.body].row(row, &contact(row[0][1]));
+        let row = |row: &&[[f64; 3]]| fields[spec.body].row(row, &contact(spec.body, row[0][1]));
         rows.par_iter().flat_map_iter(row).collect()
     };
     let point = |(kind, at): &(BodyKind, [f64; 3])| {
-        fields[*kind].row(&[*at], &contact(at[1])).swap_remove(0)
+        fields[*kind].row(&[*at], &contact(*kind, at[1])).swap_remove(0)
     };
     lines::Stresses {
         curves: curves.iter().map(curve).collect(),

@@ -183,10 +183,13 @@ impl<'a> Field<'a> {
 
     /// The plane contact that a round surface at `y` has.
     fn local_contact(&self, y: f64) -> LocalContact {
-        if !self.follows_contact {
-            return LocalContact::HERTZ;
-        }
-        self.pressure.local_contact(LocalContact::place(y, self.pressure.ends()))
+        let ends = self.pressure.ends();
+        let contact = match self.follows_contact {
+            true => self.pressure.local_contact(LocalContact::place(y, ends)),
+            false => LocalContact::HERTZ,
+        };
+        let (half, middle) = (self.stack.body().half, self.stack.middle);
+        contact.on_line(y, ends, [middle - half, middle + half])
     }
 
     /// Whether the contact is symmetric about y = 0.

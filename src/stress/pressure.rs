@@ -191,9 +191,9 @@ impl Load for Pressure {
         match self.in_contact(y) {
             Some((half_width, modes)) => {
                 let load = strip::cumulative(half_width, &modes, half_width);
-                LocalContact { half_width, peak: load / (FRAC_PI_2 * half_width) }
+                LocalContact::endless(half_width, load / (FRAC_PI_2 * half_width))
             }
-            None => LocalContact { half_width: 0.0, peak: 0.0 },
+            None => LocalContact::endless(0.0, 0.0),
         }
     }
 

@@ -25,7 +25,8 @@
 //! - xz: -(q ds / (pi R)) (4 u^4 z^2 / r^6 + z^4 / r^4).
 //!
 //! These terms are those of a plane contact. Along a straight, parallel line it is everywhere that
-//! of Hertz; with a profile or a tilt it is the local one, [`LocalContact`]. What the ends make of
+//! of Hertz; with a profile or a tilt it is the local one, [`LocalContact`]. Where the line ends
+//! and the body goes on, they fade like the stress below a line of forces. What free ends make of
 //! them is neglected, see the limits in `docs/theory.md`. No stress along y belongs to them; under
 //! plane strain this neglects some 0.1 C / R.
 //!
@@ -49,6 +50,9 @@ const LANES: usize = 8;
 /// Distance from the contact's end (C) within which its local half-width is not that of the loads
 /// around.
 const END_REACH: f64 = 1.0;
+
+/// Lengths that differ by less than this part of a body's are the same.
+const SAME: f64 = 1e-9;
 
 /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
 type Rule = [[[f64; LANES]; 2]; GROUPS];
@@ -74,11 +78,45 @@ pub struct LocalContact {
     pub half_width: f64,
     /// Its largest pressure, of a semi-elliptic one with the same load (p0).
     pub peak: f64,
+    /// Distances inwards from the line's ends (C), negative beyond them; infinite where the body
+    /// ends there, too.
+    pub inside: [f64; 2],
 }
 
 impl LocalContact {
     /// The Hertz contact of the mean load.
-    pub const HERTZ: LocalContact = LocalContact { half_width: 1.0, peak: 1.0 };
+    pub const HERTZ: LocalContact = LocalContact::endless(1.0, 1.0);
+
+    /// That of an endless line.
+    pub const fn endless(half_width: f64, peak: f64) -> Self {
+        Self { half_width, peak, inside: [f64::INFINITY; 2] }
+    }
+
+    /// The same below `y`, of a line that has these `ends`, on a body with ends of its own.
+    #[must_use]
+    pub fn on_line(self, y: f64, ends: [f64; 2], body: [f64; 2]) -> Self {
+        let same = SAME * (body[1] - body[0]);
+        let goes_on = [ends[0] - body[0] > same, body[1] - ends[1] > same];
+        let inside = [y - ends[0], ends[1] - y];
+        let inside = [0, 1].map(|i| if goes_on[i] { inside[i] } else { f64::INFINITY });
+        Self { inside, ..self }
+    }
+
+    /// The part of what an endless line does at (`x`, `z`): of the vertical stress below a line of
+    /// forces on a half-space that ends at the distance s, (1 + (3 t - t^3) / 2) / 2 is left, with
+    /// t = s / (s^2 + x^2 + z^2)^(1/2) (the integral of Boussinesq's 3 z^3 / (2 pi r^5) along it).
+    /// The forces of a contact are spread over its width.
+    fn share(&self, x: f64, z: f64) -> f64 {
+        let off = x * x + z * z + 0.25 * self.half_width * self.half_width;
+        let lost = |s: f64| match s.is_finite() {
+            true => {
+                let t = s / (s * s + off).sqrt();
+                0.5 - 0.25 * (3.0 * t - t * t * t)
+            }
+            false => 0.0,
+        };
+        1.0 - lost(self.inside[0]) - lost(self.inside[1])
+    }
 
     /// The place whose load counts at `y`, in a contact that has these `ends`: what is added
     /// depends on the loads within C, of which the steep ends themselves are no measure.
@@ -92,17 +130,18 @@ impl LocalContact {
     /// in units of p0; none pulls.
     pub fn carrying(load: f64) -> Self {
         let half_width = (2.0 / PI * load.max(0.0)).sqrt();
-        Self { half_width, peak: half_width }
+        Self::endless(half_width, half_width)
     }
 
     /// Contributions of the loads' tilt and of the surface's drop, by one of [`Kernel`]s, at (`x`,
     /// `z`) (C).
     fn tilted(&self, sums: Kernel, x: f64, z: f64) -> StressTensor {
-        let Self { half_width, peak } = *self;
+        let Self { half_width, peak, .. } = *self;
         if half_width <= 0.0 {
             return StressTensor::default();
         }
-        let of_sum = |sum| half_width * peak * sum / PI;
+        let factor = half_width * peak * self.share(x, z) / PI;
+        let of_sum = |sum| factor * sum;
         let [xx, zz, xz] = sums(&RULE, x / half_width, z / half_width).map(of_sum);
         StressTensor { xx, zz, xz, ..StressTensor::default() }
     }

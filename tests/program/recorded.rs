@@ -114,14 +114,13 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
 
 /// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric`
 /// drops most within 0.1 C of the end, where its meshes differ by 0.03 p0; in `designed-roller` it
-/// is what the curved gap adds (`docs/fem.md`). Beside its block `longer-roller` has the round
-/// shape's terms of a load that is not there.
+/// is what the curved gap adds (`docs/fem.md`).
 #[test]
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
         ("crown-to-the-ends", [0.003, 0.003, 0.004], 0.01),
         ("crown-inside", [0.003, 0.005, 0.006], 0.015),
-        ("longer-roller", [0.003, 0.004, 0.0095], 0.02),
+        ("longer-roller", [0.003, 0.004, 0.005], 0.02),
         ("logarithmic-steel-aluminium", [0.003, 0.003, 0.004], 0.012),
         ("eccentric-flush", [0.003, 0.004, 0.008], 0.02),
         ("eccentric-half", [0.003, 0.003, 0.008], 0.02),
