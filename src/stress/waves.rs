@@ -157,7 +157,7 @@ impl PartLoads {
     /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`]; `grown`
     /// as in [`nodal_loads`].
     fn new<S: AsRef<[f64]>>(
-        (body, grown): (&Body, &dyn Fn(usize, usize) -> f64),
+        (body, grown): (&Body, Grown),
         k: &[f64],
         contact: &DMatrix<f64>,
         layers: &[Layer],
@@ -208,6 +208,9 @@ fn blocks(
     blocks.collect()
 }
 
+/// The factor of a wavenumber's share of a layer, by their numbers.
+type Grown<'a> = &'a dyn Fn(usize, usize) -> f64;
+
 /// What acts on the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Under {
@@ -230,7 +233,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
     body: &Body,
     contact: &DMatrix<f64>,
     layers: &[Layer],
-    (shares, grown): (&[(usize, S)], &dyn Fn(usize, usize) -> f64),
+    (shares, grown): (&[(usize, S)], Grown),
     under: Under,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());

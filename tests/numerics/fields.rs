@@ -325,7 +325,7 @@ fn far_stresses_are_those_of_the_resultants() {
             let solved = SolvedScene::new(&Scene { tilt, slides, ..plain }).unwrap();
             let field = solved.field(BodyKind::Block);
             let own = solved.scene.bodies.block.half;
-            for angle in [0.02, 0.7, 1.5707] {
+            for angle in [0.02, 0.7, 1.57] {
                 for share in [-0.8, 0.3] {
                     let at = |r: f64| {
                         let (x, z) = (own * r * f64::cos(angle), own * r * f64::sin(angle));
