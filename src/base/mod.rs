@@ -5,8 +5,6 @@ mod bodies;
 mod error;
 pub mod linear;
 mod material;
-// The numerics alone print nothing.
-#[cfg(feature = "cli")]
 pub(crate) mod number;
 mod panels;
 mod parity;

@@ -1,6 +1,7 @@
 //! Numbers as text for people, one format for each purpose.
 //!
-//! Files that programs read are written elsewhere: a CSV cell by `report::table::number`.
+//! Files that programs read are written elsewhere: a CSV cell by `report::table::number`. The
+//! library alone has those that messages need.
 
 /// At most `digits` significant digits, without trailing zeros; with an exponent below 1e-4 and
 /// from 1e6, where plain digits are hard to count.
@@ -25,12 +26,14 @@ pub fn stated(value: f64) -> String {
 }
 
 /// As [`significant`], with a sign whichever it is: a change.
+#[cfg(feature = "cli")]
 pub fn signed(value: f64, digits: usize) -> String {
     let sign = if value < 0.0 { "" } else { "+" };
     format!("{sign}{}", significant(value, digits))
 }
 
 /// A fixed number of digits after the point; a value that rounds to zero has no sign.
+#[cfg(feature = "cli")]
 pub fn fixed(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -41,6 +44,7 @@ pub fn fixed(value: f64, decimals: usize) -> String {
 
 /// A ratio or a count: one decimal below 10, otherwise two significant digits with thousands
 /// separated.
+#[cfg(feature = "cli")]
 pub fn rounded(value: f64) -> String {
     if value < 9.95 {
         return without_trailing_zeros(&fixed(value, 1)).to_string();
@@ -53,6 +57,7 @@ pub fn rounded(value: f64) -> String {
 }
 
 /// Seconds in a suitable unit.
+#[cfg(feature = "cli")]
 pub fn duration(seconds: f64) -> String {
     match seconds {
         s if s < 1e-3 => format!("{:.0} µs", s * 1e6),
@@ -64,6 +69,7 @@ pub fn duration(seconds: f64) -> String {
 }
 
 /// Seconds with their +-, both in the unit of the value, to two digits of the +-.
+#[cfg(feature = "cli")]
 pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
     let (unit, name) = match seconds {
         s if s < 1e-3 => (1e6, "µs"),
@@ -77,6 +83,7 @@ pub fn duration_with_spread(seconds: f64, spread: f64) -> String {
 }
 
 /// A number's text with minus signs instead of hyphens.
+#[cfg(feature = "cli")]
 pub fn with_minus_signs(text: &str) -> String {
     text.replace('-', "−")
 }
