@@ -87,7 +87,7 @@ fn nonsense_is_refused_and_computed_anew() {
         ("too-few-rows", "curves.csv: the 43 points of roller depth-end-x1.4 are not the 50"),
         ("cut-json", "fem.json:1: is not JSON"),
         ("bad-mesh-json", "mesh.json:1: is not JSON"),
-        ("lost-load", "load_error_rel = 1e-3 is more than 1e-6"),
+        ("lost-load", "load_error_rel = 0.001 is more than 1e-6"),
         ("nothing", "fem.json"),
     ] {
         let bench = Bench::new();
