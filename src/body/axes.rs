@@ -594,7 +594,7 @@ impl Resolution {
     pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
-        // Less than that between a body's end, or its middle, and the contact's is rounding.
+        // Less than that between a body's middle and the contact's end is rounding.
         let rounding = SAME * half;
         if near > rounding {
             let inward = self.graded(self.corner.min(0.5 * near), near);

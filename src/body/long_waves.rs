@@ -1,7 +1,6 @@
 //! The wavenumbers at which a body that is shorter than the other one is computed under long waves.
 
-use super::axes::BENDS;
-use crate::base::{Panels, Parity};
+use crate::base::Panels;
 use nalgebra::DMatrix;
 
 /// Wavenumber times half-length below which the equations of a plate in bending are so close to
@@ -17,7 +16,9 @@ const LOWEST: f64 = 0.008;
 #[derive(Debug, Clone)]
 pub struct LongWaves {
     nodes: Vec<f64>,
-    /// The polynomials through these nodes (columns) at the nodes of both bodies (rows).
+    /// The nodes of both bodies.
+    common: Vec<f64>,
+    /// The polynomials through the own nodes (columns) at those of both bodies (rows).
     shares: DMatrix<f64>,
 }
 
@@ -34,7 +35,7 @@ impl LongWaves {
         let row = |k: &f64| own.polynomials(0, *k).collect::<Vec<_>>();
         let rows: Vec<f64> = common.iter().flat_map(row).collect();
         let shares = DMatrix::from_row_slice(order, order, &rows);
-        Some(Self { nodes: own.nodes().to_vec(), shares })
+        Some(Self { nodes: own.nodes().to_vec(), common: common.to_vec(), shares })
     }
 
     /// The nodes.
@@ -42,9 +43,11 @@ impl LongWaves {
         &self.nodes
     }
 
-    /// The share of own node number `own` in what is at the common one number `common`.
-    pub fn share(&self, common: usize, own: usize) -> f64 {
-        self.shares[(common, own)]
+    /// The share of own node number `own` in the displacement at the common one number `common`, of
+    /// a plate that `bends` or not.
+    pub fn displacement(&self, common: usize, own: usize, bends: bool) -> f64 {
+        let growth = if bends { self.nodes[own] / self.common[common] } else { 1.0 };
+        self.shares[(common, own)] * growth
     }
 
     /// Rows for the common nodes, the first ones of a matrix, as rows for the own ones.
@@ -65,16 +68,10 @@ impl LongWaves {
         let mut own = vec![0.0; count.max(first + weights.len())];
         for (common, weight) in (first..).zip(weights) {
             match common < count {
-                true => (0..count).for_each(|j| own[j] += weight * self.share(common, j)),
+                true => (0..count).for_each(|j| own[j] += weight * self.shares[(common, j)]),
                 false => own[common] += weight,
             }
         }
         (0, own)
     }
-}
-
-/// How loads and displacements at wavenumber `k` follow from those at a longer or shorter wave,
-/// `from`, of a body of half-length `half`, `freed` or not, under a load of one `parity`.
-pub fn growth(k: f64, from: f64, (half, freed): (f64, bool), parity: Parity) -> f64 {
-    if freed && parity == Parity::Odd && k * half < BENDS { from / k } else { 1.0 }
 }

@@ -1,10 +1,10 @@
 //! A body as a stack of layers, one per wavenumber, for each part of the load.
 
-use super::axes::Resolution;
+use super::axes::{BENDS, Resolution};
 use super::end::End;
 use super::finite::{Body, Layer, Shape};
 use super::fold::Fold;
-use super::long_waves::{LongWaves, growth};
+use super::long_waves::LongWaves;
 use crate::base::{Panels, Parity};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -23,8 +23,6 @@ pub struct Stack {
     nodes: Vec<f64>,
     /// Those of the first panel, where they are not the ones of both bodies.
     long: Option<LongWaves>,
-    /// The wavenumbers of both bodies in the first panel.
-    common: Vec<f64>,
 }
 
 impl Stack {
@@ -43,7 +41,6 @@ impl Stack {
         let bends = end.freed && fold.parities().contains(&Parity::Odd);
         let long = if bends { LongWaves::new(coarse, shape.half) } else { None };
         let mut nodes = coarse.nodes().to_vec();
-        let common = nodes[..coarse.order()].to_vec();
         if let Some(long) = &long {
             nodes[..long.nodes().len()].copy_from_slice(long.nodes());
         }
@@ -53,7 +50,7 @@ impl Stack {
             (body, layers)
         };
         let parts = fold.parities().iter().map(part).collect();
-        Self { middle, fold, parts, nodes, long, common }
+        Self { middle, fold, parts, nodes, long }
     }
 
     /// The body for each part of the load, with its layers.
@@ -85,12 +82,23 @@ impl Stack {
         }
     }
 
-    /// The factor of the share of layer number `layer` in the loads of `body` at wavenumber `k`.
-    pub(crate) fn growth(&self, body: &Body, k: f64, layer: usize) -> f64 {
-        match &self.long {
-            Some(_) => growth(k, self.nodes[layer], (body.half, body.end.freed), body.parity),
-            None => 1.0,
+    /// Shares of the layers in the loads of `body` at the wavenumbers `k`, each the first layer and
+    /// the shares, as they grow under long waves; none where they are as given.
+    pub(crate) fn grown<S: AsRef<[f64]>>(
+        &self,
+        body: &Body,
+        k: &[f64],
+        shares: &[(usize, S)],
+    ) -> Option<Vec<(usize, Vec<f64>)>> {
+        if self.long.is_none() || !bends(body) {
+            return None;
         }
+        let of_wave = |(k, (first, shares)): (&f64, &(usize, S))| {
+            let grows = k * body.half < BENDS;
+            let grown = |(node, share): (&f64, &f64)| if grows { share * node / k } else { *share };
+            (*first, self.nodes[*first..].iter().zip(shares.as_ref()).map(grown).collect())
+        };
+        Some(k.iter().zip(shares).map(of_wave).collect())
     }
 
     /// Adds `factor` times the compliance at coarse wavenumber number `i` of both bodies to
@@ -102,10 +110,8 @@ impl Stack {
             };
             match &self.long {
                 Some(long) if i < long.nodes().len() => {
-                    for (j, (k, layer)) in long.nodes().iter().zip(layers).enumerate() {
-                        let shape = (body.half, body.end.freed);
-                        let grown = growth(self.common[i], *k, shape, body.parity);
-                        add(layer, long.share(i, j) * grown);
+                    for (j, layer) in layers[..long.nodes().len()].iter().enumerate() {
+                        add(layer, long.displacement(i, j, bends(body)));
                     }
                 }
                 _ => add(&layers[i], 1.0),
@@ -119,6 +125,11 @@ impl Stack {
         let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
         layers.map(|layer| layer.condition).fold(1.0, worse)
     }
+}
+
+/// Whether the loads on a body bend it as a plate.
+fn bends(body: &Body) -> bool {
+    body.end.freed && body.parity == Parity::Odd
 }
 
 #[cfg(test)]

@@ -35,7 +35,7 @@ const LAYER: f64 = 8.0;
 const TERMS: u32 = 60;
 
 /// A load on a piece of the line: its place from the body's middle, its length and its force.
-struct Piece {
+pub(super) struct Piece {
     /// The place on the line.
     y: f64,
     /// The place from the body's middle.
@@ -51,24 +51,23 @@ impl Field<'_> {
     /// Whether the point (`x`, `z`) is so far from the contact that its stress is that of the
     /// load's resultants.
     pub(super) fn is_far(&self, x: f64, z: f64) -> bool {
-        let distant = x.hypot(z) > FAR * self.stack().body().half;
+        let distant = x.hypot(z) > FAR * self.stack.body().half;
         // Forces along a half-space's surface have no formula here.
-        distant && (self.stack().body().end.freed || !self.slides())
+        distant && (self.stack.body().end.freed || self.traction.is_none())
     }
 
-    /// The stress at a far point.
-    pub(super) fn far(&self, x: f64, y: f64, z: f64) -> FlatStress {
-        let pieces = self.pieces();
-        let y = y - self.stack().middle;
-        if self.stack().body().end.freed {
-            return self.in_plate(&pieces, [x, y, z]);
+    /// The stress at a far point under the `pieces` of the load.
+    pub(super) fn far(&self, pieces: &[Piece], [x, y, z]: [f64; 3]) -> FlatStress {
+        let y = y - self.stack.middle;
+        if self.stack.body().end.freed {
+            return self.in_plate(pieces, [x, y, z]);
         }
-        self.in_half_space(&pieces, [x, y, z]).into()
+        self.in_half_space(pieces, [x, y, z]).into()
     }
 
     /// The load in pieces along the whole line.
-    fn pieces(&self) -> Vec<Piece> {
-        let (load, middle) = (self.load(), self.stack().middle);
+    pub(super) fn pieces(&self) -> Vec<Piece> {
+        let (load, middle) = (self.pressure, self.stack.middle);
         let forces = load.transforms(&[0.0]);
         let nodes = load.axis().nodes().iter().zip(load.axis().weights()).zip(forces.iter());
         let sides: &[f64] = if load.is_symmetric() { &[1.0, -1.0] } else { &[1.0] };
@@ -85,7 +84,7 @@ impl Field<'_> {
     }
 
     fn in_plate(&self, pieces: &[Piece], [x, y, z]: [f64; 3]) -> FlatStress {
-        let body = self.stack().body();
+        let body = self.stack.body();
         let (half, nu) = (body.half, body.nu);
         let moment: f64 = pieces.iter().map(|piece| piece.force * piece.off).sum();
         let stress = |plane: &dyn Fn(f64) -> [f64; 3], bending: Bending| {
@@ -106,7 +105,7 @@ impl Field<'_> {
                 yz: parabolic * q_z,
             }
         };
-        let mut pressure = stress(&|y| self.load().endless(y, x, z), bent(x, z, nu));
+        let mut pressure = stress(&|y| self.pressure.endless(y, x, z), bent(x, z, nu));
         if z < LAYER * half {
             let [_, _, torque, ..] = bent(x, 0.0, nu);
             let [xz, xy, yz] = untwisted(y, z, half);
@@ -116,14 +115,14 @@ impl Field<'_> {
             // Beside a moment at one point the torque of the edge falls like 1 / x.
             pressure.yz -= twist / x * yz;
         }
-        let traction = self.traction().map_or(StressTensor::default(), |own| {
+        let traction = self.traction.map_or(StressTensor::default(), |own| {
             stress(&|y| own.endless_along(y, x, z), twisted(x, z, nu))
         });
         FlatStress { pressure, traction }
     }
 
     fn in_half_space(&self, pieces: &[Piece], [x, y, z]: [f64; 3]) -> StressTensor {
-        let body = self.stack().body();
+        let body = self.stack.body();
         let (half, nu) = (body.half, body.nu);
         let images: &[(f64, f64)] = match body.end.image_weight {
             Some(_) => &[(1.0, 0.0), (-1.0, 2.0), (-1.0, -2.0)],
@@ -140,7 +139,7 @@ impl Field<'_> {
             sum
         };
         let mut stress = at(y);
-        if let Some(gamma) = self.correction() {
+        if let Some(gamma) = self.gamma {
             for face in [half, -half] {
                 stress.yy -= transition((face - y).abs(), z, gamma) * at(face).yy;
             }

@@ -93,10 +93,10 @@ const STEP: f64 = 1e-4;
 /// The stress field of one body.
 #[derive(Debug)]
 pub struct Field<'a> {
-    stack: &'a Stack,
-    pressure: &'a dyn Load,
+    pub(super) stack: &'a Stack,
+    pub(super) pressure: &'a dyn Load,
     /// The pressure as a traction along x, if the contact carries one.
-    traction: Option<&'a dyn Traction>,
+    pub(super) traction: Option<&'a dyn Traction>,
     wavenumbers: &'a Wavenumbers,
     /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
     /// with the quadrature over the fine ones in their loads.
@@ -105,7 +105,7 @@ pub struct Field<'a> {
     /// binary exponent of the largest distance from that plane for which it is valid.
     all: Mutex<Vec<(i32, Arc<Waves>)>>,
     /// Transition factor of the stress correction, if any.
-    gamma: Option<f64>,
+    pub(super) gamma: Option<f64>,
     /// Requested accuracy (p0).
     tolerance: f64,
     /// Negligible contribution of one wavenumber to a stress (p0).
@@ -263,31 +263,6 @@ impl<'a> Field<'a> {
         waves
     }
 
-    /// The body.
-    pub(super) fn stack(&self) -> &Stack {
-        self.stack
-    }
-
-    /// The pressure.
-    pub(super) fn load(&self) -> &dyn Load {
-        self.pressure
-    }
-
-    /// The same as a traction along x, if there is one.
-    pub(super) fn traction(&self) -> Option<&dyn Traction> {
-        self.traction
-    }
-
-    /// Whether there is a traction.
-    pub(super) fn slides(&self) -> bool {
-        self.traction.is_some()
-    }
-
-    /// Transition factor of the stress correction, if any.
-    pub(super) fn correction(&self) -> Option<f64> {
-        self.gamma
-    }
-
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
     ///
     /// On a loaded surface or a free end face the known tractions are used.
@@ -302,8 +277,9 @@ impl<'a> Field<'a> {
         let near = xs.iter().zip(&far).filter(|(_, far)| !**far).map(|(x, _)| *x);
         let near: Vec<f64> = near.collect();
         let mut remainders = self.remainders(y, z, &near).into_iter();
+        let pieces = if far.contains(&true) { self.pieces() } else { Vec::new() };
         let at = |(&x, far): (&f64, bool)| match far {
-            true => self.far(x, y, z),
+            true => self.far(&pieces, [x, y, z]),
             false => self.complete(x, y, z, remainders.next().expect("one of each near point")),
         };
         xs.iter().zip(far).map(at).collect()

@@ -80,7 +80,7 @@ pub struct LocalContact {
     pub peak: f64,
     /// Distances inwards from the line's ends (C), negative beyond them; infinite where the body
     /// ends there, too.
-    pub inside: [f64; 2],
+    inside: [f64; 2],
 }
 
 impl LocalContact {

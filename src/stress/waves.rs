@@ -136,8 +136,10 @@ impl Waves {
         let shares: Vec<_> = (0..k.len()).map(shares).collect();
         let parts = stack.parts().iter().map(|(body, layers)| {
             let own = stack.fold.part(body.parity, &contact);
-            let grown = |wave: usize, layer: usize| stack.growth(body, k[wave], layer);
-            PartLoads::new((body, &grown), &k, &own, layers, &shares)
+            match stack.grown(body, &k, &shares) {
+                Some(grown) => PartLoads::new(body, &k, &own, layers, &grown),
+                None => PartLoads::new(body, &k, &own, layers, &shares),
+            }
         });
         Self {
             weights: match weights {
@@ -154,10 +156,9 @@ impl Waves {
 }
 
 impl PartLoads {
-    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`]; `grown`
-    /// as in [`nodal_loads`].
+    /// The loads at the wavenumbers `k` under a part of the pressure, see [`Waves::new`].
     fn new<S: AsRef<[f64]>>(
-        (body, grown): (&Body, Grown),
+        body: &Body,
         k: &[f64],
         contact: &DMatrix<f64>,
         layers: &[Layer],
@@ -170,7 +171,7 @@ impl PartLoads {
             let waves = k.iter().zip(face.column_iter()).take(ends);
             waves.map(|(k, q)| body.plate_transform(*k, q.as_slice())).collect::<Vec<_>>()
         };
-        let loads = |under| nodal_loads(body, contact, layers, (shares, grown), under);
+        let loads = |under| nodal_loads(body, contact, layers, shares, under);
         let (surface, face) = loads(Under::Pressure);
         let traction = body.along.as_ref().map(|_| {
             let own = contact_loads(body, contact);
@@ -208,9 +209,6 @@ fn blocks(
     blocks.collect()
 }
 
-/// The factor of a wavenumber's share of a layer, by their numbers.
-type Grown<'a> = &'a dyn Fn(usize, usize) -> f64;
-
 /// What acts on the contact.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Under {
@@ -227,13 +225,12 @@ fn contact_loads(body: &Body, contact: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 /// The pressures at the nodes of the surface and of the end faces, a column for each wavenumber,
-/// `under` the transforms `contact`; see [`Waves::new`]. `grown` is the factor of a wavenumber's
-/// share of a layer.
+/// `under` the transforms `contact`; see [`Waves::new`].
 fn nodal_loads<S: AsRef<[f64]>>(
     body: &Body,
     contact: &DMatrix<f64>,
     layers: &[Layer],
-    (shares, grown): (&[(usize, S)], Grown),
+    shares: &[(usize, S)],
     under: Under,
 ) -> (DMatrix<f64>, DMatrix<f64>) {
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
@@ -250,7 +247,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
         let waves = start..shares.partition_point(|s| s.0 <= at);
         let p = DMatrix::from_fn(contact.ncols(), waves.len(), |node, i| {
             let (first, shares) = &shares[start + i];
-            grown(start + i, at) * shares.as_ref()[at - first] * contact[(start + i, node)]
+            shares.as_ref()[at - first] * contact[(start + i, node)]
         });
         // For short waves the deep nodes of an end face carry no load.
         let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {

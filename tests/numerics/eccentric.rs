@@ -70,20 +70,25 @@ fn surfaces_beside_a_contact_on_one_side_of_the_middle_are_free() {
     }
 }
 
+/// Asserts that the stresses of two solutions are mirror images in y = 0. Wavenumbers are summed in
+/// single precision.
+fn mirror_images(what: &str, [one, other]: [&SolvedScene; 2], limit: f64) {
+    for body in BodyKind::ALL {
+        for [x, y, z] in PLACES {
+            let mirrored = stress(other, body, [x, -y, z]).mirrored(StressTensor::ODD_IN_Y);
+            let off = apart(&stress(one, body, [x, y, z]), &mirrored);
+            small(&format!("{what}: {x} {y} {z}"), off, limit);
+        }
+    }
+}
+
 #[test]
 fn loads_on_either_side_are_mirror_images() {
     for model in EdgeModel::ALL {
         let [one, other] = [0.8, -0.8].map(|arm| eccentric(arm, model, 1e-2));
         assert!((one.tilt(40.0) + other.tilt(40.0)).abs() < 1e-9 * one.tilt(40.0).abs());
         assert!(one.tilt(40.0) > 0.0, "the side of the load is pressed deeper");
-        for body in BodyKind::ALL {
-            for [x, y, z] in PLACES {
-                let mirrored = stress(&other, body, [x, -y, z]).mirrored(StressTensor::ODD_IN_Y);
-                // Wavenumbers are summed in single precision.
-                let off = apart(&stress(&one, body, [x, y, z]), &mirrored);
-                small(&format!("{model} {x} {y} {z}"), off, 1e-9);
-            }
-        }
+        mirror_images(&model.to_string(), [&one, &other], 1e-9);
     }
 }
 
@@ -217,13 +222,7 @@ fn offsets_to_either_side_are_mirror_images() {
             let off = one.pressure.at(0.2, y) - other.pressure.at(0.2, -y);
             small(&format!("{model} {halves:?}: p({y})"), off.abs(), 1e-6);
         }
-        for body in BodyKind::ALL {
-            for [x, y, z] in PLACES {
-                let mirrored = stress(&other, body, [x, -y, z]).mirrored(StressTensor::ODD_IN_Y);
-                let off = apart(&stress(&one, body, [x, y, z]), &mirrored);
-                small(&format!("{model} {halves:?}: {x} {y} {z}"), off, 1e-6);
-            }
-        }
+        mirror_images(&format!("{model} {halves:?}"), [&one, &other], 1e-6);
     }
 }
 
