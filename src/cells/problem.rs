@@ -78,17 +78,19 @@ impl CellProblem {
     /// [`Error::Uncovered`] where the contact reaches the edge of the cells in x,
     /// [`Error::NotConverged`], and [`Error::Memory`] before anything large is allocated.
     pub fn solve(&self, gap: &dyn Gap) -> Result<CellPressure> {
-        self.solve_telling(gap, &|_, _| {})
+        self.solve_telling(gap, None, &|_, _| {})
     }
 
-    /// [`CellProblem::solve`] that tells `progress` of every step on any of its grids: how often
-    /// the compliance was applied there, and the relative residual.
+    /// [`CellProblem::solve`] that begins with the pressures `first`, those of a similar problem on
+    /// the same cells, and tells `progress` of every step on any of its grids: how often the
+    /// compliance was applied there, and the relative residual.
     ///
     /// # Errors
     /// As [`CellProblem::solve`].
     pub fn solve_telling(
         &self,
         gap: &dyn Gap,
+        first: Option<&CellPressure>,
         progress: &dyn Fn(usize, f64),
     ) -> Result<CellPressure> {
         let grid = &self.grid;
@@ -111,7 +113,8 @@ impl CellProblem {
             });
         }
         let level = Level { gap, symmetry, ends: self.free.as_deref(), progress };
-        let state = self.solve_level(&level, gaps, *grid, self.tolerance)?;
+        let first = first.filter(|first| first.grid == *grid).map(|first| &first.pressure[..]);
+        let state = self.solve_level(&level, gaps, *grid, first, self.tolerance)?;
         let State { pressure, motion, residual, iterations } = state;
         if residual.is_nan() || residual > self.tolerance {
             return Err(Error::NotConverged {
@@ -139,24 +142,28 @@ impl CellProblem {
         if skew { Symmetry::None } else { symmetry(&self.grid, gaps) }
     }
 
-    /// Solves on `grid`, from what a grid of half as many cells in each direction gives.
+    /// Solves on `grid`, from `first` or else from what a grid of half as many cells in each
+    /// direction gives.
     fn solve_level(
         &self,
         level: &Level,
         gaps: Vec<f64>,
         grid: Grid,
+        first: Option<&[f64]>,
         tolerance: f64,
     ) -> Result<State> {
         let symmetry = level.symmetry;
         let Grid { nx, ny, .. } = grid;
-        let start = if nx.min(ny) < COARSEST {
+        let start = if let Some(first) = first {
+            first.to_vec()
+        } else if nx.min(ny) < COARSEST {
             vec![1.0; grid.len()]
         } else {
             // Even numbers stay symmetric.
             let half = |n: usize| n.div_ceil(4) * 2;
             let coarse = Grid { nx: half(nx), ny: half(ny), ..grid };
             let gaps = coarse.sample(|x, y| level.gap.at(x, y));
-            let state = self.solve_level(level, gaps, coarse, tolerance.max(START))?;
+            let state = self.solve_level(level, gaps, coarse, None, tolerance.max(START))?;
             let pressure = unfold(&coarse, symmetry, state.pressure);
             refine(&coarse, &pressure, &grid)
         };
@@ -489,7 +496,7 @@ mod tests {
         let [quarter, whole] = [Symmetry::Quarter, Symmetry::None].map(|symmetry| {
             let level = Level { gap: &Straight, symmetry, ends: None, progress: &|_, _| {} };
             let all = gaps(&Straight);
-            let state = problem.solve_level(&level, all, problem.grid, 1e-12).unwrap();
+            let state = problem.solve_level(&level, all, problem.grid, None, 1e-12).unwrap();
             unfold(&problem.grid, symmetry, state.pressure)
         });
         assert!(largest_difference(&quarter, &whole) < 1e-10);

@@ -6,6 +6,7 @@ use super::scene::{Scene, Tilt};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap};
+use crate::contact::Gap;
 
 /// Most contacts that are solved until a tilt is reached that is held.
 const MOST_TRIALS: usize = 10;
@@ -53,31 +54,29 @@ impl<'a> CellContact<'a> {
 
     /// The pressures, and the approach and the tilt at the depth of the roller's radius.
     ///
-    /// Far points tilt against those at this depth. Where the tilt is held, by how much is taken
-    /// from the smooth surfaces: heights change the load's distribution at their own scale, not
-    /// along the contact.
+    /// Far points tilt against those at this depth, as the load lies along the line, so that a tilt
+    /// that is held has to be sought: first on few cells.
     ///
     /// # Errors
     /// As [`CellProblem::solve`]; [`Error::NotConverged`] where a held tilt is not reached.
     pub fn solve(&self) -> Result<(CellPressure, DeepMotion)> {
-        let mut problem = self.problem.clone();
-        if let Tilt::Held(wanted) = self.scene.tilt
-            && !self.scene.is_symmetric()
-        {
-            let Grid { nx, ny, .. } = problem.grid;
-            problem.grid.nx = nx.min(SEARCH);
-            problem.grid.ny = ny.min(SEARCH);
-            let (first, _) = self.held(&problem, wanted, wanted)?;
-            problem.grid = self.problem.grid;
-            let (smooth, motion) = self.held(&problem, wanted, first.tilt)?;
-            if self.heights.is_none() {
-                return Ok((smooth, motion));
+        match self.scene.tilt {
+            Tilt::Held(wanted) if !self.scene.span().symmetric => {
+                let mut few = self.problem.clone();
+                few.grid.nx = few.grid.nx.min(SEARCH);
+                few.grid.ny = few.grid.ny.min(SEARCH);
+                let mut search = Search { wanted, far: wanted, slope: 1.0, pressed: None };
+                if few.grid != self.problem.grid {
+                    self.held(&few, &mut search)?;
+                }
+                self.held(&self.problem, &mut search)
             }
-            problem.tilt = CellTilt::Held(smooth.tilt);
+            _ => {
+                let pressure = self.pressed(&self.problem, None)?;
+                let motion = self.motion(&self.problem, &pressure);
+                Ok((pressure, motion))
+            }
         }
-        let pressure = self.with_heights(&problem)?;
-        let motion = self.motion(&problem, &pressure);
-        Ok((pressure, motion))
     }
 
     /// The motion at the depth of the roller's radius.
@@ -85,16 +84,17 @@ impl<'a> CellContact<'a> {
         DeepMotion::new(self.scene, problem, pressure, self.depth)
     }
 
-    fn without_heights(&self, problem: &CellProblem) -> Result<CellPressure> {
-        problem.solve_telling(&self.smooth, self.progress)
+    /// The pressures of `problem`, from those `first` on the same cells if there are some.
+    fn pressed(&self, problem: &CellProblem, first: Option<&CellPressure>) -> Result<CellPressure> {
+        self.with_gap(&problem.grid, |gap| problem.solve_telling(gap, first, self.progress))?
     }
 
-    fn with_heights(&self, problem: &CellProblem) -> Result<CellPressure> {
+    /// The answer of `of` to the gap before loading on the cells of `grid`.
+    fn with_gap<T>(&self, grid: &Grid, of: impl FnOnce(&dyn Gap) -> T) -> Result<T> {
         match &self.heights {
-            None => self.without_heights(problem),
+            None => Ok(of(&self.smooth)),
             Some((heights, [c_m, unit_m])) => {
-                let gap = RoughGap::new(&self.smooth, heights, &problem.grid, *c_m, *unit_m)?;
-                problem.solve_telling(&gap, self.progress)
+                RoughGap::new(&self.smooth, heights, grid, *c_m, *unit_m).map(|gap| of(&gap))
             }
         }
     }
@@ -104,13 +104,8 @@ impl<'a> CellContact<'a> {
     pub fn mean_gap(&self, pressure: &CellPressure) -> f64 {
         let grid = &pressure.grid;
         let problem = CellProblem { grid: *grid, ..self.problem.clone() };
-        let gaps = match &self.heights {
-            None => problem.gaps(&self.smooth, pressure),
-            Some((heights, [c_m, unit_m])) => {
-                let gap = RoughGap::new(&self.smooth, heights, grid, *c_m, *unit_m);
-                problem.gaps(&gap.expect("the contact was solved with it"), pressure)
-            }
-        };
+        let gaps = self.with_gap(grid, |gap| problem.gaps(gap, pressure));
+        let gaps = gaps.expect("the contact was solved with it");
         let next = (0..grid.nx).map(|i| grid.x(i).abs()).fold(f64::INFINITY, f64::min);
         let within = (next * (1.0 + 1e-9)).max(1.0);
         let near: Vec<f64> = gaps
@@ -122,31 +117,33 @@ impl<'a> CellContact<'a> {
         near.iter().sum::<f64>() / near.len() as f64
     }
 
-    /// The smooth contact whose tilt at the depth is `wanted`, and this tilt, from the tilt `first`
-    /// of far points.
+    /// The contact on the cells of `problem` whose tilt at the depth is the one that is wanted, by
+    /// secants from where `search` stands.
     fn held(
         &self,
         problem: &CellProblem,
-        wanted: f64,
-        first: f64,
+        search: &mut Search,
     ) -> Result<(CellPressure, DeepMotion)> {
         let mut problem = problem.clone();
-        let mut far = first;
+        search.pressed = None;
         let mut last: Option<[f64; 2]> = None;
         for _ in 0..MOST_TRIALS {
-            problem.tilt = CellTilt::Held(far);
-            let found = self.without_heights(&problem)?;
+            problem.tilt = CellTilt::Held(search.far);
+            let mut found = self.pressed(&problem, search.pressed.as_ref())?;
+            found.iterations += search.pressed.as_ref().map_or(0, |last| last.iterations);
             let motion = self.motion(&problem, &found);
-            let off = motion.tilt - wanted;
+            let off = motion.tilt - search.wanted;
             if off.abs() * self.scene.half_length <= TILT_ERROR {
                 return Ok((found, motion));
             }
-            let next = match last {
-                Some([before, was]) if was != off => far - off * (far - before) / (off - was),
-                _ => far - off,
-            };
-            last = Some([far, off]);
-            far = next;
+            if let Some([before, was]) = last
+                && was != off
+            {
+                search.slope = (off - was) / (search.far - before);
+            }
+            last = Some([search.far, off]);
+            search.far -= off / search.slope;
+            search.pressed = Some(found);
         }
         Err(Error::NotConverged {
             iterations: MOST_TRIALS,
@@ -154,4 +151,16 @@ impl<'a> CellContact<'a> {
             remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
         })
     }
+}
+
+/// Where the search for a tilt of far points (C / (2 R)) stands.
+struct Search {
+    /// The tilt at the depth that is sought.
+    wanted: f64,
+    /// The tilt of far points to try next.
+    far: f64,
+    /// Change of the tilt at the depth with that of far points.
+    slope: f64,
+    /// The last pressures on the present cells.
+    pressed: Option<CellPressure>,
 }

@@ -25,7 +25,7 @@ impl DeepMotion {
         let lines = line_loads(pressure, scene.middle);
         let places = Places::new(contact_ends(&lines));
         let nearest = places.nearest();
-        let tilts = !scene.is_symmetric();
+        let tilts = !scene.span().symmetric;
         let mut at = vec![nearest];
         at.extend(places.all().iter().filter(|_| tilts));
         let far = |y: f64| pressure.approach + pressure.tilt * scene.off_middle(y);

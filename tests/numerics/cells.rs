@@ -416,6 +416,45 @@ fn the_contact_area_of_a_self_affine_surface_grows_with_the_load() {
     small("area against load, change of its slope", 1.0 - kappas[2] / kappas[0], 0.15);
 }
 
+/// Heights that rise along the line are a smooth surface that is tilted by their slope: the tilt
+/// that is held counts from the lines deep below, whatever distributes the load along the contact.
+#[test]
+fn a_plane_of_heights_is_a_held_tilt() {
+    let slope = 3e-4;
+    let flush = [EdgeModel::HalfSpace, EdgeModel::QuarterSpace].map(|model| (1, 0.0, model));
+    for (number, offset_m, model) in [flush[0], flush[1], (2, -4e-4, EdgeModel::Mirror)] {
+        let mut tilted = skew(number);
+        tilted.pose.offset_m = offset_m;
+        tilted.pose.tilt_rad = Some(slope);
+        let mut rough = tilted.clone();
+        rough.pose.tilt_rad = None;
+        let [from, to] = tilted.overlap();
+        let c_m = tilted.hertz().c_m;
+        let steps = [4.0 * c_m / 59.0, (to - from) * c_m / 79.0];
+        let plane = |k: usize| slope * ((k % 80) as f64 - 39.5) * steps[1];
+        let values = (0..60 * 80).map(plane).collect();
+        rough.surface = Some(Surface {
+            heights: "plane".into(),
+            dx_m: steps[0],
+            dy_m: steps[1],
+            detrend: None,
+            samples: Some(Arc::new(Heights::new([60, 80], steps, values).unwrap())),
+        });
+        let cells = CellOptions { counts: Some([96, 128]), ..CellOptions::default() };
+        let mut options = Options::new(model);
+        options.curves = vec!["depth-0.9".into()];
+        let solve = |case: &Case| solve_on_cells(case, &options, &cells, &|_, _| {}).unwrap();
+        let [want, got] = [&tilted, &rough].map(solve);
+        let pairs = got.pressure.pressure.iter().zip(&want.pressure.pressure);
+        let off = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        small(&format!("plane {number}, {model}, pressure"), off, 1e-5);
+        let [got, want] = [got, want].map(|found| found.solution.summary);
+        let centres = [got, want].map(|summary| summary.centre_of_pressure_m[1] / c_m);
+        assert!(centres[1].abs() > 0.03, "the tilt moves the load: {centres:?}");
+        near(&format!("plane {number}, {model}, centre of pressure"), centres[0], centres[1], 1e-5);
+    }
+}
+
 /// Pressures, tilt and stresses of a case by free ends, which sum the cells of a rough case by
 /// other means than those of a smooth one.
 #[test]
