@@ -60,6 +60,10 @@ const FOLLOWS: f64 = 0.1;
 const MOST_TILTS: usize = 20;
 const PATIENCE: usize = 10;
 
+/// Half-length of a body (own units) up to which its stresses are integrated over depths with the
+/// scene's tolerance.
+const SHORT: f64 = 10.0;
+
 /// Run time of each stage (s).
 #[derive(Debug, Clone, Copy, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -315,8 +319,12 @@ impl SolvedScene {
     }
 
     /// What `of` makes of the fields of the block and of the roller, without a stress correction.
+    /// What their stresses neglect adds up over the depths of long bodies.
     fn with_fields<T>(&self, of: impl Fn([&Field; 2]) -> T) -> T {
-        let fields = BodyKind::ALL.map(|kind| self.own_field(kind, None, self.scene.tolerance));
+        let fields = BodyKind::ALL.map(|kind| {
+            let short = (SHORT / self.own.scene.bodies[kind].half).min(1.0);
+            self.own_field(kind, None, self.scene.tolerance * short)
+        });
         let [block, roller] = &fields;
         of([block, roller])
     }

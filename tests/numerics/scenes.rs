@@ -7,7 +7,7 @@
 
 use crate::common::{apart, sequence, wanted_scenes, worse};
 use edgeline::base::{Error, Material, StressTensor};
-use edgeline::body::{EdgeModel, Resolution};
+use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Factors};
 use edgeline::kernels::strip;
 use edgeline::solve::{Scene, SolvedScene};
@@ -302,8 +302,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
 
     if compare {
         let tolerance = if draw.tolerance > 2e-3 { 1e-3 } else { 1e-4 };
-        let finer = Resolution::for_tolerance(tolerance);
-        let finer = SolvedScene::with_resolution(&scene, &finer)?;
+        let finer = SolvedScene::new(&Scene { tolerance, ..scene.clone() })?;
         let [far, near] = stresses_apart(&solved, &finer);
         note(Law::Finer, worse(pressures_apart(&solved, &finer), far) / draw.tolerance);
         note(Law::FinerNear, near / draw.tolerance);
