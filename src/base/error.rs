@@ -87,14 +87,17 @@ pub enum Error {
     },
     /// Cells that do not cover the contact.
     #[error(
-        "the contact reaches the edge of the cells at x = {half_width:.4} C, with {pressure:.1e} p0 there; \
-         give a larger [cells] half_width_m, or none"
+        "the cells, which end at x = {half_width:.4} C, do not cover the contact: {reason}; {remedy}"
     )]
     Uncovered {
         /// Half-width of the region (C).
         half_width: f64,
-        /// Largest pressure at its edges (p0).
-        pressure: f64,
+        /// Half-width (C) up to which bodies are known to touch.
+        touched: f64,
+        /// How it is known.
+        reason: String,
+        /// What to do.
+        remedy: String,
     },
     /// A child process that failed, hung or wrote invalid output.
     #[error("{program}: {message}\n{log_tail}\n{remedy}")]

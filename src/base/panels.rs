@@ -83,7 +83,7 @@ impl Panels {
             }
             if self.corner_of(panel).is_some() {
                 let mut moments = vec![0.0; self.order];
-                self.integrate(panel, |_| 1.0, &mut moments);
+                self.integrate(panel, ends, |_| 1.0, &mut moments);
                 self.weights[panel * self.order..][..self.order].copy_from_slice(&moments);
             }
         }
@@ -100,11 +100,24 @@ impl Panels {
         self.laws[i].filter(|law| self.panel(i).contains(&law.at))
     }
 
-    /// The integrals of the loads of panel `i` times a `factor`.
-    fn integrate(&self, i: usize, factor: impl Fn(f64) -> f64, out: &mut [f64]) {
-        let [a, b] = self.panel(i);
-        let [near, far] =
-            if self.corner_of(i).is_some_and(|c| c.at == b) { [b, a] } else { [a, b] };
+    /// The integrals of each of the [`Panels::loads`] of panel `i` between two places of it; those
+    /// of parts sum to the weights, but for rounding.
+    pub fn integrals(&self, i: usize, part: [f64; 2]) -> Vec<f64> {
+        let mut all = vec![0.0; self.order];
+        if self.laws[i].is_some() {
+            self.integrate(i, part, |_| 1.0, &mut all);
+            return all;
+        }
+        let rule = Self::new(part.to_vec(), self.order);
+        for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+            all.iter_mut().zip(self.polynomials(i, *x)).for_each(|(sum, own)| *sum += w * own);
+        }
+        all
+    }
+
+    /// The integrals of the loads of panel `i`, which have a power, times a `factor` over a part.
+    fn integrate(&self, i: usize, [a, b]: [f64; 2], factor: impl Fn(f64) -> f64, out: &mut [f64]) {
+        let [near, far] = if self.laws[i].is_some_and(|c| c.side < 0.0) { [b, a] } else { [a, b] };
         out.fill(0.0);
         for (t, w) in &self.steep_rule {
             let x = near + (far - near) * t;
@@ -261,7 +274,7 @@ impl Panels {
     /// int P_n(t) e^(i w t) dt = 2 i^n j_n(w) (Abramowitz and Stegun 1964, 10.1.14).
     pub fn cosine_moments(&self, i: usize, wavenumber: f64, out: &mut [f64]) {
         if self.laws[i].is_some() {
-            self.integrate(i, |x| (wavenumber * x).cos(), out);
+            self.integrate(i, self.panel(i), |x| (wavenumber * x).cos(), out);
             return;
         }
         let [a, b] = self.panel(i);

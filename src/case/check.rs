@@ -3,6 +3,7 @@
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::{Case, Factors, Fatigue};
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 use std::f64::consts::PI;
 
@@ -25,6 +26,10 @@ const FOLLOWING: [&str; 3] = ["block.length_m", "load.force_n", "roller.length_m
 fn key(path: &str) -> &'static Key {
     Key::find(path).expect("a key of the list")
 }
+
+/// What to do with a rough case where only smooth ones are taken.
+pub(super) const ON_CELLS: &str =
+    "solve it on cells (`edgeline solve --engine cells`), or remove [surface]";
 
 impl Case {
     /// Refuses a case with a name or a number that is not legal, or whose factors are not.
@@ -51,9 +56,11 @@ impl Case {
         }
         Err(Error::Value {
             key: "surface.heights".into(),
-            value: format!("{range:e} m in all"),
+            value: format!("{} m in all", stated(range)),
             reason: format!(
-                "the heights range over {range:e} m, more than a tenth of the roller's radius, {radius:e} m"
+                "the heights range over {} m, more than a tenth of the roller's radius, {} m",
+                stated(range),
+                stated(radius)
             ),
             remedy: "give heights in metres; detrend = \"plane\" takes their mean plane off".into(),
         })
@@ -85,7 +92,8 @@ impl Case {
         if radius > 0.0 || -radius > roller * ROUNDING {
             return Ok(());
         }
-        let reason = format!("a roller of radius {roller:e} m does not fit into this raceway");
+        let reason =
+            format!("a roller of radius {} m does not fit into this raceway", stated(roller));
         let remedy =
             "make the raceway's radius larger than the roller's, or positive for a convex one";
         Err(key("block.radius_m").refuse(radius, reason, remedy))
@@ -97,9 +105,10 @@ impl Case {
         let (from, to) = (block[0].max(roller[0]), block[1].min(roller[1]));
         let offset = self.pose.offset_m;
         if to - from < LEAST_OVERLAP * self.shorter_m() {
-            let reason = format!("the bodies overlap along y by {:e} m only", (to - from).max(0.0));
+            let overlap = stated((to - from).max(0.0));
+            let reason = format!("the bodies overlap along y by {overlap} m only");
             let most = 0.5 * (self.roller.length_m + self.block.length_m);
-            let remedy = format!("keep |offset_m| well below {most:e} m");
+            let remedy = format!("keep |offset_m| well below {} m", stated(most));
             return Err(key("pose.offset_m").refuse(offset, reason, &remedy));
         }
         let Some(eccentricity) = self.load.eccentricity_m else { return Ok(()) };
@@ -110,8 +119,9 @@ impl Case {
         }
         if eccentricity <= from || eccentricity >= to {
             let reason = format!(
-                "the load's line lies outside the overlap, {from:e} to {to:e} m: the roller \
-                         would fall over"
+                "the load's line lies outside the overlap, {} to {} m: the roller would fall over",
+                stated(from),
+                stated(to)
             );
             let remedy = "place it between the ends of the overlap";
             return Err(key("load.eccentricity_m").refuse(eccentricity, reason, remedy));
@@ -132,14 +142,14 @@ impl Case {
     /// Refuses a rough surface, where only smooth ones are taken.
     ///
     /// # Errors
-    /// [`Error::Value`] with `reason` and `remedy`.
-    pub fn check_smooth(&self, reason: &str, remedy: &str) -> Result<()> {
+    /// [`Error::Value`] with `reason` and what to do.
+    pub fn check_smooth(&self, reason: &str) -> Result<()> {
         let Some(surface) = &self.surface else { return Ok(()) };
         Err(Error::Value {
             key: "surface.heights".into(),
             value: format!("{:?}", surface.heights.display()),
             reason: reason.into(),
-            remedy: remedy.into(),
+            remedy: ON_CELLS.into(),
         })
     }
 

@@ -45,11 +45,8 @@ pub(super) enum Rows {
     Table(Table),
 }
 
-/// Why a sweep takes no rough surface, and what to do.
-pub(super) const SMOOTH: [&str; 2] = [
-    "a sweep solves contacts along a line, which are smooth",
-    "remove [surface], and solve rough cases by `edgeline solve`",
-];
+/// Why a sweep takes no rough surface.
+pub(super) const SMOOTH: &str = "a sweep solves contacts along a line, which are smooth";
 
 impl Sweep {
     /// Reads a sweep from a TOML file or, if its name ends in `.csv`, from a table. `base` gives
@@ -80,7 +77,7 @@ impl Sweep {
     /// # Errors
     /// [`Error::Value`].
     pub fn check_smooth(case: &Case) -> Result<()> {
-        case.check_smooth(SMOOTH[0], SMOOTH[1])
+        case.check_smooth(SMOOTH)
     }
 
     /// Number of rows, at least 1.

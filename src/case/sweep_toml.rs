@@ -1,6 +1,7 @@
 //! The sweep file in TOML: a case file in which every number may also be a list or a range.
 
 use super::case_file::{entries, form, keys_of, only_tables, read_profiles};
+use super::check::ON_CELLS;
 use super::document::{Document, Entry, Table, read_text};
 use super::draft::Draft;
 use super::keys::Key;
@@ -35,7 +36,7 @@ impl Sweep {
         let root = document.root();
         only_tables(&root, &["name", "sweep"])?;
         if let Some(surface) = root.get("surface") {
-            return Err(surface.refuse(SMOOTH[0], SMOOTH[1]));
+            return Err(surface.refuse(SMOOTH, ON_CELLS));
         }
         if let Some(entry) = root.get("name") {
             // The name is only for readers, but must be legal.

@@ -101,9 +101,12 @@ impl Heights {
 
     /// The highest less the lowest height (m).
     pub fn range_m(&self) -> f64 {
-        let ends = |[low, high]: [f64; 2], v: &f64| [low.min(*v), high.max(*v)];
-        let [low, high] = self.values_m.iter().fold([f64::INFINITY, f64::NEG_INFINITY], ends);
-        high - low
+        self.highest_m() + self.values_m.iter().fold(f64::NEG_INFINITY, |m: f64, v| m.max(-v))
+    }
+
+    /// The highest height (m).
+    pub fn highest_m(&self) -> f64 {
+        self.values_m.iter().fold(f64::NEG_INFINITY, |m: f64, v| m.max(*v))
     }
 
     /// The height (m) at (`x_m`, `y_m`), linear between samples; beyond the last ones theirs.

@@ -19,8 +19,12 @@ const COPIES: f64 = 3.0;
 type Array = ([usize; 2], Vec<f64>);
 
 /// Formats that are read, for messages.
-const FORMATS: &str = "give a two-dimensional array of floats of 32 or 64 bits as .npy, \
-                       .csv with a row for each x, or .x3p";
+const FORMATS: &str = "give a two-dimensional array of floats of 32 or 64 bits as .npy, .csv with a \
+                       row for each x, its heights between commas, semicolons or blanks and with \
+                       decimal points, or .x3p";
+
+/// Letters of a word that an error shows.
+const SHOWN: usize = 24;
 
 impl Heights {
     /// Reads the heights (m) in a file, an array of the shape (nx, ny): .npy with 32 or 64-bit
@@ -98,17 +102,28 @@ fn has_extension(path: &Path, name: &str) -> bool {
     path.extension().is_some_and(|own| own.eq_ignore_ascii_case(name))
 }
 
+/// The words of a line: between semicolons or else commas, and without either between blanks.
+fn words(line: &str) -> Vec<&str> {
+    match [';', ','].into_iter().find(|separator| line.contains(*separator)) {
+        Some(separator) => line.split(separator).map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
+}
+
 /// The array of lines of numbers; or the line that is none, and what is wrong.
 fn csv(content: &[u8]) -> std::result::Result<Array, (Option<usize>, String)> {
     let text = std::str::from_utf8(content).map_err(|_| (None, "is not text".to_string()))?;
     let text = text.strip_prefix(MARK).unwrap_or(text);
     let (mut values, mut columns, mut rows) = (Vec::new(), None, 0);
-    for (i, line) in text.lines().enumerate().filter(|(_, line)| !line.trim().is_empty()) {
+    let is_empty = |line: &str| line.is_empty() || line.starts_with('#');
+    let lines = text.lines().map(str::trim).enumerate();
+    for (i, line) in lines.filter(|(_, line)| !is_empty(line)) {
         let before = values.len();
-        for word in line.split(',').map(str::trim) {
+        for word in words(line) {
             let value = word.parse().ok().filter(|height: &f64| height.is_finite());
             values.push(value.ok_or_else(|| {
-                (Some(i + 1), format!("has '{word}' where a finite height belongs"))
+                let shown: String = word.chars().take(SHOWN).collect();
+                (Some(i + 1), format!("has '{shown}' where a finite height belongs"))
             })?);
         }
         let own = values.len() - before;
@@ -243,6 +258,12 @@ mod tests {
             ),
             ("a.csv", b"1,2\n3\n".to_vec(), "a.csv:2: has 1 heights"),
             ("a.csv", b"1,2\n3,x\n".to_vec(), "a.csv:2: has 'x'"),
+            ("a.csv", b"0,1;0,2\n".to_vec(), "a.csv:1: has '0,1' where"),
+            (
+                "a.csv",
+                [&b"1 2\n"[..], &[b'x'; 5000]].concat(),
+                "has 'xxxxxxxxxxxxxxxxxxxxxxxx' where",
+            ),
             ("a.csv", b"1,2\n\n3,nan\n".to_vec(), "a.csv:3: has 'nan' where a finite height"),
             ("a.csv", b"\xff".to_vec(), "not text"),
             ("a.csv", b"1\n".to_vec(), "a.csv: heights = 1 x 1 with 1 values is not valid"),

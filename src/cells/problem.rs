@@ -333,7 +333,12 @@ fn check_covered(grid: &Grid, pressure: &[f64]) -> Result<()> {
     let edges = pressure.chunks_exact(grid.nx).flat_map(|row| [row[0], row[grid.nx - 1]]);
     let largest = edges.fold(0.0, f64::max);
     if largest > 0.0 {
-        return Err(Error::Uncovered { half_width: grid.half_width, pressure: largest });
+        return Err(Error::Uncovered {
+            half_width: grid.half_width,
+            touched: grid.half_width,
+            reason: format!("there are {largest:.1e} p0 at their edge"),
+            remedy: "give a larger [cells] half_width_m, or none".into(),
+        });
     }
     Ok(())
 }
@@ -524,7 +529,7 @@ mod tests {
         problem.grid.half_width = 0.8;
         let said = problem.solve(&Straight).unwrap_err().to_string();
         assert!(
-            said.starts_with("the contact reaches the edge of the cells at x = 0.8000 C"),
+            said.starts_with("the cells, which end at x = 0.8000 C, do not cover the contact"),
             "{said}"
         );
     }

@@ -82,7 +82,7 @@ struct LiveOptions {
         value_name = "S,S",
         default_value = "2,1.4",
         value_parser = mesh_of,
-        allow_negative_numbers = true
+        allow_hyphen_values = true
     )]
     sizes: Vec<(Option<Code>, f64)>,
     /// Runs of each mesh with --fem live
@@ -136,6 +136,7 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
         } else {
             let case = Case::find(path)?;
             case.check_force("every model would find another force")?;
+            case.check_smooth("the models of a bench are those of smooth bodies")?;
             vec![case]
         };
         all.extend(found);

@@ -37,7 +37,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "design", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     /// Accuracy of the search as a fraction of p0; the optimum is solved with the case's own
-    #[arg(long, default_value_t = 3e-2, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 3e-2, allow_hyphen_values = true)]
     tolerance: f64,
     /// Seed of the first sample
     #[arg(long, default_value_t = 1, value_name = "N")]

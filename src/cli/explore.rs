@@ -26,6 +26,7 @@ pub(super) struct Arguments {
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let case = Case::find(&arguments.case)?;
     case.check_force("the page changes forces")?;
+    case.check_smooth("the page solves along a line, where bodies are smooth")?;
     let explorer = serve(case, arguments.port)?;
     print(&format!("{}\n", explorer.link()))?;
     say(

@@ -39,7 +39,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count("places", 2..=500))]
     places: Vec<usize>,
     /// Accuracy as a fraction of p0, that of the case by default
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]

@@ -84,7 +84,7 @@ impl<T: Args> FromArgMatches for OfLive<T> {
 #[derive(Args)]
 pub(super) struct Size {
     /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
-    #[arg(long, default_value_t = 1.0, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
     pub size: f64,
 }
 
@@ -111,10 +111,10 @@ pub(super) struct FemOptions {
     #[arg(long, value_name = "FILE", default_value = "ccx", value_hint = ValueHint::ExecutablePath)]
     ccx: PathBuf,
     /// Time limit for meshing one case, in seconds
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_hyphen_values = true)]
     mesh_timeout: f64,
     /// Time limit for solving one case, in seconds
-    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds, allow_negative_numbers = true)]
+    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds, allow_hyphen_values = true)]
     solve_timeout: f64,
     /// Limit for the files of one run, in GiB
     #[arg(long, value_name = "GIB", default_value_t = 10)]

@@ -15,8 +15,8 @@ use crate::host::{Lock, check_memory};
 use crate::report::plots::PROGRAM;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary, check_cells,
-    check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
+    CellDetails, CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary,
+    check_cells, check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
 };
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
@@ -57,10 +57,10 @@ pub(super) struct Arguments {
     cells: Vec<usize>,
     /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact
     /// area
-    #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_hyphen_values = true)]
     loads: Vec<f64>,
     /// Also all stresses under every cell at these depths (m), on cells
-    #[arg(long, value_name = "Z,Z,...", value_delimiter = ',', allow_negative_numbers = true)]
+    #[arg(long, value_name = "Z,Z,...", value_delimiter = ',', allow_hyphen_values = true)]
     layers: Vec<f64>,
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
@@ -86,7 +86,7 @@ pub(super) struct Arguments {
     curve: Vec<String>,
     /// Accuracy as a fraction of p0, that of the case by default; with --engine cells the relative
     /// residual, 1e-8 by default
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Adds the stiffnesses, force by approach and moment by tilt, to summary.json: four more
     /// solutions
@@ -278,27 +278,27 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
         let layers = layers_on_cells(case, options, &found.pressure, &arguments.layers)?;
         more.extend(cells::layers(&found, &layers));
     }
-    more.extend(pictures(case, &found.solution, Some(cells.tolerance), arguments)?);
+    more.extend(pictures(case, &found.solution, Some(&found.solution.summary.details), arguments)?);
     let names = solution::write(&found.solution, options, more, &arguments.out)?;
     tell(case, &found.solution, &names, arguments)
 }
 
-/// The pictures and the page, if they are asked for; `residual` is that of cells.
+/// The pictures and the page, if they are asked for; `cells` is how the case was solved on some.
 fn pictures<D>(
     case: &Case,
     found: &Solution<D>,
-    residual: Option<f64>,
+    cells: Option<&CellDetails>,
     arguments: &Arguments,
 ) -> Result<Vec<(String, Vec<u8>)>> {
     if !arguments.plots {
         return Ok(Vec::new());
     }
-    let engine = if residual.is_some() { " on uniform cells" } else { "" };
+    let engine = if cells.is_some() { " on uniform cells" } else { "" };
     let label = page::Label {
         by: format!("{}{engine}", found.summary.method),
         program: PROGRAM.into(),
         date: now(),
-        residual,
+        cells: cells.cloned(),
     };
     page::of_solution(case, &label, found)
 }
@@ -394,7 +394,7 @@ fn text<D>(case: &Case, found: &Summary<D>) -> String {
     if let Some(critical) = &found.critical {
         let [x, y, z] = critical.at_m.map(|v| v / hertz.c_m);
         lines.push(format!(
-            "  most stressed: {}, von Mises {:.4} p0 at x = {x:.3} C, y = {y:.3} C, z = {z:.3} C",
+            "  most stressed on the curves: {}, von Mises {:.4} p0 at x = {x:.3} C, y = {y:.3} C, z = {z:.3} C",
             critical.body.name(),
             critical.value_pa / p0,
         ));

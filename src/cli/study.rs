@@ -99,12 +99,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     Ok(Exit::Done)
 }
 
-/// The built-in gates of the default study; `edgeline gate` has those of the others.
+/// The outcomes of the gates of a built-in study.
 fn gates(options: &StudyOptions, run: &StudyRun) -> Result<Vec<gate::GateOutcome>> {
-    if !options.is_default() {
-        return Ok(Vec::new());
-    }
-    let gates = Gates::built_in()?;
+    let Some(study) = options.built_in() else { return Ok(Vec::new()) };
+    let gates = Gates::built_in_for(study)?;
     let usual = options.range() == Range::default();
     let drift = if usual { gates.drift } else { None };
     Ok(gate::evaluate(run, &Gates { drift, ..gates }, Some(&Baseline::built_in()?)))

@@ -89,10 +89,20 @@ impl StudyOptions {
         self.study.as_deref().map_or_else(|| Ok(Study::built_in()), Study::find)
     }
 
-    /// Whether it is the default study, on which the built-in gates rest.
+    /// The name of the built-in study that it is, the default one where none is named; none of a
+    /// study in a file.
+    pub(super) fn built_in(&self) -> Option<&'static str> {
+        let mut names = BUILTIN_STUDIES.iter().map(|(name, _)| *name);
+        match &self.study {
+            None => names.next(),
+            Some(path) if path.exists() => None,
+            Some(path) => names.find(|name| path.as_os_str() == *name),
+        }
+    }
+
+    /// Whether it is the default study.
     pub(super) fn is_default(&self) -> bool {
-        let default = BUILTIN_STUDIES[0].0;
-        self.study.as_ref().is_none_or(|path| path.as_os_str() == default && !path.exists())
+        self.built_in() == Some(BUILTIN_STUDIES[0].0)
     }
 
     /// The range of the errors.
@@ -101,7 +111,8 @@ impl StudyOptions {
     }
 
     /// Refuses options that would change nothing: those of live finite elements or of records where
-    /// the others run, and a weight of images that no model has. `usual` and `with_cells` as for
+    /// the others run, the method on cells where it does not take part, and a weight of images that
+    /// no model has. `usual` and `with_cells` as for
     /// [`StudyOptions::run`].
     ///
     /// # Errors
@@ -114,6 +125,14 @@ impl StudyOptions {
                 ("reference", "given"),
                 reason,
                 "leave it out, or leave out --fem live",
+            ));
+        }
+        let on_cells = !self.methods.is_empty() && published::is_chosen(&self.methods);
+        if on_cells && !with_cells {
+            return Err(unsuited(
+                ("methods", Engine::published().name()),
+                "the method on cells is in studies alone",
+                "leave it out; `edgeline study` has its errors",
             ));
         }
         let has_images = self.methods_of(usual).contains(&EdgeModel::Guilbault)

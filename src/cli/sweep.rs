@@ -40,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
     /// Accuracy of all cases as a fraction of p0, instead of their own
-    #[arg(long, allow_negative_numbers = true)]
+    #[arg(long, allow_hyphen_values = true)]
     tolerance: Option<f64>,
     /// Cases solved at the same time; one per processor by default
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]

@@ -58,7 +58,7 @@ pub fn made(case: &Case, method: EdgeModel, file: &str) -> Result<Vec<u8>> {
         by: method.to_string(),
         program: PROGRAM.into(),
         date: String::new(),
-        residual: None,
+        cells: None,
     };
     let files = page::of_solution(case, &label, &found)?;
     Ok(files.into_iter().find(|(name, _)| name == file).expect("a solution has these pictures").1)

@@ -83,8 +83,7 @@ impl Code {
                 remedy,
             );
         }
-        let remedy = "remove [surface], or solve the case with `edgeline solve`";
-        case.check_smooth("finite elements take smooth surfaces only", remedy)?;
+        case.check_smooth("finite elements take smooth surfaces only")?;
         if self == Code::Fenicsx {
             return Ok(());
         }

@@ -1,4 +1,4 @@
-//! The effects of a study's factors on the errors, in words.
+//! The effects of a study's factors on errors and results, in words.
 
 use super::study_summary::EffectText;
 use crate::base::number::{signed, significant};
@@ -7,11 +7,21 @@ use crate::stress::Quantity;
 use crate::study::StudyRun;
 use crate::study::effects::{Effects, NotAnalysed, term};
 use crate::study::factorial::{Effect, Lenth, Verdict};
-use crate::study::response::{Measure, Of, Response};
+use crate::study::response::{Found, Measure, Of, Response};
 
-/// The responses that the report describes in words and plots.
-pub const TOLD: [Response; 4] =
+/// The responses that the report describes in words and plots, where models are compared.
+const TOLD: [Response; 4] =
     [Response::PRESSURE_RMS, Response::STRESS_RMS, Response::VON_MISES_MAX, Response::Log10Speedup];
+
+/// The responses of the report, those `analysed`; the models' own results where nothing was
+/// compared.
+pub fn told_of(analysed: impl Fn(Response) -> bool) -> Vec<Response> {
+    let told: Vec<Response> = TOLD.into_iter().filter(|r| analysed(*r)).collect();
+    match told.is_empty() {
+        true => Found::ALL.map(Response::Found).into_iter().filter(|r| analysed(*r)).collect(),
+        false => told,
+    }
+}
 
 /// A response in words.
 pub fn label(response: Response) -> String {
@@ -33,6 +43,12 @@ pub fn label(response: Response) -> String {
         Response::CriticalValue => "error of the largest von Mises stress".to_string(),
         Response::CriticalDepth => "error of its depth".to_string(),
         Response::Log10Speedup => "log10 of FEM time over method time".to_string(),
+        Response::Found(found) => match found {
+            Found::CentrePressure => "pressure at the centre".to_string(),
+            Found::LargestPressure => "largest pressure".to_string(),
+            Found::CriticalStress => "largest von Mises stress".to_string(),
+            Found::Approach => "approach".to_string(),
+        },
     }
 }
 
@@ -42,7 +58,9 @@ pub fn not_analysed(reason: &NotAnalysed) -> String {
         NotAnalysed::NoDesign => "Effects: the study is no two-level design (no factor has two \
                                   levels, or one has more)."
             .to_string(),
-        NotAnalysed::NothingCompared => "Effects: not all corners could be compared.".to_string(),
+        NotAnalysed::NothingCompared => {
+            "Effects on errors: not all corners could be compared with finite elements.".to_string()
+        }
         NotAnalysed::Response(response, methods) => {
             let methods: Vec<&str> = methods.iter().copied().map(EdgeModel::name).collect();
             format!(
@@ -54,9 +72,10 @@ pub fn not_analysed(reason: &NotAnalysed) -> String {
     }
 }
 
-/// The effects on [`TOLD`] in words.
+/// The effects on the responses of [`told_of`] in words.
 pub fn told(run: &StudyRun, effects: &[Effects]) -> Vec<EffectText> {
-    let told = effects.iter().filter(|e| TOLD.contains(&e.response));
+    let chosen = told_of(|response| effects.iter().any(|e| e.response == response));
+    let told = effects.iter().filter(|e| chosen.contains(&e.response));
     told.map(|e| EffectText { method: e.method, response: e.response, text: words(run, e) })
         .collect()
 }

@@ -6,7 +6,7 @@ use crate::base::BodyKind;
 use crate::body::EdgeModel;
 use crate::stress::Quantity;
 use crate::study::factorial::Verdict;
-use crate::study::response::Response;
+use crate::study::response::{Found, Response};
 use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
 use crate::study::{ErrorRow, Range, Source};
 
@@ -146,6 +146,14 @@ fn further(range: &Range) -> Vec<String> {
 impl StudyRow {
     /// The value of a response.
     pub fn response(&self, response: Response) -> Option<f64> {
+        if let Response::Found(found) = response {
+            return match found {
+                Found::CentrePressure => self.p_centre_pa,
+                Found::LargestPressure => self.p_max_pa,
+                Found::CriticalStress => self.critical_von_mises_pa,
+                Found::Approach => self.approach_m,
+            };
+        }
         let at = Response::all().position(|r| r == response)?;
         self.responses.get(at).copied().flatten()
     }

@@ -76,7 +76,11 @@ fn gates(gates: &[GateOutcome]) -> String {
     let failed = gates.iter().filter(|g| !g.passed);
     let failed: Vec<String> = failed.map(|g| format!("{} ({})", g.name, g.method)).collect();
     match (gates.len(), failed.len()) {
-        (0, _) => "No accuracy gate was evaluated.".to_string(),
+        (0, _) => {
+            "No accuracy gate was evaluated: the built-in ones belong to the built-in studies, and \
+                   `edgeline gate` takes others."
+                .to_string()
+        }
         (n, 0) => format!("All {n} accuracy gates hold."),
         (n, k) => format!("{k} of {n} accuracy gates fail: {}.", failed.join("; ")),
     }

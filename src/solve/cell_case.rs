@@ -161,17 +161,26 @@ impl Region {
         self.grid(self.given.unwrap_or(FIRST_WIDTH))
     }
 
-    /// A wider grid; none where the half-width is given, and where there are no more heights.
-    fn wider(&self, grid: &Grid) -> Option<Result<Grid>> {
+    /// A wider grid than that of an `error` that tells how wide it has to be.
+    ///
+    /// # Errors
+    /// The `error` itself where the half-width is given, and where there are no more heights.
+    fn wider(&self, error: Error) -> Result<Grid> {
+        let Error::Uncovered { half_width, touched, ref reason, .. } = error else {
+            return Err(error);
+        };
         if self.given.is_some() {
-            return None;
+            return Err(error);
         }
-        let next = self.grid(grid.half_width * GROWTH);
-        let wider = |next: &Grid| next.half_width > grid.half_width * (1.0 + 1e-9);
-        match next {
-            Ok(next) if !wider(&next) => None,
-            next => Some(next),
+        let next = self.grid(touched.max(half_width * GROWTH))?;
+        if next.half_width > half_width * (1.0 + 1e-9) {
+            return Ok(next);
         }
+        let (reason, remedy) = (
+            format!("{reason}, where the heights end"),
+            "give heights that reach farther along x, or check dx_m".into(),
+        );
+        Err(Error::Uncovered { half_width, touched, reason, remedy })
     }
 
     /// Cells over the contact up to `half_width` (C), less where it is not given and the heights
@@ -260,8 +269,7 @@ fn covering(contact: &mut CellContact, region: &Region) -> Result<(CellPressure,
         match contact.solve() {
             Err(error @ Error::Uncovered { .. }) if growths > 0 => {
                 growths -= 1;
-                let wider = region.wider(&contact.problem.grid);
-                contact.problem.grid = wider.unwrap_or(Err(error))?;
+                contact.problem.grid = region.wider(error)?;
             }
             found => return found,
         }
@@ -437,9 +445,17 @@ fn pressure_lines(scene: &Scene, pressure: &CellPressure) -> Vec<PressureLine> {
         at,
         own_error: None,
     };
-    let span = scene.span();
+    let (span, grid) = (scene.span(), &pressure.grid);
+    // A rough contact has other pressures on every cell.
+    let (xs, ys): (Vec<f64>, Vec<f64>) = match scene.rough {
+        true => (
+            (0..grid.nx).map(|i| grid.x(i)).collect(),
+            (0..grid.ny).map(|j| grid.y(j) + scene.middle).collect(),
+        ),
+        false => (across_contact(), span.contact_line()),
+    };
     vec![
-        line("along-y", span.contact_line().into_iter().map(|y| [0.0, y]).collect()),
-        line("along-x", across_contact().into_iter().map(|x| [x, span.centre()]).collect()),
+        line("along-y", ys.into_iter().map(|y| [0.0, y]).collect()),
+        line("along-x", xs.into_iter().map(|x| [x, span.centre()]).collect()),
     ]
 }

@@ -17,6 +17,9 @@ const TILT_ERROR: f64 = 1e-6;
 /// Most cells in a direction of the grid on which such a tilt is sought first.
 const SEARCH: usize = 96;
 
+/// Depth (parts of the approach) to which surfaces may penetrate each other beyond the cells.
+const PENETRATION: f64 = 1e-6;
+
 /// A contact on cells.
 pub(super) struct CellContact<'a> {
     /// The problem, with the tilt of far points.
@@ -58,8 +61,16 @@ impl<'a> CellContact<'a> {
     /// that is held has to be sought: first on few cells.
     ///
     /// # Errors
-    /// As [`CellProblem::solve`]; [`Error::NotConverged`] where a held tilt is not reached.
+    /// As [`CellProblem::solve`]; [`Error::Uncovered`] also where heights touch beyond the cells,
+    /// and [`Error::NotConverged`] where a held tilt is not reached.
     pub fn solve(&self) -> Result<(CellPressure, DeepMotion)> {
+        let found = self.solve_within()?;
+        self.check_beyond(&found.0)?;
+        Ok(found)
+    }
+
+    /// [`CellContact::solve`], whatever lies beyond the cells.
+    fn solve_within(&self) -> Result<(CellPressure, DeepMotion)> {
         match self.scene.tilt {
             Tilt::Held(wanted) if !self.scene.span().symmetric => {
                 let mut few = self.problem.clone();
@@ -97,6 +108,49 @@ impl<'a> CellContact<'a> {
                 RoughGap::new(&self.smooth, heights, grid, *c_m, *unit_m).map(|gap| of(&gap))
             }
         }
+    }
+
+    /// Refuses a contact whose surfaces penetrate each other beyond the cells, as far as there are
+    /// heights: asperities stand there on their own.
+    fn check_beyond(&self, pressure: &CellPressure) -> Result<()> {
+        let Some((heights, [c_m, unit_m])) = &self.heights else { return Ok(()) };
+        let grid = &pressure.grid;
+        let (a, _) = grid.half_sides();
+        let closed = pressure.approach + pressure.tilt.abs() * grid.half_length;
+        // Where the parabola alone is higher than all that closes it nothing touches.
+        let highest = (closed + heights.highest_m() / unit_m).max(0.0).sqrt();
+        let reach = highest.min(heights.half_spans_m()[0] / c_m);
+        let more = ((reach - grid.half_width - a) / (2.0 * a) + 1.0).max(0.0) as usize;
+        if more == 0 {
+            return Ok(());
+        }
+        let nx = grid.nx + 2 * more;
+        let wide = Grid { nx, half_width: a * nx as f64, ..*grid };
+        let none = vec![0.0; more];
+        let row = |row: &[f64]| [&none[..], row, &none].concat();
+        let padded = CellPressure {
+            grid: wide,
+            pressure: pressure.pressure.chunks_exact(grid.nx).flat_map(row).collect(),
+            ..*pressure
+        };
+        let problem = CellProblem { grid: wide, ..self.problem.clone() };
+        let gaps = self.with_gap(&wide, |gap| problem.gaps(gap, &padded))?;
+        let beyond = |i: usize| !(more..more + grid.nx).contains(&(i % nx));
+        let deep = |gap: f64| gap < -PENETRATION * closed;
+        let touched = gaps.iter().enumerate().filter(|(i, gap)| beyond(*i) && deep(**gap));
+        let place = |i: usize| (wide.x(i % nx).abs(), wide.y(i / nx));
+        let Some((i, _)) = touched.max_by(|a, b| place(a.0).0.total_cmp(&place(b.0).0)) else {
+            return Ok(());
+        };
+        let (x, y) = place(i);
+        Err(Error::Uncovered {
+            half_width: grid.half_width,
+            touched: x + a,
+            reason: format!(
+                "beyond them heights touch, as at |x| = {x:.4} C and {y:.4} C from their middle"
+            ),
+            remedy: "give a larger [cells] half_width_m, or none".into(),
+        })
     }
 
     /// Mean gap (C^2 / (2 R)) under `pressure` over the cells within C of the line x = 0, or over

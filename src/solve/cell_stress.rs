@@ -101,7 +101,7 @@ fn by_nodes(
     let moments = free.moments(&columns);
     let field = |kind: BodyKind| {
         let [field, _] = free.fields(scene.free_body(kind), &columns, &moments, scene.tolerance);
-        BodyField::new(field.following_contact(scene.may_end()), 1.0)
+        BodyField::new(field.following_contact(scene.may_end(), [false; 2]), 1.0)
     };
     lines::stresses(free.shared(), field, curves, points)
 }

@@ -57,9 +57,7 @@ impl Options {
     /// # Errors
     /// [`Error::Value`].
     pub fn check_line(&self, case: &Case) -> Result<()> {
-        let remedy =
-            "solve this case on cells (`edgeline solve --engine cells`), or remove [surface]";
-        case.check_smooth("contacts along a line are smooth; only cells carry heights", remedy)?;
+        case.check_smooth("contacts along a line are smooth; only cells carry heights")?;
         self.check(case)
     }
 

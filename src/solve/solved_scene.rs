@@ -257,7 +257,9 @@ impl SolvedScene {
     /// contributions below `tolerance` (p0) neglected.
     pub fn field_with(&self, kind: BodyKind, gamma: Option<f64>, tolerance: f64) -> BodyField<'_> {
         let field = self.own_field(kind, gamma, tolerance);
-        BodyField::new(field.following_contact(self.scene.may_end()), self.unit)
+        let [left, right] = self.open;
+        let open = [if self.scene.is_symmetric() { right } else { left }, right];
+        BodyField::new(field.following_contact(self.scene.may_end(), open), self.unit)
     }
 
     /// The field of a body in the solution's own unit.

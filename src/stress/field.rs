@@ -113,6 +113,8 @@ pub struct Field<'a> {
     counters: Counters,
     /// Whether what a round surface adds follows the local contact.
     follows_contact: bool,
+    /// Whether the contact ends before its bodies do, at either end.
+    open: [bool; 2],
     /// [`Body::plate_kernel`] of the waves of `central`, for the most recent distances from the
     /// body's middle.
     plates: Mutex<Vec<(f64, Plates)>>,
@@ -132,6 +134,10 @@ const FAR_BELOW: f64 = 5.0;
 /// of the oscillation of the amplitudes with the contact's width. The sum over coarse wavenumbers
 /// ends after a panel.
 const FADED: usize = 8;
+
+/// The ends of a body that goes on, and the part of a half-length by which it does not.
+const LONG: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+const SAME: f64 = 1e-9;
 
 impl<'a> Field<'a> {
     /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure`
@@ -163,6 +169,7 @@ impl<'a> Field<'a> {
             negligible,
             counters,
             follows_contact: false,
+            open: [false; 2],
             plates,
         }
     }
@@ -175,10 +182,10 @@ impl<'a> Field<'a> {
     }
 
     /// The same field, where what a round surface adds follows the local contact, not that of the
-    /// mean load all along the line.
+    /// mean load all along the line; ends where the contact ends before its bodies do are `open`.
     #[must_use]
-    pub fn following_contact(self, follows_contact: bool) -> Self {
-        Self { follows_contact, ..self }
+    pub fn following_contact(self, follows_contact: bool, open: [bool; 2]) -> Self {
+        Self { follows_contact, open, ..self }
     }
 
     /// The plane contact that a round surface at `y` has.
@@ -189,7 +196,10 @@ impl<'a> Field<'a> {
             false => LocalContact::HERTZ,
         };
         let (half, middle) = (self.stack.body().half, self.stack.middle);
-        contact.on_line(y, ends, [middle - half, middle + half])
+        // A load that vanishes before its body ends has no image to speak of.
+        let body = [middle - half, middle + half];
+        let vanishes = |i: usize| self.open[i] && (ends[i] - body[i]).abs() > SAME * half;
+        contact.on_line(y, ends, [0, 1].map(|i| if vanishes(i) { LONG[i] } else { body[i] }))
     }
 
     /// Whether the contact is symmetric about y = 0.

@@ -51,9 +51,6 @@ const LANES: usize = 8;
 /// around.
 const END_REACH: f64 = 1.0;
 
-/// Lengths that differ by less than this part of a body's are the same.
-const SAME: f64 = 1e-9;
-
 /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
 type Rule = [[[f64; LANES]; 2]; GROUPS];
 
@@ -78,9 +75,10 @@ pub struct LocalContact {
     pub half_width: f64,
     /// Its largest pressure, of a semi-elliptic one with the same load (p0).
     pub peak: f64,
-    /// Distances inwards from the line's ends (C), negative beyond them; infinite where the body
-    /// ends there, too.
+    /// Distances inwards from the line's ends (C), negative beyond them.
     inside: [f64; 2],
+    /// How far the body goes on beyond these ends (C).
+    ledges: [f64; 2],
 }
 
 impl LocalContact {
@@ -89,33 +87,34 @@ impl LocalContact {
 
     /// That of an endless line.
     pub const fn endless(half_width: f64, peak: f64) -> Self {
-        Self { half_width, peak, inside: [f64::INFINITY; 2] }
+        Self { half_width, peak, inside: [f64::INFINITY; 2], ledges: [0.0; 2] }
     }
 
     /// The same below `y`, of a line that has these `ends`, on a body with ends of its own.
     #[must_use]
     pub fn on_line(self, y: f64, ends: [f64; 2], body: [f64; 2]) -> Self {
-        let same = SAME * (body[1] - body[0]);
-        let goes_on = [ends[0] - body[0] > same, body[1] - ends[1] > same];
         let inside = [y - ends[0], ends[1] - y];
-        let inside = [0, 1].map(|i| if goes_on[i] { inside[i] } else { f64::INFINITY });
-        Self { inside, ..self }
+        let ledges = [ends[0] - body[0], body[1] - ends[1]].map(|ledge| ledge.max(0.0));
+        Self { inside, ledges, ..self }
     }
 
     /// The part of what an endless line does at (`x`, `z`): of the vertical stress below a line of
     /// forces on a half-space that ends at the distance s, (1 + (3 t - t^3) / 2) / 2 is left, with
     /// t = s / (s^2 + x^2 + z^2)^(1/2) (the integral of Boussinesq's 3 z^3 / (2 pi r^5) along it).
-    /// The forces of a contact are spread over its width.
+    /// The forces of a contact are spread over its width. Where the body ends a `ledge` farther on,
+    /// the line's image in its end face begins after two of them.
     fn share(&self, x: f64, z: f64) -> f64 {
         let off = x * x + z * z + 0.25 * self.half_width * self.half_width;
-        let lost = |s: f64| match s.is_finite() {
-            true => {
-                let t = s / (s * s + off).sqrt();
-                0.5 - 0.25 * (3.0 * t - t * t * t)
-            }
+        let beyond = |s: f64| {
+            let t = s / (s * s + off).sqrt();
+            0.5 - 0.25 * (3.0 * t - t * t * t)
+        };
+        let lost = |(s, ledge): (&f64, &f64)| match *ledge > 0.0 {
+            true if ledge.is_infinite() => beyond(*s),
+            true => beyond(*s) - beyond(s + 2.0 * ledge),
             false => 0.0,
         };
-        1.0 - lost(self.inside[0]) - lost(self.inside[1])
+        1.0 - self.inside.iter().zip(&self.ledges).map(lost).sum::<f64>()
     }
 
     /// The place whose load counts at `y`, in a contact that has these `ends`: what is added
@@ -320,6 +319,24 @@ mod tests {
             }
         }
         worst
+    }
+
+    /// Without a ledge nothing fades, and the least one changes the least; far below the end of a
+    /// line on a long body half is left.
+    #[test]
+    fn terms_fade_with_the_ledge() {
+        let share = |ledge: f64, s: f64, z: f64| {
+            let [from, to] = [-40.0, 40.0];
+            let line = LocalContact::HERTZ.on_line(to - s, [from, to], [from, to + ledge]);
+            line.share(0.3, z)
+        };
+        for (s, z) in [(0.1, 0.1), (0.5, 0.3), (3.0, 1.0)] {
+            assert_eq!(share(0.0, s, z), 1.0);
+            let small = [1e-9, 1e-3, 0.1].map(|ledge| (1.0 - share(ledge, s, z)) / ledge);
+            assert!(small.iter().all(|rate| (0.0..3.0).contains(rate)), "{small:?}");
+            assert!(share(2.0, s, z) > share(50.0, s, z));
+        }
+        assert!((share(1e6, 0.0, 30.0) - 0.5).abs() < 0.02);
     }
 
     #[test]

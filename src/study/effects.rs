@@ -1,4 +1,4 @@
-//! The effects of the factors of a study on the errors.
+//! The effects of the factors of a study on the models' errors and on their results.
 
 use super::factorial::{self, Analysis};
 use super::response::Response;
@@ -26,7 +26,7 @@ pub struct Effects {
 pub enum NotAnalysed {
     /// None at all: the study is no two-level design.
     NoDesign,
-    /// None at all: not all corners could be compared.
+    /// None of the errors: not all corners could be compared.
     NothingCompared,
     /// A response of these methods, which have no value of it at some corner.
     Response(Response, Vec<EdgeModel>),
@@ -40,7 +40,7 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
     let mut all = Vec::new();
     let mut absent: Vec<(Response, Vec<EdgeModel>)> = Vec::new();
     for &method in &run.methods {
-        for response in Response::all() {
+        for response in Response::every() {
             match effects_of(run, design, method, response) {
                 Some(effects) => all.push(effects),
                 None => match absent.iter_mut().find(|(of, _)| *of == response) {
@@ -50,11 +50,14 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
             }
         }
     }
-    if absent.len() == Response::all().count() {
-        return (all, vec![NotAnalysed::NothingCompared]);
+    let missing = |response: &Response| absent.iter().any(|(of, _)| of == response);
+    let nothing = Response::all().all(|response| missing(&response));
+    if nothing {
+        absent.retain(|(of, _)| matches!(of, Response::Found(_)));
     }
+    let nothing = nothing.then_some(NotAnalysed::NothingCompared);
     let absent = absent.into_iter().map(|(response, of)| NotAnalysed::Response(response, of));
-    (all, absent.collect())
+    (all, nothing.into_iter().chain(absent).collect())
 }
 
 /// The effects on one response of one method, where it has a value at every corner.

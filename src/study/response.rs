@@ -1,6 +1,6 @@
 //! The responses: numbers of a case and model whose dependence on the factors is analysed.
 
-use super::run::{CaseRun, MethodRun};
+use super::run::{CaseRun, MethodResult, MethodRun};
 use super::timing::Ratio;
 use crate::stress::Quantity;
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
@@ -16,6 +16,46 @@ pub enum Response {
     CriticalDepth,
     /// Decimal logarithm of FEM's time over the model's.
     Log10Speedup,
+    /// A result of the model, whatever it is compared with.
+    Found(Found),
+}
+
+/// A result of a model in SI units, with the name of its column in `study.csv`.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Found {
+    /// Pressure at the centre (Pa).
+    CentrePressure,
+    /// Largest pressure (Pa).
+    LargestPressure,
+    /// Largest von Mises stress outside the range left out (Pa).
+    CriticalStress,
+    /// Approach of the bodies (m).
+    Approach,
+}
+
+impl Found {
+    /// All of them.
+    pub const ALL: [Self; 4] =
+        [Self::CentrePressure, Self::LargestPressure, Self::CriticalStress, Self::Approach];
+
+    fn name(self) -> &'static str {
+        match self {
+            Self::CentrePressure => "p_centre_pa",
+            Self::LargestPressure => "p_max_pa",
+            Self::CriticalStress => "critical_von_mises_pa",
+            Self::Approach => "approach_m",
+        }
+    }
+
+    fn of(self, result: &MethodResult) -> Option<f64> {
+        let summary = &result.solution.summary;
+        Some(match self {
+            Self::CentrePressure => summary.p_centre_pa,
+            Self::LargestPressure => summary.p_max_pa,
+            Self::CriticalStress => result.critical?.value * summary.hertz.p0_pa,
+            Self::Approach => summary.approach_m,
+        })
+    }
 }
 
 /// The quantity of an error.
@@ -52,13 +92,18 @@ impl Response {
     /// Largest error of the von Mises stress.
     pub const VON_MISES_MAX: Self = Self::Error(Of::Quantity(Quantity::VonMises), Measure::Max);
 
-    /// All responses, in the order of the files.
+    /// All that compare a model with FEM, in the order of the files.
     pub fn all() -> impl Iterator<Item = Self> {
         let errors = [Of::Pressure, Of::Stress].into_iter();
         errors
             .chain(Quantity::ALL.map(Of::Quantity))
             .flat_map(|of| [Measure::Rms, Measure::Max].map(|by| Self::Error(of, by)))
             .chain([Self::CriticalValue, Self::CriticalDepth, Self::Log10Speedup])
+    }
+
+    /// [`Response::all`], and the results of the models themselves.
+    pub fn every() -> impl Iterator<Item = Self> {
+        Self::all().chain(Found::ALL.map(Self::Found))
     }
 
     /// The name used in files, e.g. `von_mises_max`.
@@ -79,29 +124,32 @@ impl Response {
             Self::CriticalValue => "critical_value".to_string(),
             Self::CriticalDepth => "critical_depth".to_string(),
             Self::Log10Speedup => "log10_speedup".to_string(),
+            Self::Found(found) => found.name().to_string(),
         }
     }
 
     /// The response of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::all().find(|response| response.name() == name)
+        Self::every().find(|response| response.name() == name)
     }
 
-    /// Its unit: `p0`, `C` or `decades`.
+    /// Its unit: `p0`, `C` or `decades`, that of a result in SI.
     pub fn unit(self) -> &'static str {
         match self {
             Self::Error(..) | Self::CriticalValue => "p0",
             Self::CriticalDepth => "C",
             Self::Log10Speedup => "decades",
+            Self::Found(Found::Approach) => "m",
+            Self::Found(_) => "Pa",
         }
     }
 
     /// Its value for a case and model, if it exists.
     pub fn value(self, case: &CaseRun, method: &MethodRun) -> Option<f64> {
         let result = method.result.as_ref().ok()?;
-        let summary = result.summary.as_ref()?;
         match self {
             Self::Error(of, by) => {
+                let summary = result.summary.as_ref()?;
                 let [max, rms] = match of {
                     Of::Pressure => *summary.pressure.first()?,
                     Of::Stress => summary.stress,
@@ -115,6 +163,7 @@ impl Response {
             Self::CriticalValue => Some(result.critical?.value - case.reference_critical()?.value),
             Self::CriticalDepth => Some(result.critical?.at[2] - case.reference_critical()?.at[2]),
             Self::Log10Speedup => Some(speedup(case, method)?.value.log10()),
+            Self::Found(found) => found.of(result),
         }
     }
 }
@@ -161,7 +210,7 @@ mod tests {
             names[19..],
             ["tau_max_max", "critical_value", "critical_depth", "log10_speedup"]
         );
-        for response in Response::all() {
+        for response in Response::every() {
             assert_eq!(Response::from_name(&response.name()), Some(response));
         }
         assert_eq!(Response::from_name("stress_l1"), None);

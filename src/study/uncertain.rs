@@ -12,7 +12,7 @@ use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Draft, Form, KEYS, Key};
 use crate::solve::{Options, SolvedCase};
-use crate::stress::{Curves, Quantity};
+use crate::stress::{Curves, EDGE, Quantity, away_from_edges};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -176,7 +176,9 @@ pub fn propagate(
             remedy: "64 are usual".into(),
         });
     }
-    let results = |case: &Case| results(case, method, nominal);
+    // Which points count for the critical stress does not change with the inputs.
+    let overlap = case.overlap();
+    let results = |case: &Case| results(case, method, nominal, overlap);
     let value = results(case)?;
     let steps = inputs.iter().flat_map(|input| [(input, 1.0), (input, -1.0)]);
     let moved: Vec<Case> = steps.map(|(input, by)| input.moved(case, by)).collect::<Result<_>>()?;
@@ -250,21 +252,27 @@ fn places(nominal: &Curves) -> Vec<Place> {
     lines.chain(curves).collect()
 }
 
-/// All results of `case` at the points of `nominal` in SI units: those of [`WHOLE`], then those of
-/// [`places`]. Points that a shorter body does not reach are those of its end.
-fn results(case: &Case, method: EdgeModel, nominal: &Curves) -> Result<Vec<f64>> {
+/// All results of `case` at the points of `nominal`, whose bodies overlap as given (C), in SI
+/// units: those of [`WHOLE`], then those of [`places`]. Points that a shorter body does not reach
+/// are those of its end.
+fn results(
+    case: &Case,
+    method: EdgeModel,
+    nominal: &Curves,
+    overlap: [f64; 2],
+) -> Result<Vec<f64>> {
     let options = Options { curves: vec!["depth-centre".to_string()], ..Options::new(method) };
     let solved = SolvedCase::new(case, &options)?;
     let summary = solved.solution().summary;
     let (from, to) = (nominal.hertz.c_m, *solved.hertz());
-    let critical = summary.critical.map_or(f64::NAN, |c| c.value_pa);
-    let mut all = vec![summary.p_centre_pa, summary.p_max_pa, summary.approach_m, critical];
     let scaled = |v: f64| v * from / to.c_m;
     let [low, high] = case.overlap();
+    let mut at_places = Vec::new();
     for line in &nominal.pressure {
         let at = line.at.iter().map(|[x, y]| [scaled(*x), scaled(*y).clamp(low, high)]);
-        all.extend(at.map(|[x, y]| solved.pressure(x, y) * to.p0_pa));
+        at_places.extend(at.map(|[x, y]| solved.pressure(x, y) * to.p0_pa));
     }
+    let mut critical = f64::NAN;
     for curve in &nominal.stress {
         let [low, high] = case.ends_m(curve.body).map(|y| y / to.c_m);
         let inside = |at: &[f64; 3]| {
@@ -272,10 +280,15 @@ fn results(case: &Case, method: EdgeModel, nominal: &Curves) -> Result<Vec<f64>>
             [x, y.clamp(low, high), z]
         };
         let points: Vec<[f64; 3]> = curve.at.iter().map(inside).collect();
-        for stress in solved.stress(curve.body, &points)? {
-            all.extend(Quantity::ALL.map(|q| q.of(&stress) * to.p0_pa));
+        for (at, stress) in curve.at.iter().zip(solved.stress(curve.body, &points)?) {
+            at_places.extend(Quantity::ALL.map(|q| q.of(&stress) * to.p0_pa));
+            if away_from_edges(*at, overlap, EDGE) {
+                critical = critical.max(stress.von_mises() * to.p0_pa);
+            }
         }
     }
+    let mut all = vec![summary.p_centre_pa, summary.p_max_pa, summary.approach_m, critical];
+    all.extend(at_places);
     Ok(all)
 }
 
@@ -337,6 +350,24 @@ mod tests {
         }
         assert_eq!(points, latin_hypercube(3, 50, 7));
         assert_ne!(points, latin_hypercube(3, 50, 8));
+    }
+
+    /// Of a longer block, whose most stressed point lies at the roller's end.
+    #[test]
+    fn the_critical_stress_is_that_of_all_curves() {
+        let mut case = case();
+        case.block.length_m = 2.0 * case.roller.length_m;
+        let solution = solve(&case, &Options::new(EdgeModel::Mirror)).unwrap();
+        let inputs = vec![Input::parse("load_n=5%", &case).unwrap()];
+        let found = propagate(&case, EdgeModel::Mirror, &solution.curves, inputs, (2, 1)).unwrap();
+        let (name, critical) = &found.whole[3];
+        let wanted = solution.summary.critical.unwrap();
+        assert_eq!(*name, "critical_pa");
+        assert!(wanted.at_m[1].abs() > 0.8 * 0.5 * case.roller.length_m, "{wanted:?}");
+        assert!((critical.value / wanted.value_pa - 1.0).abs() < 5e-3, "{critical:?}, {wanted:?}");
+        // The stress of a line contact goes with the root of the load, at a fixed place beside a
+        // singular end with a little more.
+        assert!((critical.parts[0] / critical.value - 0.029).abs() < 5e-3, "{critical:?}");
     }
 
     /// In a line contact the pressure goes with the root of the load and of the modulus: 5 % and 4

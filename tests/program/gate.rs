@@ -225,6 +225,9 @@ fn another_psi_fails_the_command_and_names_its_model() {
     assert!(failed[0]["note"].as_str().unwrap().contains(" guilbault "), "{failed:?}");
     assert!(said(&bad).contains("guilbault"));
     assert_eq!(gate(&["--psi", "-1"]).status.code(), Some(2));
+    let cells = self::gate(at, &["small.toml", "--methods", "guilbault-cells", "--out", "gate"]);
+    assert_eq!(cells.status.code(), Some(2));
+    assert!(said(&cells).contains("--methods = guilbault-cells is not valid"), "{}", said(&cells));
 }
 
 #[test]

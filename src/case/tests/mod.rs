@@ -446,7 +446,7 @@ fn a_case_by_factors_keeps_the_remedies_of_its_other_numbers() {
     std::fs::write(folder.path().join("heights.csv"), "0,0\n0,2\n").unwrap();
     let surface = "[surface]\nheights = \"heights.csv\"\ndx_m = 1e-6\ndy_m = 1e-6\n";
     for (more, wanted) in [
-        (surface, "the heights range over 2e0 m, more than a tenth of the roller's radius"),
+        (surface, "the heights range over 2 m, more than a tenth of the roller's radius"),
         (surface, "give heights in metres"),
         ("eccentricity_m = 1.0\n", "f.toml:13: dimensionless.eccentricity_m = 1.0 is not valid"),
         ("eccentricity_m = 1.0\n", "place it between the ends of the overlap"),

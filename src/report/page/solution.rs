@@ -5,7 +5,7 @@ use crate::base::number::{duration, significant, with_minus_signs};
 use crate::base::{BodyKind, Result};
 use crate::case::{Case, Draft, Form, KEYS, Key};
 use crate::report::plots;
-use crate::solve::{Solution, Summary};
+use crate::solve::{CellDetails, Solution, Summary};
 use minijinja::context;
 
 const NAME: &str = "solution.html";
@@ -19,7 +19,7 @@ const NOTES: [&str; 4] = [
      load per length of the shorter body.",
     "At the edge of a body on a longer one the elastic stress has no bound. Values nearer to it than 0.1 C are \
      drawn but not counted as largest.",
-    "The contact is smooth and elastic. Compare the largest stress with the yield strength of the material \
+    "The contact is elastic. Compare the largest stress with the yield strength of the material \
      before the numbers are used.",
 ];
 
@@ -32,8 +32,8 @@ pub struct Label {
     pub program: String,
     /// When; left out if empty.
     pub date: String,
-    /// The relative residual asked for on cells, which take it in place of the case's tolerance.
-    pub residual: Option<f64>,
+    /// How it was solved on cells, which take a residual in place of the case's tolerance.
+    pub cells: Option<CellDetails>,
 }
 
 /// The pictures of `solution`, `plot-<name>.svg` and `.png`, and `summary.html`, which shows them
@@ -88,15 +88,30 @@ fn inputs(case: &Case, label: &Label) -> Vec<[String; 2]> {
     let factors =
         [("W", factors.load), ("S_l", factors.slenderness), ("L_r", factors.length_ratio)]
             .map(|(name, value)| [name.to_string(), with_unit(value, "")]);
-    let unused = |key: &&Key| label.residual.is_some() && key.path == "accuracy.tolerance";
+    let unused = |key: &&Key| label.cells.is_some() && key.path == "accuracy.tolerance";
     let numbers = KEYS.iter().filter(|key| !unused(key)).filter_map(number);
-    numbers.chain(BodyKind::ALL.into_iter().filter_map(profile)).chain(factors).collect()
+    let heights = case.surface.as_ref().map(|surface| {
+        let name = surface.heights.file_name().unwrap_or_default();
+        ["Heights (surface)".to_string(), name.to_string_lossy().into_owned()]
+    });
+    numbers
+        .chain(heights)
+        .chain(BodyKind::ALL.into_iter().filter_map(profile))
+        .chain(factors)
+        .collect()
 }
+
+/// Least tilt (rad) that is shown.
+const LEAST_TILT: f64 = 1e-8;
 
 /// "the load in newtons," as "Load in newtons".
 fn capital(what: &str) -> String {
     let what = what.trim_start_matches("the ").trim_end_matches(',');
     let mut letters = what.chars();
+    // A letter alone is a quantity.
+    if letters.clone().nth(1) == Some(' ') {
+        return what.into();
+    }
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
 }
 
@@ -124,14 +139,20 @@ fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]
     }
     rows.push(("Contact along y, from and to", place(&found.contact_y_m)));
     rows.push(("Approach of the bodies", with_unit(1e6 * found.approach_m, "µm")));
-    if found.tilt_rad != 0.0 {
+    // Of heights that are not symmetric a held tilt of zero has rounding alone.
+    if found.tilt_rad.abs() > LEAST_TILT {
         rows.push(("Tilt", with_unit(1e3 * found.tilt_rad, "mrad")));
     }
     if found.centre_of_pressure_m[1] != 0.0 {
         rows.push(("Line of action at y", mm(found.centre_of_pressure_m[1])));
     }
-    rows.push(match label.residual {
-        Some(residual) => ("Relative residual asked for", with_unit(residual, "")),
+    if let Some(cells) = label.cells.as_ref().filter(|_| case.surface.is_some()) {
+        let area = with_unit(1e6 * cells.contact_area_m2, "mm²");
+        rows.push(("Real contact area", area));
+        rows.push(("Mean gap within C of the line x = 0", with_unit(1e6 * cells.mean_gap_m, "µm")));
+    }
+    rows.push(match &label.cells {
+        Some(cells) => ("Relative residual asked for", with_unit(cells.tolerance, "")),
         None => ("Tolerance", with_unit(case.accuracy.tolerance, "p0")),
     });
     rows.push(("Load is met to", format!("{:.0e}", found.load_error_rel)));

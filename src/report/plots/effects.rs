@@ -4,7 +4,7 @@ use crate::base::number::significant;
 use crate::body::EdgeModel;
 use crate::case::FactorKey;
 use crate::report::draw::{Bar, Figure, Look, Marker, Note, Panel, Rule, Series, look};
-use crate::report::effects_text::{TOLD, label};
+use crate::report::effects_text::{label, told_of};
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::{EffectRow, StudyRow};
 use crate::report::study_summary::RoleName;
@@ -205,8 +205,9 @@ pub(super) fn figures(files: &StudyFiles) -> Vec<(String, Figure)> {
 }
 
 fn of_method(files: &StudyFiles, method: EdgeModel) -> Vec<(String, Figure)> {
+    let chosen = told_of(|response| files.effects.iter().any(|row| row.response == response));
     let of: Vec<EffectRows> =
-        TOLD.iter().filter_map(|r| EffectRows::of(files, method, *r)).collect();
+        chosen.into_iter().filter_map(|r| EffectRows::of(files, method, r)).collect();
     if of.is_empty() {
         return Vec::new();
     }

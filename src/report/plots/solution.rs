@@ -73,6 +73,7 @@ pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(Str
 
 /// Points of a profile's line.
 const PROFILE_POINTS: usize = 201;
+const ROUGH_POINTS: usize = 801;
 
 /// The profiles of both bodies, and the gap between them before they are loaded but tilted as they
 /// are then; none between straight and parallel bodies.
@@ -80,15 +81,17 @@ fn profile<D>(case: &Case, title: &str, solution: &Solution<D>) -> Option<Figure
     const UM: f64 = 1e6;
     let summary = &solution.summary;
     let profiles = BodyKind::ALL.map(|body| case.profile(body));
-    if profiles.iter().all(Option::is_none) && summary.tilt_rad == 0.0 {
+    let heights = case.heights();
+    if profiles.iter().all(Option::is_none) && summary.tilt_rad == 0.0 && heights.is_none() {
         return None;
     }
+    let points = if heights.is_some() { ROUGH_POINTS } else { PROFILE_POINTS };
     let ends = BodyKind::ALL.map(|body| case.ends_m(body));
     let places = |[from, to]: [f64; 2]| {
         let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
         // Some profiles have no drop at the very end.
-        let share = |i: usize| 0.9999 * (2.0 * i as f64 / (PROFILE_POINTS - 1) as f64 - 1.0);
-        (0..PROFILE_POINTS).map(move |i| middle + half * share(i))
+        let share = move |i: usize| 0.9999 * (2.0 * i as f64 / (points - 1) as f64 - 1.0);
+        (0..points).map(move |i| middle + half * share(i))
     };
     let drop = |body: usize, y: f64| {
         let middle = 0.5 * (ends[body][0] + ends[body][1]);
@@ -100,8 +103,10 @@ fn profile<D>(case: &Case, title: &str, solution: &Solution<D>) -> Option<Figure
         Some(Series { markers: false, ..Series::curve(BodyKind::ALL[body].name(), look, points) })
     };
     let both = [ends[0][0].max(ends[1][0]), ends[0][1].min(ends[1][1])];
-    let gaps: Vec<(f64, f64)> =
-        places(both).map(|y| (y, drop(0, y) + drop(1, y) - summary.tilt_rad * y)).collect();
+    let middle = 0.5 * (both[0] + both[1]);
+    let height = |y: f64| heights.as_ref().map_or(0.0, |heights| heights.at(0.0, y - middle));
+    let gap = |y: f64| drop(0, y) + drop(1, y) - height(y) - summary.tilt_rad * y;
+    let gaps: Vec<(f64, f64)> = places(both).map(|y| (y, gap(y))).collect();
     let least = gaps.iter().map(|(_, gap)| *gap).fold(f64::INFINITY, f64::min);
     let gaps = gaps.into_iter().map(|(y, gap)| (y * MM, (gap - least) * UM)).collect();
     let [look, ..] = looks();

@@ -2,6 +2,7 @@
 
 use super::columns::{self, Meaning};
 use super::statements::{Axes, KEYS, Statements, System, Unit, body_of};
+use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result, StressTensor};
 use crate::case::Case;
 use crate::host::{check_memory, read_text};
@@ -460,7 +461,10 @@ impl<'a> Table<'a> {
         }
         extent.check(at_m).map(|()| at_m).map_err(|outside| {
             let Outside { axis, value_m, reason, remedy } = outside;
-            format!("in our axes {axis} = {value_m:e} m {reason}: {remedy}, or state units, axes and origin")
+            let value = stated(value_m);
+            format!(
+                "in our axes {axis} = {value} m {reason}: {remedy}, or state units, axes and origin"
+            )
         })
     }
 
@@ -476,10 +480,10 @@ impl<'a> Table<'a> {
             let on = |[x, y]: &[f64; 2]| x.abs() <= NEAR && (from..=to).contains(y);
             if !self.curves.pressure.iter().any(|line| line.at.iter().any(on)) {
                 let message = format!(
-                    "has no point on the contact, which has x = 0 and y from {:e} to {:e} m in our axes: check \
+                    "has no point on the contact, which has x = 0 and y from {} to {} m in our axes: check \
                      units, axes and origin",
-                    from * self.curves.hertz.c_m,
-                    to * self.curves.hertz.c_m
+                    stated(from * self.curves.hertz.c_m),
+                    stated(to * self.curves.hertz.c_m)
                 );
                 return Err(refuse(self.path, None, message));
             }
