@@ -183,6 +183,17 @@ fn skew(number: usize) -> Case {
     Case::from_toml(&text).unwrap()
 }
 
+/// A surface with these heights.
+fn surface(shape: [usize; 2], steps: [f64; 2], values: Vec<f64>) -> Surface {
+    Surface {
+        heights: "heights".into(),
+        dx_m: steps[0],
+        dy_m: steps[1],
+        detrend: None,
+        samples: Some(Arc::new(Heights::new(shape, steps, values).unwrap())),
+    }
+}
+
 /// A case by the line engine at its finest resolution, or at its own where that does not converge.
 fn on_line(case: &Case, options: &Options) -> SolvedCase {
     let finest = SolvedCase::new(&case.clone().with_tolerance(1e-4), options);
@@ -433,13 +444,7 @@ fn a_plane_of_heights_is_a_held_tilt() {
         let steps = [4.0 * c_m / 59.0, (to - from) * c_m / 79.0];
         let plane = |k: usize| slope * ((k % 80) as f64 - 39.5) * steps[1];
         let values = (0..60 * 80).map(plane).collect();
-        rough.surface = Some(Surface {
-            heights: "plane".into(),
-            dx_m: steps[0],
-            dy_m: steps[1],
-            detrend: None,
-            samples: Some(Arc::new(Heights::new([60, 80], steps, values).unwrap())),
-        });
+        rough.surface = Some(surface([60, 80], steps, values));
         let cells = CellOptions { counts: Some([96, 128]), ..CellOptions::default() };
         let mut options = Options::new(model);
         options.curves = vec!["depth-0.9".into()];
@@ -470,13 +475,7 @@ fn a_bump_beyond_the_smooth_contact_carries_load() {
     };
     let values = (0..121 * 121).map(bump).collect();
     let mut rough = smooth.clone();
-    rough.surface = Some(Surface {
-        heights: "bump".into(),
-        dx_m: steps[0],
-        dy_m: steps[1],
-        detrend: None,
-        samples: Some(Arc::new(Heights::new(shape, steps, values).unwrap())),
-    });
+    rough.surface = Some(surface(shape, steps, values));
     let mut options = Options::new(EdgeModel::Mirror);
     options.curves = vec!["depth-centre".into()];
     let solve = |case: &Case| {
@@ -509,13 +508,7 @@ fn vanishing_heights_on_skew_bodies_with_free_ends_change_nothing() {
         let span = [4.0 * c_m, (to - from) * c_m];
         let values = (0..60 * 80).map(|k| 1e-13 * f64::from(k).sin()).collect();
         let steps = [span[0] / 59.0, span[1] / 79.0];
-        rough.surface = Some(Surface {
-            heights: "none".into(),
-            dx_m: steps[0],
-            dy_m: steps[1],
-            detrend: None,
-            samples: Some(Arc::new(Heights::new([60, 80], steps, values).unwrap())),
-        });
+        rough.surface = Some(surface([60, 80], steps, values));
         let cells = CellOptions { counts: Some([96, 128]), ..CellOptions::default() };
         let mut options = Options::new(EdgeModel::QuarterSpace);
         options.curves = ["depth-0.9", "depth-end-x0.7", "along-y-0.5C"].map(String::from).to_vec();

@@ -133,8 +133,8 @@ const LAWS: [(&str, f64); 12] = [
     ("inputs 1e-12 off (p0)", 1e-6),
     ("traction on the end faces (tolerances)", 8.0),
     ("approach against the load", 0.0),
-    ("finer grid (tolerances)", 6.0),
-    ("finer grid near the end (tolerances)", 12.0),
+    ("finer grid (tolerances)", 1.0),
+    ("finer grid near the end (tolerances)", 2.0),
 ];
 
 /// The outcome of a scene.
