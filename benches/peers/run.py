@@ -8,8 +8,8 @@ runs every code on the same gaps, loads and grids, each in a process of its own 
 the seconds of the contact solve and the relative L1 difference of the pressures. A run of less than 5 s is repeated twice
 and the best one counts. A code that exceeds the limit of time is not asked for the finer grids of that problem. Problems: a
 cylinder of length 10 C (rectangular grids), and one of length 3 C with self-affine heights (Hurst exponent 0.8, square
-grids; even in y, so that no code's bodies tilt). Every code has the tolerance 1e-6, by its own measure. slippy solves for a given approach, which is taken from this
-program's pressures.
+grids; even in y, so that no code's bodies tilt). Every code has the tolerance 1e-6, by its own measure. slippy solves for
+a given approach, which is taken from this program's pressures.
 """
 
 import argparse

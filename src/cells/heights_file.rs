@@ -115,9 +115,9 @@ fn csv(content: &[u8]) -> std::result::Result<Array, (Option<usize>, String)> {
     let text = std::str::from_utf8(content).map_err(|_| (None, "is not text".to_string()))?;
     let text = text.strip_prefix(MARK).unwrap_or(text);
     let (mut values, mut columns, mut rows) = (Vec::new(), None, 0);
-    let is_empty = |line: &str| line.is_empty() || line.starts_with('#');
+    let is_left_out = |line: &str| line.is_empty() || line.starts_with('#');
     let lines = text.lines().map(str::trim).enumerate();
-    for (i, line) in lines.filter(|(_, line)| !is_empty(line)) {
+    for (i, line) in lines.filter(|(_, line)| !is_left_out(line)) {
         let before = values.len();
         for word in words(line) {
             let value = word.parse().ok().filter(|height: &f64| height.is_finite());

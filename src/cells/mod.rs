@@ -48,4 +48,5 @@ pub use heights::{Detrend, Heights, RoughGap};
 pub use influence::Images;
 pub use layer::{Layer, add_ends, layer};
 pub use pressure::CellPressure;
+pub(crate) use problem::WIDER;
 pub use problem::{CellProblem, CellTilt};

@@ -24,6 +24,9 @@ const START: f64 = 1e-3;
 /// Relative difference of gaps that counts as none.
 const SAME: f64 = 1e-12;
 
+/// What to do where cells do not cover the contact.
+pub(crate) const WIDER: &str = "give a larger [cells] half_width_m, or none";
+
 /// Bytes for each padded cell: spectra, transforms and the vectors of the iteration.
 const BYTES: f64 = 60.0;
 
@@ -337,7 +340,7 @@ fn check_covered(grid: &Grid, pressure: &[f64]) -> Result<()> {
             half_width: grid.half_width,
             touched: grid.half_width,
             reason: format!("there are {largest:.1e} p0 at their edge"),
-            remedy: "give a larger [cells] half_width_m, or none".into(),
+            remedy: WIDER.into(),
         });
     }
     Ok(())

@@ -112,8 +112,7 @@ impl StudyOptions {
 
     /// Refuses options that would change nothing: those of live finite elements or of records where
     /// the others run, the method on cells where it does not take part, and a weight of images that
-    /// no model has. `usual` and `with_cells` as for
-    /// [`StudyOptions::run`].
+    /// no model has. `usual` and `with_cells` as for [`StudyOptions::run`].
     ///
     /// # Errors
     /// [`crate::base::Error::Value`] that names the option.

@@ -5,7 +5,7 @@ use super::on_cells::Placed;
 use super::scene::{Scene, Tilt};
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap};
+use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap, WIDER};
 use crate::contact::Gap;
 
 /// Most contacts that are solved until a tilt is reached that is held.
@@ -76,7 +76,7 @@ impl<'a> CellContact<'a> {
                 let mut few = self.problem.clone();
                 few.grid.nx = few.grid.nx.min(SEARCH);
                 few.grid.ny = few.grid.ny.min(SEARCH);
-                let mut search = Search { wanted, far: wanted, slope: 1.0, pressed: None };
+                let mut search = Search { wanted, far: wanted, slope: 1.0 };
                 if few.grid != self.problem.grid {
                     self.held(&few, &mut search)?;
                 }
@@ -110,6 +110,12 @@ impl<'a> CellContact<'a> {
         }
     }
 
+    /// The gaps (C^2 / (2 R)) under `pressure` over its cells.
+    fn gaps(&self, pressure: &CellPressure) -> Result<Vec<f64>> {
+        let problem = CellProblem { grid: pressure.grid, ..self.problem.clone() };
+        self.with_gap(&pressure.grid, |gap| problem.gaps(gap, pressure))
+    }
+
     /// Refuses a contact whose surfaces penetrate each other beyond the cells, as far as there are
     /// heights: asperities stand there on their own.
     fn check_beyond(&self, pressure: &CellPressure) -> Result<()> {
@@ -133,8 +139,7 @@ impl<'a> CellContact<'a> {
             pressure: pressure.pressure.chunks_exact(grid.nx).flat_map(row).collect(),
             ..*pressure
         };
-        let problem = CellProblem { grid: wide, ..self.problem.clone() };
-        let gaps = self.with_gap(&wide, |gap| problem.gaps(gap, &padded))?;
+        let gaps = self.gaps(&padded)?;
         let beyond = |i: usize| !(more..more + grid.nx).contains(&(i % nx));
         let deep = |gap: f64| gap < -PENETRATION * closed;
         let touched = gaps.iter().enumerate().filter(|(i, gap)| beyond(*i) && deep(**gap));
@@ -149,7 +154,7 @@ impl<'a> CellContact<'a> {
             reason: format!(
                 "beyond them heights touch, as at |x| = {x:.4} C and {y:.4} C from their middle"
             ),
-            remedy: "give a larger [cells] half_width_m, or none".into(),
+            remedy: WIDER.into(),
         })
     }
 
@@ -157,9 +162,7 @@ impl<'a> CellContact<'a> {
     /// those next to it if they are wider.
     pub fn mean_gap(&self, pressure: &CellPressure) -> f64 {
         let grid = &pressure.grid;
-        let problem = CellProblem { grid: *grid, ..self.problem.clone() };
-        let gaps = self.with_gap(grid, |gap| problem.gaps(gap, pressure));
-        let gaps = gaps.expect("the contact was solved with it");
+        let gaps = self.gaps(pressure).expect("the contact was solved with its heights");
         let next = (0..grid.nx).map(|i| grid.x(i).abs()).fold(f64::INFINITY, f64::min);
         let within = (next * (1.0 + 1e-9)).max(1.0);
         let near: Vec<f64> = gaps
@@ -179,12 +182,12 @@ impl<'a> CellContact<'a> {
         search: &mut Search,
     ) -> Result<(CellPressure, DeepMotion)> {
         let mut problem = problem.clone();
-        search.pressed = None;
+        let mut pressed: Option<CellPressure> = None;
         let mut last: Option<[f64; 2]> = None;
         for _ in 0..MOST_TRIALS {
             problem.tilt = CellTilt::Held(search.far);
-            let mut found = self.pressed(&problem, search.pressed.as_ref())?;
-            found.iterations += search.pressed.as_ref().map_or(0, |last| last.iterations);
+            let mut found = self.pressed(&problem, pressed.as_ref())?;
+            found.iterations += pressed.map_or(0, |last| last.iterations);
             let motion = self.motion(&problem, &found);
             let off = motion.tilt - search.wanted;
             if off.abs() * self.scene.half_length <= TILT_ERROR {
@@ -197,7 +200,7 @@ impl<'a> CellContact<'a> {
             }
             last = Some([search.far, off]);
             search.far -= off / search.slope;
-            search.pressed = Some(found);
+            pressed = Some(found);
         }
         Err(Error::NotConverged {
             iterations: MOST_TRIALS,
@@ -215,6 +218,4 @@ struct Search {
     far: f64,
     /// Change of the tilt at the depth with that of far points.
     slope: f64,
-    /// The last pressures on the present cells.
-    pressed: Option<CellPressure>,
 }

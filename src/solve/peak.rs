@@ -45,10 +45,10 @@ pub fn peak(solved: &SolvedCase, objective: Objective, excluded: f64) -> Critica
         let (y, value) = beside.fold(within, higher);
         return Critical { body: BodyKind::Block, value, at: [0.0, y, 0.0] };
     }
-    let [block, roller] = in_bodies(solved, &BodyKind::ALL, objective, excluded)[..] else {
-        unreachable!("one for each body")
-    };
-    if roller.value > block.value { roller } else { block }
+    let each = in_bodies(solved, &BodyKind::ALL, objective, excluded).into_iter();
+    let larger =
+        |block: Critical, roller: Critical| if roller.value > block.value { roller } else { block };
+    each.reduce(larger).expect("one for each body")
 }
 
 /// Places along a contact, on the right half of a symmetric one, in the parameter t of [`place`].

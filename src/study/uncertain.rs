@@ -261,7 +261,7 @@ fn results(
     nominal: &Curves,
     overlap: [f64; 2],
 ) -> Result<Vec<f64>> {
-    let options = Options { curves: vec!["depth-centre".to_string()], ..Options::new(method) };
+    let options = Options { curves: Vec::new(), ..Options::new(method) };
     let solved = SolvedCase::new(case, &options)?;
     let summary = solved.solution().summary;
     let (from, to) = (nominal.hertz.c_m, *solved.hertz());
