@@ -58,8 +58,8 @@ fn main() -> Result<()> {
             let field = &field;
             ys.iter().map(move |&y| field.at(y, z, &[0.0])[0].yy.clamp(-LIMIT, LIMIT))
         });
-        let map =
-            Map { label: "σyy / p0".into(), values: values.collect(), axes: [ys, zs], down: true };
+        let (label, values) = ("σyy / p0".into(), values.collect());
+        let map = Map { label, values, axes: [ys, zs], down: true, limit: LIMIT };
         let title = format!("{model}: σyy in the plane x = 0; the end face is the right border");
         write(model.name(), &Figure::of_map(title, ["y / C", "z / C"], map));
     }

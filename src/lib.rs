@@ -59,7 +59,7 @@
 //! | [`cells`] | contact and stresses on uniform cells of constant pressure, the published method |
 //! | [`case`](mod@case) | case and study files, their validation and expansion |
 //! | [`solve`](mod@solve) | one case and one method to one [`solve::Solution`] |
-//! | [`fem`] | the driver of gmsh and FEniCSx, and the reader of recorded curves |
+//! | [`fem`] | the driver of gmsh, FEniCSx and CalculiX, and the reader of recorded curves |
 //! | [`study`] | pairing of curves, errors, factorial effects, timing, gates |
 //! | [`report`] | one file per form of output |
 //! | [`explore`] | the page in the browser on which a case is changed, and its server |

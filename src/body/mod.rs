@@ -22,4 +22,4 @@ pub use finite::{Body, Layer, Shape, TractionLayer};
 pub use fold::Fold;
 pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;
-pub use stack::Stack;
+pub use stack::{LoadedLine, Placed, Stack};

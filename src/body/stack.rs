@@ -25,19 +25,35 @@ pub struct Stack {
     long: Option<LongWaves>,
 }
 
+/// The contact line that loads a body.
+#[derive(Debug, Clone, Copy)]
+pub struct LoadedLine<'a> {
+    /// Its nodes along y (C).
+    pub axis: &'a Panels,
+    /// Whether it begins at the middle of the body, and is one half of the contact.
+    pub symmetric: bool,
+    /// Whether it may carry a traction along x.
+    pub slides: bool,
+}
+
+/// A body beside others.
+#[derive(Debug, Clone, Copy)]
+pub struct Placed {
+    /// Place y of its middle (C).
+    pub middle: f64,
+    /// Its shape and material.
+    pub shape: Shape,
+    /// Its end faces.
+    pub end: End,
+}
+
 impl Stack {
-    /// A body of this `shape` whose middle is at `middle`, with end faces `end`, under loads on
-    /// `line`; a `symmetric` line begins at the middle and is one half of the contact; where it
-    /// `slides`, the line may carry a traction along x. Its layers are those of the `coarse`
+    /// A body under loads on `line`, at a `resolution`. Its layers are those of the `coarse`
     /// wavenumbers.
-    pub fn new(
-        line: &Panels,
-        (symmetric, slides): (bool, bool),
-        (middle, shape): (f64, Shape),
-        end: End,
-        (resolution, coarse): (&Resolution, &Panels),
-    ) -> Self {
-        let fold = Fold::new(line, middle, symmetric);
+    pub fn new(line: LoadedLine, body: Placed, resolution: &Resolution, coarse: &Panels) -> Self {
+        let LoadedLine { axis, symmetric, slides } = line;
+        let Placed { middle, shape, end } = body;
+        let fold = Fold::new(axis, middle, symmetric);
         let bends = end.freed && fold.parities().contains(&Parity::Odd);
         let long = if bends { LongWaves::new(coarse, shape.half) } else { None };
         let mut nodes = coarse.nodes().to_vec();
@@ -160,11 +176,11 @@ mod tests {
                         exponents.reverse();
                     }
                     let (line, _) = resolution.contact_line(ends, exponents, &[], false);
-                    let place = (side * middle, Shape { half, nu: 0.1 });
-                    let end = model.end(0.1, None);
-                    let stack =
-                        Stack::new(&line, (false, false), place, end, (&resolution, &coarse));
-                    let mut total = DMatrix::zeros(line.len(), line.len());
+                    let line = LoadedLine { axis: &line, symmetric: false, slides: false };
+                    let (shape, end) = (Shape { half, nu: 0.1 }, model.end(0.1, None));
+                    let placed = Placed { middle: side * middle, shape, end };
+                    let stack = Stack::new(line, placed, &resolution, &coarse);
+                    let mut total = DMatrix::zeros(line.axis.len(), line.axis.len());
                     for i in 0..coarse.len() {
                         stack.add_compliance(i, coarse.nodes()[i], &mut total);
                     }

@@ -4,7 +4,7 @@ use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::{Case, Factors, Fatigue};
 use crate::base::number::stated;
-use crate::base::{BodyKind, Error, Result};
+use crate::base::{Error, Result};
 use std::f64::consts::PI;
 
 /// Largest number of letters of a name.
@@ -101,8 +101,7 @@ impl Case {
 
     /// Checks that the bodies meet, and that the load lies where they do.
     fn check_pose(&self) -> Result<()> {
-        let [block, roller] = BodyKind::ALL.map(|body| self.ends_m(body));
-        let (from, to) = (block[0].max(roller[0]), block[1].min(roller[1]));
+        let [from, to] = self.overlap_m();
         let offset = self.pose.offset_m;
         if to - from < LEAST_OVERLAP * self.shorter_m() {
             let overlap = stated((to - from).max(0.0));

@@ -331,11 +331,16 @@ impl Case {
         [middle - half, middle + half]
     }
 
-    /// Where both bodies are: y of its ends (C).
+    /// Where both bodies are: y of its ends, from the roller's middle (m).
+    pub fn overlap_m(&self) -> [f64; 2] {
+        let [block, roller] = BodyKind::ALL.map(|body| self.ends_m(body));
+        [block[0].max(roller[0]), block[1].min(roller[1])]
+    }
+
+    /// [`Case::overlap_m`] in units of C.
     pub fn overlap(&self) -> [f64; 2] {
         let c_m = self.hertz().c_m;
-        let [block, roller] = BodyKind::ALL.map(|body| self.ends_m(body));
-        [block[0].max(roller[0]) / c_m, block[1].min(roller[1]) / c_m]
+        self.overlap_m().map(|y| y / c_m)
     }
 
     /// The Hertz line-contact scales.

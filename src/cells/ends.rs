@@ -28,7 +28,7 @@ use super::influence::HalfTransform;
 use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
-use crate::body::{End, Resolution, Shape, Stack};
+use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape, Stack};
 use crate::stress::{Field, Load};
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
@@ -48,12 +48,6 @@ pub struct FreeBody {
     /// Share of the compliance.
     pub share: f64,
 }
-
-/// The mirrored half-space: what the cells' own images do.
-const MIRRORED: End = End { image_weight: Some(1.0), freed: false, gamma: None };
-
-/// End faces free of traction.
-const FREED: End = End { image_weight: Some(1.0), freed: true, gamma: None };
 
 /// Accuracy (p0) of the nodes that carry the free ends.
 const TOLERANCE: f64 = 5e-4;
@@ -108,9 +102,13 @@ impl FreeEnds {
         let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
         let bodies = distinct.iter().map(|own| {
             let coarse = wavenumbers.coarse();
-            let place = (own.middle, Shape { half: own.half, nu: own.nu });
-            let [stack, mirrored] = [FREED, MIRRORED].map(|end| {
-                Stack::new(&axis, (symmetric, false), place, end, (&resolution, coarse))
+            let line = LoadedLine { axis: &axis, symmetric, slides: false };
+            // The cells' own images make a mirrored half-space.
+            let models = [EdgeModel::QuarterSpace, EdgeModel::Mirror];
+            let [stack, mirrored] = models.map(|model| {
+                let (middle, shape) = (own.middle, Shape { half: own.half, nu: own.nu });
+                let placed = Placed { middle, shape, end: model.end(own.nu, None) };
+                Stack::new(line, placed, &resolution, coarse)
             });
             for (i, sum) in sums.iter_mut().enumerate() {
                 stack.add_compliance(i, own.share, sum);

@@ -98,10 +98,8 @@ impl Linear for WholeConvolution {
             |(line, work), (waves, x)| {
                 line[..nx].copy_from_slice(x);
                 line[nx..].fill(0.0);
-                this.plans
-                    .forward_x
-                    .process_with_scratch(line, waves, work)
-                    .expect("lengths are the plan's");
+                let done = this.plans.forward_x.process_with_scratch(line, waves, work);
+                done.expect("lengths are the plan's");
             },
         );
         filtered.par_chunks_mut(LINES * ny).enumerate().for_each_init(
@@ -137,10 +135,8 @@ impl Linear for WholeConvolution {
                     // Real by construction, but for rounding.
                     wave[0].im = 0.0;
                     wave[mx].im = 0.0;
-                    this.plans
-                        .backward_x
-                        .process_with_scratch(wave, line, work)
-                        .expect("lengths are the plan's");
+                    let done = this.plans.backward_x.process_with_scratch(wave, line, work);
+                    done.expect("lengths are the plan's");
                     out.copy_from_slice(&line[..nx]);
                 }
             },

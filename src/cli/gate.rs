@@ -68,7 +68,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let (mut outcomes, mut now) = (Vec::new(), Baseline::default());
     let mut kept = accepted.clone();
     for (study, thresholds) in studies.iter().zip(&thresholds) {
-        let timed = thresholds.gate.iter().any(|g| g.quantity == "speedup");
+        let timed = thresholds.gate.iter().any(|g| g.is_speedup());
         let repeats = if timed { 5 } else { 0 };
         let run = arguments.study.run(study, &thresholds.methods(), repeats, false)?;
         if arguments.accept {

@@ -65,7 +65,8 @@ struct LiveOptions {
 /// What is left out of errors.
 #[derive(Args)]
 pub(super) struct RangeOptions {
-    /// Distance from the roller's edge within which stresses are not compared, in half-widths C
+    /// Distance from the contact's edges, at the ends of the bodies' overlap, within which stresses
+    /// are not compared, in half-widths C
     #[arg(long, value_name = "C", default_value_t = 0.1, value_parser = distance)]
     exclude: f64,
     /// The same for pressure: one or more distances, separated by commas; summaries use the first

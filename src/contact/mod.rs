@@ -1,11 +1,13 @@
 //! Load-controlled contact of two bodies.
 //!
 //! Conventions: lengths in units of C, pressures in units of p0. Along y the unknowns are at the
-//! nodes of an axis on [0, S_l]. Across the contact the pressure at node j is
+//! nodes of an axis over the contact line, or over one half of it if the contact is symmetric.
+//! Across the contact the pressure at node j is
 //!
 //! p_j(x) = sum_m c_jm sqrt(1 - t^2) U_2m(t), t = x / a_j,
 //!
-//! with the half-width a_j also unknown. Inside the contact u(x, y) + gap(x, y) = D, with
+//! with the half-width a_j also unknown. Inside the contact u(x, y) + gap(x, y) = D + theta y, with
+//! the approach D, the tilt theta, and
 //!
 //! u_i(x) = (1 / pi^2) int_0^inf cos(k x) sum_j C_ij(k) p_j^(k) dk,
 //!

@@ -135,18 +135,9 @@ fn solve_once(
         for (j, slope) in slopes.iter_mut().enumerate() {
             *slope = edge_slope(&unknowns.as_slice()[layout.modes(j)]);
         }
-        let mut worst: f64 = 0.0;
-        let wanted: Vec<f64> = layout
-            .free
-            .iter()
-            .map(|&j| {
-                let singular = unknowns[layout.singular(j)];
-                worst = worst.max(singular.abs());
-                // Beyond a factor of two the linearisation does not hold.
-                let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
-                half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
-            })
-            .collect();
+        let singular: Vec<f64> =
+            layout.free.iter().map(|&j| unknowns[layout.singular(j)]).collect();
+        let worst = singular.iter().fold(0.0, |worst: f64, s| worst.max(s.abs()));
         last = worst;
         let shrunk = layout.shrunk(problem, &contact, &unknowns);
         let settled = shrunk == contact;
@@ -164,29 +155,40 @@ fn solve_once(
                 ..solution
             });
         }
-        let shared = layout.shares.iter().zip(&layout.narrows);
-        for (a, (shares, narrows)) in half_widths.iter_mut().zip(shared) {
-            let mean = |of: fn(f64) -> f64| -> f64 {
-                shares.iter().map(|(free, share)| share * of(wanted[*free])).sum()
-            };
-            // Towards an open end the square is linear.
-            *a = match narrows {
-                true => mean(|a| a * a).max(TIP * TIP).sqrt(),
-                false => mean(|a| a).max(NARROWEST),
-            };
-        }
+        let wanted = |(&j, singular): (&usize, &f64)| {
+            // Beyond a factor of two the linearisation does not hold.
+            let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
+            half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
+        };
+        let wanted: Vec<f64> = layout.free.iter().zip(&singular).map(wanted).collect();
+        half_widths = between(&layout, &wanted);
         if !settled {
             contact = shrunk;
             layout = Layout::new(problem, settings, tail_modes, contact.clone());
         }
     }
-    Err(Error::NotConverged {
-        iterations: settings.max_iterations,
-        residual: last,
-        remedy: "ask for a coarser [accuracy] tolerance if it is below 0.1, or check the case's \
-                 lengths"
-            .into(),
-    })
+    Err(not_converged(settings.max_iterations, last))
+}
+
+fn not_converged(iterations: usize, residual: f64) -> Error {
+    let remedy =
+        "ask for a coarser [accuracy] tolerance if it is below 0.1, or check the case's lengths";
+    Error::NotConverged { iterations, residual, remedy: remedy.into() }
+}
+
+/// The half-widths at all nodes from those at the free ones.
+fn between(layout: &Layout, free: &[f64]) -> Vec<f64> {
+    let at_node = |(shares, narrows): (&[(usize, f64); 2], &bool)| {
+        let mean = |of: fn(f64) -> f64| -> f64 {
+            shares.iter().map(|(node, share)| share * of(free[*node])).sum()
+        };
+        // Towards an open end the square is linear.
+        match narrows {
+            true => mean(|a| a * a).max(TIP * TIP).sqrt(),
+            false => mean(|a| a).max(NARROWEST),
+        }
+    };
+    layout.shares.iter().zip(&layout.narrows).map(at_node).collect()
 }
 
 /// Refuses a contact that ends before its bodies do, and whose free nodes are so few that its

@@ -54,7 +54,7 @@ fn check_sum(text: &str, name: &str, sums: &str, folder: &Path) -> Result<()> {
 }
 
 /// The estimated error of one component of one curve, from its meshes. Curves on the surface
-/// exclude the immediate neighbourhood of the roller's end.
+/// exclude the immediate neighbourhood of the overlap's ends.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ErrorEstimate {
     /// `block`, `roller`, or `contact` for the pressure lines.

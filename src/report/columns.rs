@@ -69,6 +69,18 @@ impl Columns {
         Self { name, columns }
     }
 
+    /// The same columns without rows.
+    #[must_use]
+    pub fn without_rows(mut self) -> Self {
+        for (_, values) in &mut self.columns {
+            match values {
+                Values::Numbers(numbers) => numbers.clear(),
+                Values::Texts(texts) => texts.clear(),
+            }
+        }
+        self
+    }
+
     /// The table as CSV; the numbers have as many digits as it takes to read them back exactly.
     /// Texts are names and need no quotes.
     pub fn to_csv(&self) -> String {

@@ -3,11 +3,12 @@
 use super::study_summary::EffectText;
 use crate::base::number::{signed, significant};
 use crate::body::EdgeModel;
-use crate::stress::Quantity;
+use crate::stress::{Quantity, Variable};
 use crate::study::StudyRun;
 use crate::study::effects::{Effects, NotAnalysed, term};
 use crate::study::factorial::{Effect, Lenth, Verdict};
-use crate::study::response::{Found, Measure, Of, Response};
+use crate::study::measure::{Measure, Of};
+use crate::study::response::{Found, Response};
 
 /// The responses that the report describes in words and plots, where models are compared.
 const TOLD: [Response; 4] =
@@ -30,13 +31,14 @@ pub fn label(response: Response) -> String {
             let by = match by {
                 Measure::Rms => "RMS error",
                 Measure::Max => "largest error",
+                Measure::L1 => "mean error",
             };
             let of = match of {
-                Of::Pressure => "the pressure",
-                Of::Stress => "the six stresses",
-                Of::Quantity(Quantity::VonMises) => "the von Mises stress",
-                Of::Quantity(Quantity::TauMax) => "the largest shear stress",
-                Of::Quantity(component) => component.name(),
+                Of::Components => "the six stresses",
+                Of::Variable(Variable::Pressure) => "the pressure",
+                Of::Variable(Variable::Stress(Quantity::VonMises)) => "the von Mises stress",
+                Of::Variable(Variable::Stress(Quantity::TauMax)) => "the largest shear stress",
+                Of::Variable(component) => component.name(),
             };
             format!("{by} of {of}")
         }

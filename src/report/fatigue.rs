@@ -282,14 +282,9 @@ fn grid(passage: &Passage, hertz: &HertzScales) -> VtkGrid {
 /// largest value outside.
 fn figure(origin: &str, measure: &Measure, passage: &Passage) -> Figure {
     let most = passage.critical(|m| measure.value(m)).map_or(f64::INFINITY, |m| m.value);
-    let shown = |(place, m): (usize, &Measures)| {
-        let value = measure.value(m).unwrap_or(f64::NAN);
-        // A little less, so that the mark stays at the largest value that counts.
-        if passage.counts(place) { value } else { value.min(most * (1.0 - 1e-9)) }
-    };
-    let values = passage.measures.iter().enumerate().map(shown).collect();
+    let values = passage.measures.iter().map(|m| measure.value(m).unwrap_or(f64::NAN)).collect();
     let title = format!("{origin}: {}", passage.body.name());
     let axes = [passage.y.clone(), passage.z.clone()];
-    let map = Map { label: measure.label.to_string(), axes, down: true, values };
+    let map = Map { label: measure.label.to_string(), axes, down: true, values, limit: most };
     Figure::of_map(title, ["y / C", "z / C"], map).of_what(measure.label)
 }

@@ -15,8 +15,8 @@ use crate::solve::SolvedCase;
 use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edges};
 use rayon::prelude::*;
 
-/// Extent of the field from the middle of the contact in x, beyond the roller's end in y, and into
-/// the body in z (C).
+/// Extent of the field from the middle of the contact in x, beyond the overlap's ends in y, and
+/// into the body in z (C).
 const REACH: [f64; 3] = [2.5, 3.0, 5.0];
 
 /// Axes of a body's part in units of C: along x from 0, from one side to the other where the bodies
@@ -169,7 +169,7 @@ impl<'a> Quarter<'a> {
         [whole(0), whole(1), z.map(|z| z * c_m).collect()]
     }
 
-    /// Whether a point is in the excluded surroundings of the roller's edge, where stresses may be
+    /// Whether a point is in the excluded surroundings of the edges, where stresses may be
     /// singular. Contours there are limited to the largest value outside.
     fn at_edge(&self, j: usize, k: usize) -> bool {
         let at = [0.0, self.axes[1][j], self.axes[2][k]];
@@ -190,19 +190,16 @@ impl<'a> Quarter<'a> {
         values.fold((f64::NEG_INFINITY, 0), |most, v| if v.0 > most.0 { v } else { most })
     }
 
-    /// Von Mises stress in the planes x = 0, y = the roller's end and z = the depth of its largest
-    /// value, with the names of their files.
+    /// Von Mises stress in the planes x = 0, y = the overlap's +y end and z = the depth of its
+    /// largest value, with the names of their files.
     fn figures(&self) -> [(&'static str, Figure); 3] {
         let [x, y, z] = &self.axes;
         let [_, to] = self.case.overlap();
         let far = |y: &f64| (y - to).abs();
         let end = (0..y.len()).min_by(|i, j| far(&y[*i]).total_cmp(&far(&y[*j]))).expect("places");
         let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
-        let (largest, critical) = self.critical();
-        let shown = |i: usize, j: usize, k: usize| {
-            let v = self.von_mises(i, j, k);
-            if self.at_edge(j, k) { v.min(largest) } else { v }
-        };
+        let (limit, critical) = self.critical();
+        let shown = |i: usize, j: usize, k: usize| self.von_mises(i, j, k);
         let figure = |place: &str,
                       labels,
                       axes: [&Vec<f64>; 2],
@@ -212,7 +209,7 @@ impl<'a> Quarter<'a> {
             let title = format!("{}: {}", origin(&self.case.name, self.method), self.body.name());
             let values = (0..n * axes[1].len()).map(|i| value(i % n, i / n)).collect();
             let (label, axes) = ("von Mises / p0".to_string(), axes.map(Clone::clone));
-            let figure = Figure::of_map(title, labels, Map { label, axes, down, values });
+            let figure = Figure::of_map(title, labels, Map { label, axes, down, values, limit });
             figure.of_what(&format!("von Mises stress at {place}"))
         };
         let depth = format!("z = {:.2} C (critical depth)", z[critical]);
@@ -270,7 +267,7 @@ mod tests {
         let case = Case::find(Path::new("half-short")).unwrap();
         let solved = SolvedCase::new(&case, &Options::new(EdgeModel::Mirror)).unwrap();
         let quarter = |body| Quarter::new(&solved, body, [5, 7, 6]).unwrap();
-        // The block's grid extends beyond the roller's end.
+        // The block's grid extends beyond the overlap's end.
         assert_eq!(quarter(BodyKind::Block).stress.len(), 5 * (7 + 3) * 6);
         let quarter = quarter(BodyKind::Roller);
         assert_eq!(quarter.stress.len(), 5 * 7 * 6);

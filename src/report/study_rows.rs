@@ -4,7 +4,7 @@ use super::study_summary::RoleName;
 use super::table::{Short, by_name, columns};
 use crate::base::BodyKind;
 use crate::body::EdgeModel;
-use crate::stress::Quantity;
+use crate::stress::{Quantity, Variable};
 use crate::study::factorial::Verdict;
 use crate::study::response::{Found, Response};
 use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
@@ -19,6 +19,7 @@ by_name!(
     Response,
     RoleName,
     Source,
+    Variable,
     Verdict,
     Zone
 );
@@ -66,7 +67,7 @@ pub struct StudyRow {
     pub critical_von_mises_pa: Option<f64>,
     /// Where it is: x, y, z (m).
     pub critical_at_m: [Option<f64>; 3],
-    /// [`Response::all`] (p0; C for the depth).
+    /// [`Response::errors`] (p0; C for the depth).
     pub responses: Vec<Option<f64>>,
     /// Largest and RMS error of the pressure for each further range (p0).
     pub pressure_further: Vec<Option<f64>>,
@@ -119,7 +120,7 @@ columns!(StudyRow, layout, {
     critical_body,
     critical_von_mises_pa,
     critical_at_m => ["critical_x_m", "critical_y_m", "critical_z_m"],
-    responses => Response::all().map(Response::name),
+    responses => Response::errors().map(Response::name),
     pressure_further => further(layout.range),
     fem_error_pressure,
     fem_error_stress,
@@ -154,7 +155,7 @@ impl StudyRow {
                 Found::Approach => self.approach_m,
             };
         }
-        let at = Response::all().position(|r| r == response)?;
+        let at = Response::errors().position(|r| r == response)?;
         self.responses.get(at).copied().flatten()
     }
 }
@@ -262,7 +263,7 @@ columns!(ErrorRow, _layout, {
     method,
     body,
     curve,
-    quantity,
+    variable => ["quantity"],
     excluded_c as Short,
     points,
     max,

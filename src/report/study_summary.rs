@@ -210,6 +210,8 @@ pub struct CaseSummary {
     pub factors: Vec<Option<f64>>,
     /// The scales.
     pub hertz: HertzScales,
+    /// y of the ends of the bodies' overlap (m).
+    pub overlap_m: [f64; 2],
     /// Load (N).
     pub load_n: f64,
     /// The models' tolerance (p0).
@@ -230,6 +232,13 @@ pub struct CaseSummary {
     pub brought: Vec<FileSummary>,
     /// The models.
     pub methods: BTreeMap<EdgeModel, CaseMethod>,
+}
+
+impl CaseSummary {
+    /// y of the ends of the bodies' overlap (C).
+    pub fn overlap(&self) -> [f64; 2] {
+        self.overlap_m.map(|y| y / self.hertz.c_m)
+    }
 }
 
 /// The role of a case in its study.

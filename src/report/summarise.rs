@@ -131,6 +131,7 @@ fn case_summary(study: &StudyRun, run: &CaseRun, brought: &[FileRun]) -> CaseSum
         length_ratio: factors.length_ratio,
         factors: study.further.iter().map(|key| key.of(case)).collect(),
         hertz: case.hertz(),
+        overlap_m: case.overlap_m(),
         load_n: case.load.force_n,
         tolerance: case.accuracy.tolerance,
         roller: case.roller.clone(),

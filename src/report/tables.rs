@@ -8,7 +8,7 @@ use crate::case::two_level::{TwoLevel, short, sum};
 use crate::stress::{Critical, Curves, PressureLine, Quantity, StressCurve};
 use crate::study::effects::{self, Effects};
 use crate::study::factorial::half_normal_quantile;
-use crate::study::response::{self, Response};
+use crate::study::response::{self, Found, Response};
 use crate::study::{CONTACT, CaseRun, ErrorRow, MethodRun, Range, ReferenceRun, Source, StudyRun};
 
 /// The machine of a time that was taken in the run.
@@ -53,7 +53,7 @@ impl StudyRow {
             critical_body: None,
             critical_von_mises_pa: None,
             critical_at_m: [None; 3],
-            responses: vec![None; Response::all().count()],
+            responses: vec![None; Response::errors().count()],
             pressure_further: vec![None; 2 * range.pressure_c.len().saturating_sub(1)],
             fem_error_pressure: None,
             fem_error_stress: None,
@@ -97,11 +97,11 @@ fn method_row(case: &CaseRun, m: &MethodRun, range: &Range) -> StudyRow {
         converged: Some(solved.converged),
         iterations: Some(solved.iterations),
         load_error_rel: Some(solved.load_error_rel),
-        approach_m: Some(solved.approach_m),
-        p_centre_pa: Some(solved.p_centre_pa),
-        p_max_pa: Some(solved.p_max_pa),
+        approach_m: Found::Approach.of(result),
+        p_centre_pa: Found::CentrePressure.of(result),
+        p_max_pa: Found::LargestPressure.of(result),
         p_max_at_m: solved.p_max_at_m.map(Some),
-        responses: Response::all().map(|response| response.value(case, m)).collect(),
+        responses: Response::errors().map(|response| response.value(case, m)).collect(),
         pressure_further: further.unwrap_or_else(|| row.pressure_further.clone()),
         fem_error_pressure: errors.and_then(|e| e.ref_error_pressure),
         fem_error_stress: errors.and_then(|e| e.ref_error_stress),

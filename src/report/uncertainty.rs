@@ -7,7 +7,7 @@ use super::table::number;
 use crate::base::BodyKind;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
-use crate::stress::Quantity;
+use crate::stress::{Quantity, Variable};
 use crate::study::CONTACT;
 use crate::study::uncertain::{Input, Place, Spread, Uncertain};
 use serde_json::{Map, Value, json};
@@ -27,10 +27,6 @@ fn body_of(place: &Place) -> &'static str {
     place.body.map_or(CONTACT, BodyKind::name)
 }
 
-fn quantity_of(place: &Place) -> &'static str {
-    place.quantity.map_or("pressure", Quantity::name)
-}
-
 /// A row for each place and quantity, in pascals.
 fn table(found: &Uncertain) -> String {
     let mut text = "body,curve,x_m,y_m,z_m,quantity,value_pa,first_order_pa,mean_pa,deviation_pa,low_pa,high_pa\n".to_string();
@@ -39,8 +35,8 @@ fn table(found: &Uncertain) -> String {
         let [x, y, z] = place.at_m.map(number);
         let numbers =
             [value, first_order, mean, deviation, low, high].map(|v| number(*v)).join(",");
-        let (body, quantity) = (body_of(place), quantity_of(place));
-        text += &format!("{body},{},{x},{y},{z},{quantity},{numbers}\n", place.curve);
+        let (body, variable) = (body_of(place), place.variable);
+        text += &format!("{body},{},{x},{y},{z},{variable},{numbers}\n", place.curve);
     }
     text
 }
@@ -84,7 +80,7 @@ struct Shown {
     curve: &'static str,
     /// The running axis.
     axis: usize,
-    quantity: Option<Quantity>,
+    variable: Variable,
     title: &'static str,
 }
 
@@ -92,14 +88,14 @@ const PRESSURE: Shown = Shown {
     body: None,
     curve: "along-y",
     axis: 1,
-    quantity: None,
+    variable: Variable::Pressure,
     title: "contact pressure, x = 0",
 };
 const STRESS: Shown = Shown {
     body: Some(BodyKind::Block),
     curve: "depth-centre",
     axis: 2,
-    quantity: Some(Quantity::VonMises),
+    variable: Variable::Stress(Quantity::VonMises),
     title: "von Mises, block, middle",
 };
 
@@ -111,19 +107,19 @@ const SHOWN: [Shown; 4] = [
     Shown { curve: "depth-end", title: "von Mises, block, end", ..STRESS },
 ];
 
-/// Pressure and von Mises stress with bands of two standard deviations.
+/// Pressure and von Mises stress with bands that 95 % of the samples lie in.
 fn figure(case: &str, found: &Uncertain, method: EdgeModel) -> Figure {
     let input = |i: &Input| format!("{} ± {}", i.key.path, significant(i.deviation, 3));
     let inputs: Vec<String> = found.inputs.iter().map(input).collect();
-    let name = format!("{} (band: two standard deviations)", inputs.join(", "));
+    let name = format!("{} (band: 95 % of the samples)", inputs.join(", "));
     let panel = |shown: Shown| {
-        let Shown { body, curve, axis, quantity, title } = shown;
+        let Shown { body, curve, axis, variable, title } = shown;
         let own = found.curves.iter().filter(move |(place, _)| {
-            (place.body, place.quantity) == (body, quantity) && place.curve == curve
+            (place.body, place.variable) == (body, variable) && place.curve == curve
         });
         let points: Vec<(f64, f64)> =
             own.clone().map(|(place, s)| (place.at_m[axis] * 1e3, s.value * 1e-6)).collect();
-        let band = own.map(|(_, s)| 2.0 * s.deviation * 1e-6).collect();
+        let band = own.map(|(_, s)| s.interval.map(|v| v * 1e-6)).collect();
         let series = Series {
             markers: false,
             band: Some(band),

@@ -115,9 +115,8 @@ pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
 /// Refuses heights of which no two lie over the contact: they are no roughness of it, and their
 /// distances most likely of another unit.
 fn check_steps(case: &Case, heights: &Heights) -> Result<()> {
-    let c_m = case.hertz().c_m;
-    let [from, to] = case.overlap();
-    let sides_m = [2.0 * c_m, (to - from) * c_m];
+    let [from, to] = case.overlap_m();
+    let sides_m = [2.0 * case.hertz().c_m, to - from];
     let names = [("surface.dx_m", "wide"), ("surface.dy_m", "long")];
     for ((step_m, side_m), (key, how)) in heights.steps_m().into_iter().zip(sides_m).zip(names) {
         if step_m > side_m {

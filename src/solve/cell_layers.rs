@@ -3,8 +3,7 @@
 use super::extent::Extent;
 use super::options::Options;
 use super::scene::Scene;
-use crate::base::number::stated;
-use crate::base::{BodyKind, Error, Result};
+use crate::base::{BodyKind, Result};
 use crate::case::Case;
 use crate::cells::{CellPressure, EndLoads, Layer, add_ends, layer};
 use crate::host::check_memory;
@@ -27,16 +26,12 @@ pub struct CellLayer {
 /// Refuses depths that no body of `options` has, and layers that do not fit into memory.
 ///
 /// # Errors
-/// [`Error::Value`], [`Error::Memory`].
+/// [`crate::base::Error::Value`], [`crate::base::Error::Memory`].
 pub fn check_layers(case: &Case, options: &Options, depths_m: &[f64], cells: usize) -> Result<()> {
     for body in &options.bodies {
         for (i, depth_m) in depths_m.iter().enumerate() {
-            Extent::of(case, *body).check_axis(2, *depth_m).map_err(|outside| Error::Value {
-                key: format!("depth of layer {}", i + 1),
-                value: format!("{} m", stated(*depth_m)),
-                reason: format!("it {}", outside.reason),
-                remedy: outside.remedy,
-            })?;
+            let inside = Extent::of(case, *body).check_axis(2, *depth_m);
+            inside.map_err(|outside| outside.refused(format!("depth of layer {}", i + 1)))?;
         }
     }
     if depths_m.is_empty() {
@@ -60,11 +55,10 @@ pub fn layers_on_cells(
 ) -> Result<Vec<CellLayer>> {
     let grid = &pressure.grid;
     check_layers(case, options, depths_m, grid.len())?;
-    // Ends for any pressure.
-    let scene = Scene { rough: true, ..Scene::new(case, options.method, options.psi) };
-    let problem = scene.on_cells(*grid, 1.0);
-    let free = problem.free.as_deref();
-    let loads = free.map(|free| (free.axis(), EndLoads::new(free, pressure)));
+    let scene = Scene::new(case, options.method, options.psi);
+    // Ends for any pressure, whatever symmetry the scene has.
+    let free = scene.free_ends(false);
+    let loads = free.as_ref().map(|free| (free.axis(), EndLoads::new(free, pressure)));
     let c_m = case.hertz().c_m;
     let mut layers = Vec::new();
     for &body in &options.bodies {

@@ -9,12 +9,11 @@ use super::solved::wanted_curves;
 use crate::base::{HertzScales, PerBody, StressTensor};
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
-use crate::stress::round::LocalContact;
-use crate::stress::{BodyField, BodyKind, CurveSpec, LineLoad, RoundStress, StressCurve, Work};
+use crate::stress::round::{LocalContact, rounded};
+use crate::stress::{
+    BodyField, BodyKind, CurveSpec, FlatStress, LineLoad, RoundStress, StressCurve, Work,
+};
 use rayon::prelude::*;
-
-/// Step of the difference quotient along x (C).
-const STEP: f64 = 1e-4;
 
 /// The curve under the largest pressure of a rough contact, how deep it goes (C), and its points
 /// less one.
@@ -167,30 +166,18 @@ impl Summed<'_> {
     /// `contact`.
     fn row(&self, points: &[[f64; 3]], contact: &LocalContact) -> Vec<RoundStress> {
         let [_, y, z] = points[0];
-        // Nothing moves along x on the surface, nor where it is flat, nor in a plane of symmetry.
-        let beside = |x: f64| {
-            if z == 0.0 || self.flat || (x == 0.0 && self.even) { 0.0 } else { STEP }
+        // Nothing moves along x where the surface is flat, nor in a plane of symmetry.
+        let sloped = |x: f64| !self.flat && (x != 0.0 || !self.even);
+        let xs: Vec<f64> = points.iter().map(|[x, ..]| *x).collect();
+        let flat = |all: &[f64], _: &[f64]| {
+            vec![self.at(y, z, all).into_iter().map(FlatStress::from).collect()]
         };
-        let xs = points.iter().flat_map(|[x, ..]| [*x, x + beside(*x), x - beside(*x)]);
-        let stresses = self.at(y, z, &xs.collect::<Vec<_>>());
-        let round = |([x, ..], at): (&[f64; 3], &[StressTensor])| {
-            let slope = match beside(*x) {
-                0.0 => StressTensor::default(),
-                step => (at[1] - at[2]) * (0.5 / step),
-            };
-            RoundStress::new(*x, z, at[0], slope, contact)
-        };
-        points.iter().zip(stresses.chunks_exact(3)).map(round).collect()
+        rounded(&xs, &[z], contact, sloped, flat).swap_remove(0)
     }
 
-    /// The flat body's stresses at `y`, `z` for each x of `xs`, of which those in a row that are
-    /// equal are computed once.
+    /// The flat body's stresses at `y`, `z` for each x of `xs`.
     fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let mut found: Vec<StressTensor> = Vec::with_capacity(xs.len());
-        for (i, x) in xs.iter().enumerate() {
-            let same = i > 0 && xs[i - 1] == *x;
-            found.push(if same { found[i - 1] } else { self.cells.at(*x, y, z) });
-        }
+        let mut found: Vec<StressTensor> = xs.iter().map(|x| self.cells.at(*x, y, z)).collect();
         let Some(ends) = &self.ends else { return found };
         found.iter_mut().zip(ends.at(y, z, xs)).for_each(|(sum, more)| *sum += more);
         if self.faces.iter().any(|face| (face - y).abs() <= self.near) {

@@ -1,5 +1,6 @@
 //! The extent of a body, within which stresses can be computed.
 
+use crate::base::Error;
 use crate::base::number::stated;
 use crate::case::Case;
 use crate::stress::BodyKind;
@@ -17,6 +18,18 @@ pub struct Extent {
     depth_m: f64,
 }
 
+/// Refuses `points_m` (m) of a body of `case` that lie outside it.
+///
+/// # Errors
+/// [`Error::Value`] that names the first one.
+pub fn check_points(case: &Case, body: BodyKind, points_m: &[[f64; 3]]) -> Result<(), Error> {
+    let extent = Extent::of(case, body);
+    let check = |(i, at_m): (usize, &[f64; 3])| {
+        extent.check(*at_m).map_err(|outside| outside.of_point(i, body))
+    };
+    points_m.iter().enumerate().try_for_each(check)
+}
+
 /// A coordinate outside a body.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outside {
@@ -28,6 +41,20 @@ pub struct Outside {
     pub reason: String,
     /// What to give instead.
     pub remedy: String,
+}
+
+impl Outside {
+    /// The error that names it by a `key`.
+    pub fn refused(self, key: String) -> Error {
+        let value = format!("{} m", stated(self.value_m));
+        Error::Value { key, value, reason: format!("it {}", self.reason), remedy: self.remedy }
+    }
+
+    /// The error of the coordinate of a `body`'s point number `index` from zero.
+    pub fn of_point(self, index: usize, body: BodyKind) -> Error {
+        let key = format!("{} of point {} ({})", self.axis, index + 1, body.name());
+        self.refused(key)
+    }
 }
 
 impl Extent {

@@ -1,7 +1,6 @@
 //! Limits of grids of points.
 
 use super::extent::{Extent, Outside};
-use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::stress::{BodyKind, Grid};
@@ -14,34 +13,30 @@ pub const MOST_GRID_POINTS: usize = 20_000_000;
 /// # Errors
 /// [`Error::Value`] with the axis and what to give instead.
 pub fn check_grid(case: &Case, body: BodyKind, grid: &Grid) -> Result<()> {
-    let refuse = |axis: &str, value: String, reason: String, remedy: String| Error::Value {
-        key: format!("grid {axis} ({})", body.name()),
-        value,
-        reason,
-        remedy,
-    };
     // The product of three lengths may overflow where its factors do not.
     let sizes = [grid.x.len(), grid.y.len(), grid.z.len()];
     let count = sizes.iter().try_fold(1usize, |product, n| product.checked_mul(*n));
     if count.is_none_or(|n| n == 0 || n > MOST_GRID_POINTS) {
-        let value = sizes.map(|n| n.to_string()).join(" x ");
-        let reason = format!("a grid has 1 to {MOST_GRID_POINTS} points");
-        return Err(refuse("size", value, reason, "choose other numbers of points".into()));
+        return Err(Error::Value {
+            key: format!("grid size ({})", body.name()),
+            value: sizes.map(|n| n.to_string()).join(" x "),
+            reason: format!("a grid has 1 to {MOST_GRID_POINTS} points"),
+            remedy: "choose other numbers of points".into(),
+        });
     }
-    let outside = |outside: Outside| {
-        let (value, reason) =
-            (format!("{} m", stated(outside.value_m)), format!("it {}", outside.reason));
-        refuse(outside.axis, value, reason, outside.remedy)
+    let refused = |outside: Outside| {
+        let key = format!("grid {} ({})", outside.axis, body.name());
+        outside.refused(key)
     };
     let (extent, c_m) = (Extent::of(case, body), case.hertz().c_m);
     for (axis, values) in [&grid.x, &grid.y, &grid.z].into_iter().enumerate() {
         for v in values {
-            extent.check_axis(axis, v * c_m).map_err(outside)?;
+            extent.check_axis(axis, v * c_m).map_err(refused)?;
         }
     }
     // A round body is less deep beside its middle.
     let farthest = |values: &[f64]| values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
     extent
         .check([farthest(&grid.x), grid.y[0], farthest(&grid.z)].map(|v| v * c_m))
-        .map_err(outside)
+        .map_err(refused)
 }

@@ -2,6 +2,7 @@
 
 use crate::stress::{BodyField, BodyKind, CurveSpec, RoundStress, Work};
 use rayon::prelude::*;
+use std::collections::HashMap;
 
 /// Points of one body that share much of their computation.
 struct Line {
@@ -12,7 +13,7 @@ struct Line {
 }
 
 /// Which points belong to one [`Line`] (coordinates in C).
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy)]
 enum Along {
     /// Those along x, at y and z.
     X(f64, f64),
@@ -22,6 +23,18 @@ enum Along {
     Z(f64),
     /// Those along z, at y, off the plane x = 0.
     OffZ(f64),
+}
+
+impl Along {
+    /// What distinguishes it from others: the kind, and the coordinates to the last bit.
+    fn key(self) -> (u8, [u64; 2]) {
+        match self {
+            Self::X(y, z) => (0, [y, z].map(f64::to_bits)),
+            Self::Y(z) => (1, [z, 0.0].map(f64::to_bits)),
+            Self::Z(y) => (2, [y, 0.0].map(f64::to_bits)),
+            Self::OffZ(y) => (3, [y, 0.0].map(f64::to_bits)),
+        }
+    }
 }
 
 /// The place of a stress in the result: a curve's point, or a single point.
@@ -82,11 +95,11 @@ pub(super) fn stresses<'a>(
 /// The points of `curves` and the single ones, line by line.
 fn lines(shared: bool, curves: &[CurveSpec], points: &[(BodyKind, [f64; 3])]) -> Vec<Line> {
     let mut lines: Vec<Line> = Vec::new();
+    let mut known: HashMap<(BodyKind, (u8, [u64; 2])), usize> = HashMap::new();
     let mut add = |kind: BodyKind, along: Along, at: [f64; 3], slot: Slot| {
         // Bodies that share one computation have equal results.
         let body = if shared { BodyKind::Block } else { kind };
-        let index = lines.iter().position(|l| l.body == body && l.along == along);
-        let index = index.unwrap_or_else(|| {
+        let index = *known.entry((body, along.key())).or_insert_with(|| {
             lines.push(Line { body, along, points: Vec::new() });
             lines.len() - 1
         });

@@ -11,6 +11,7 @@ mod cells;
 mod deep;
 pub mod edge;
 mod extent;
+mod first_guess;
 mod grid;
 mod group;
 mod key_results;
@@ -27,6 +28,7 @@ mod solved;
 mod solved_scene;
 mod stiffness;
 mod summary;
+mod trial;
 
 #[cfg(test)]
 mod tests;
@@ -38,7 +40,7 @@ pub use cell_case::{
 pub use cell_layers::{CellLayer, check_layers, layers_on_cells};
 pub use cell_stress::PEAK_CURVE;
 pub use cells::PressureCell;
-pub use extent::{Extent, Outside};
+pub use extent::{Extent, Outside, check_points};
 pub use grid::{MOST_GRID_POINTS, check_grid};
 pub use group::{solve, solve_group};
 pub use key_results::{END_DISTANCES, KeyResults, KeySolution};

@@ -27,25 +27,33 @@ impl Scene {
     /// The scene's contact on the cells of `grid`, whose half-length is the scene's, to the
     /// relative residual `tolerance`. A tilt that is held is that of far points.
     pub fn on_cells(&self, grid: Grid, tolerance: f64) -> CellProblem {
-        let (mut images, mut free) = (Vec::new(), Vec::new());
-        for kind in BodyKind::ALL {
-            let (&SceneBody { half, nu, share, .. }, end) = (&self.bodies[kind], self.end(kind));
-            let middle = self.off_middle(self.bodies[kind].middle);
+        let images = BodyKind::ALL.into_iter().filter_map(|kind| {
+            let SceneBody { half, middle, share, .. } = self.bodies[kind];
+            let middle = self.off_middle(middle);
             let of_weight = |weight| Images { half, middle, weight: share * weight };
-            images.extend(end.image_weight.map(of_weight));
-            free.extend(end.freed.then_some(FreeBody { half, middle, nu, share }));
-        }
+            self.end(kind).image_weight.map(of_weight)
+        });
+        let images = images.collect();
         let even = grid.nx.is_multiple_of(2) && grid.ny.is_multiple_of(2);
-        let symmetric = self.span().symmetric && even;
-        let exponents = self.end_exponents();
-        let ends = || Arc::new(FreeEnds::new(self.half_length, &free, symmetric, exponents));
-        let free = (!free.is_empty()).then(ends);
+        let free = self.free_ends(self.span().symmetric && even);
         let tilt = match self.tilt {
             Tilt::Held(tilt) => CellTilt::Held(tilt),
             Tilt::Free(arm) => CellTilt::Free(self.off_middle(arm)),
         };
         let (load, most_iterations) = (self.load, MOST_ITERATIONS);
         CellProblem { grid, images, free, load, tilt, tolerance, most_iterations }
+    }
+
+    /// What free end faces add to cells and their images, under pressures that are even in x and y
+    /// if they are `symmetric`; none where no end face is free of traction.
+    pub(super) fn free_ends(&self, symmetric: bool) -> Option<Arc<FreeEnds>> {
+        let free = BodyKind::ALL.into_iter().filter(|kind| self.end(*kind).freed).map(|kind| {
+            let SceneBody { half, middle, nu, share, .. } = self.bodies[kind];
+            FreeBody { half, middle: self.off_middle(middle), nu, share }
+        });
+        let free: Vec<FreeBody> = free.collect();
+        let ends = || FreeEnds::new(self.half_length, &free, symmetric, self.end_exponents());
+        (!free.is_empty()).then(|| Arc::new(ends()))
     }
 
     /// The exponents m of the pressure s^-m at the overlap's ends, zero where it is finite.

@@ -1,7 +1,6 @@
 //! The edge model of a solution, and what to compute.
 
 use super::extent::Extent;
-use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -80,12 +79,8 @@ impl Options {
             });
         }
         for (i, point) in self.points.iter().enumerate() {
-            Extent::of(case, point.body).check(point.at_m).map_err(|outside| Error::Value {
-                key: format!("{} of point {} ({})", outside.axis, i + 1, point.body.name()),
-                value: format!("{} m", stated(outside.value_m)),
-                reason: format!("it {}", outside.reason),
-                remedy: outside.remedy,
-            })?;
+            let inside = Extent::of(case, point.body).check(point.at_m);
+            inside.map_err(|outside| outside.of_point(i, point.body))?;
         }
         Ok(())
     }

@@ -127,20 +127,10 @@ impl Scene {
         let hertz = case.hertz();
         let c_m = hertz.c_m;
         let steepness = 2.0 * case.equivalent_radius_m() / c_m;
-        let half = |length_m: f64| rounded(0.5 * length_m / c_m);
-        let roller_half = half(*roller_m);
-        // What is symmetric but for rounding is symmetric.
-        let nothing = |v: f64, size: f64| if v.abs() < FLUSH * size { 0.0 } else { rounded(v) };
-        let offset = nothing(offset_m / c_m, roller_half);
+        let [block_half, roller_half] = [block_m, roller_m].map(|m| rounded(0.5 * m / c_m));
+        let offset = unless_nothing(offset_m / c_m, roller_half);
         let roller_ends = [-roller_half, roller_half];
-        // Rounding must not leave a ledge at flush ends.
-        let mut block_ends = [-1.0, 1.0].map(|side| offset + side * half(*block_m));
-        let shorter = roller_half.min(half(*block_m));
-        for (own, other) in block_ends.iter_mut().zip(roller_ends) {
-            if (*own - other).abs() < FLUSH * shorter {
-                *own = other;
-            }
-        }
+        let block_ends = flush([offset - block_half, offset + block_half], roller_ends);
         let body = |[from, to]: [f64; 2], material: &Material, kind: BodyKind| SceneBody {
             half: 0.5 * (to - from),
             middle: 0.5 * (from + to),
@@ -153,8 +143,11 @@ impl Scene {
             roller: body(roller_ends, roller_material, BodyKind::Roller),
         };
         let tilt = match eccentricity_m {
-            Some(y) => Tilt::Free(nothing(y / c_m, roller_half)),
-            None => Tilt::Held(nothing(tilt_rad.unwrap_or(0.0) * steepness, 1.0 / roller_half)),
+            Some(y) => Tilt::Free(unless_nothing(y / c_m, roller_half)),
+            None => {
+                let tilt = tilt_rad.unwrap_or(0.0) * steepness;
+                Tilt::Held(unless_nothing(tilt, 1.0 / roller_half))
+            }
         };
         let profiled = bodies.iter().any(|body| body.profile.is_some());
         let from = block_ends[0].max(roller_ends[0]);
@@ -162,7 +155,7 @@ impl Scene {
         let scene = Self {
             half_length: 0.5 * (to - from),
             middle: 0.5 * (from + to),
-            load: PI * shorter,
+            load: PI * roller_half.min(block_half),
             steepness: if profiled { steepness } else { 0.0 },
             depth: 0.0,
             bodies,
@@ -173,11 +166,16 @@ impl Scene {
             psi,
             tolerance: *tolerance,
         };
-        match scene.tilt {
+        scene.held_at(radius_m / c_m)
+    }
+
+    /// The scene with its tilt held at a `depth` (C), where the tilt counts.
+    fn held_at(self, depth: f64) -> Self {
+        match self.tilt {
             // A load in the middle of what is symmetric leaves it parallel.
-            Tilt::Free(0.0) if scene.is_aligned() => Self { tilt: Tilt::Held(0.0), ..scene },
-            Tilt::Held(_) if !scene.is_symmetric() => Self { depth: radius_m / c_m, ..scene },
-            _ => scene,
+            Tilt::Free(0.0) if self.is_aligned() => Self { tilt: Tilt::Held(0.0), ..self },
+            Tilt::Held(_) if !self.is_symmetric() => Self { depth, ..self },
+            _ => self,
         }
     }
 
@@ -335,6 +333,23 @@ pub struct SceneKey {
     slides: bool,
     model: EdgeModel,
     psi: Option<u64>,
+}
+
+/// A number beside some `size`: what is nothing but for rounding is nothing, so that symmetric
+/// scenes are symmetric.
+fn unless_nothing(v: f64, size: f64) -> f64 {
+    if v.abs() < FLUSH * size { 0.0 } else { rounded(v) }
+}
+
+/// The `own` ends of a body, at those of the other one where they are flush with them but for
+/// rounding, which must not leave a ledge.
+fn flush(own: [f64; 2], other: [f64; 2]) -> [f64; 2] {
+    let shorter = 0.5 * (own[1] - own[0]).min(other[1] - other[0]);
+    let end = |side: usize| match (own[side] - other[side]).abs() < FLUSH * shorter {
+        true => other[side],
+        false => own[side],
+    };
+    [end(0), end(1)]
 }
 
 /// The number rounded to twelve digits, to remove differences by rounding.

@@ -4,7 +4,7 @@
 use super::approached::{approach_m, with_force};
 use super::cells::{PressureCell, largest, pressure_cells};
 use super::edge::{Side, edge_strength};
-use super::extent::Extent;
+use super::extent::{Extent, check_points};
 use super::grid::check_grid;
 use super::lines;
 use super::options::Options;
@@ -12,8 +12,7 @@ use super::scene::Scene;
 use super::shaping::Shaping;
 use super::solved_scene::{Seconds, SolvedScene};
 use super::summary::{CriticalSummary, Details, Summary, WorkSummary};
-use crate::base::number::stated;
-use crate::base::{Error, HertzScales, Result, StressTensor};
+use crate::base::{HertzScales, Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::stress::curves::{Span, across_contact, curves_on};
@@ -73,6 +72,10 @@ impl SolvedCase {
     /// [`Error::Value`] when `options` name an unknown curve or a point outside its body, or where
     /// no legal force causes the approach that the case asks for; [`Error::NotConverged`] and
     /// [`Error::Unsound`] as [`SolvedScene::new`].
+    ///
+    /// [`Error::Value`]: crate::base::Error::Value
+    /// [`Error::NotConverged`]: crate::base::Error::NotConverged
+    /// [`Error::Unsound`]: crate::base::Error::Unsound
     pub fn new(case: &Case, options: &Options) -> Result<Self> {
         let (case, scene) = with_force(case, options)?;
         Ok(Self::of_scene(&case, options, Arc::new(scene)))
@@ -134,17 +137,10 @@ impl SolvedCase {
     /// Stresses (p0) of `body` at `points` x, y, z (C); z is the depth into that body.
     ///
     /// # Errors
-    /// [`Error::Value`] that names the first point outside the body.
+    /// [`crate::base::Error::Value`] that names the first point outside the body.
     pub fn stress(&self, body: BodyKind, points: &[[f64; 3]]) -> Result<Vec<StressTensor>> {
-        let extent = Extent::of(&self.case, body);
-        for (i, at) in points.iter().enumerate() {
-            extent.check(at.map(|v| v * self.hertz.c_m)).map_err(|outside| Error::Value {
-                key: format!("{} of point {} ({})", outside.axis, i + 1, body.name()),
-                value: format!("{} m", stated(outside.value_m)),
-                reason: format!("it {}", outside.reason),
-                remedy: outside.remedy,
-            })?;
-        }
+        let in_m: Vec<_> = points.iter().map(|at| at.map(|v| v * self.hertz.c_m)).collect();
+        check_points(&self.case, body, &in_m)?;
         let places: Vec<_> = points.iter().map(|at| (body, *at)).collect();
         let found = self.scene.stresses(&[], &places).points;
         Ok(found.iter().map(|s| self.shaped(body, s)).collect())
@@ -156,7 +152,7 @@ impl SolvedCase {
     /// or in y = 0 are computed once.
     ///
     /// # Errors
-    /// [`Error::Value`] when the grid is empty, too large, or leaves the body.
+    /// [`crate::base::Error::Value`] when the grid is empty, too large, or leaves the body.
     pub fn on_grid(&self, body: BodyKind, grid: &Grid) -> Result<GridStress> {
         check_grid(&self.case, body, grid)?;
         // The body's end may exceed itself by rounding.

@@ -22,7 +22,7 @@ pub fn stiffness(solved: &SolvedCase, options: &Options) -> Result<Stiffness> {
     let case = solved.case();
     let options = Options { curves: Vec::new(), points: Vec::new(), ..options.clone() };
     let force = case.load.force_n;
-    let [from, to] = case.overlap().map(|y| y * case.hertz().c_m);
+    let [from, to] = case.overlap_m();
     let arm = if solved.is_symmetric() { 0.0 } else { solved.centre_of_pressure_m() };
     // Within the overlap, however far beside the middle the load is.
     let step = (PLACE_STEP * (to - from)).min(0.5 * (arm - from)).min(0.5 * (to - arm));

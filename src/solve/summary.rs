@@ -119,7 +119,7 @@ pub struct Details {
     pub resolution: Resolution,
     /// Numbers of wavenumbers: those of the bodies' equations, and those of the loads.
     pub wavenumbers: [usize; 2],
-    /// Nodes along half of the contact line.
+    /// Nodes along the contact line, or along one half of it if the contact is symmetric.
     pub contact_nodes: usize,
     /// Strength of the contact's end, if the model has a law for it.
     pub edge: Option<EdgeStrength>,

@@ -1,8 +1,9 @@
 //! The stress field of a body in units of C and p0, whatever units it is computed in.
 
-use super::field::{Field, Work};
+use super::field::Field;
 use super::flat::FlatStress;
 use super::round::RoundStress;
+use super::work::Work;
 use crate::base::StressTensor;
 
 /// A [`Field`] that is computed in a unit of length of its own, and so with a unit of pressure of

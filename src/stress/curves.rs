@@ -1,7 +1,7 @@
 //! The standard curves: the points at which all models and FEM are compared.
 //!
-//! All coordinates here are in units of C; `half_length` is S_l = L / (2 C), L the length of the
-//! shorter body.
+//! All coordinates here are in units of C; `half_length` is half the length of the bodies' overlap,
+//! which is S_l = L / (2 C) where the shorter body, of length L, lies within the other.
 
 use crate::base::BodyKind;
 
@@ -137,20 +137,20 @@ impl Span {
 /// (units of C).
 const OFF_PLANE: [f64; 2] = [0.7, 1.4];
 
-/// Distances from the roller's end at which curves along y are sampled (units of C).
+/// Distances from the overlap's ends at which curves along y are sampled (units of C).
 const SAMPLED_DISTANCES: [f64; 22] = [
     0.0, 0.02, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0,
     4.0, 5.0, 6.5, 8.0,
 ];
 
-/// How far beyond the roller's end curves of a longer block go (units of C).
+/// How far beyond the overlap's ends curves of a longer body go (units of C).
 const OUTWARD: f64 = 3.0;
 
 /// Lengths within this relative difference are equal: they may have been converted to SI units and
 /// back.
 const SAME: f64 = 1e-9;
 
-/// Distances from the roller's end, ascending, up to `half_length` (which is the last).
+/// Distances from the overlap's end, ascending, up to `half_length` (which is the last).
 fn end_distances(half_length: f64) -> Vec<f64> {
     let below = half_length * (1.0 - SAME);
     let mut s: Vec<f64> = SAMPLED_DISTANCES.iter().copied().filter(|&s| s < below).collect();
@@ -171,7 +171,7 @@ fn end_distances(half_length: f64) -> Vec<f64> {
     s
 }
 
-/// y of the points on the contact line, from the centre to the roller's end (units of C).
+/// y of the points on the contact line, from the centre to the end (units of C).
 pub fn contact_line(half_length: f64) -> Vec<f64> {
     end_distances(half_length).iter().rev().map(|s| half_length - s).collect()
 }
@@ -190,9 +190,9 @@ pub fn depths() -> Vec<f64> {
     z
 }
 
-/// The standard curves of one body. `half_length` is the roller's half-length and
+/// The standard curves of one body. `half_length` is that of the overlap and
 /// `body_half_length` that of the body (units of C); a longer body's curves along y go on past
-/// the roller's end for up to three C. z is the depth below the body's surface at the point's x.
+/// the overlap's ends for up to three C. z is the depth below the body's surface at the point's x.
 pub fn standard_curves(body: BodyKind, half_length: f64, body_half_length: f64) -> Vec<CurveSpec> {
     let ends = [-body_half_length, body_half_length];
     curves_on(body, &Span::symmetric(half_length), ends)

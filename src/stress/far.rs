@@ -30,6 +30,11 @@ use std::f64::consts::PI;
 /// long that they reach it are few, and the equations of free faces are close to singular for them.
 const FAR: f64 = 10.0;
 
+/// Distance along the surface of a short body (C) up to which the waves still count: what the
+/// plate's layer leaves out falls with the distance, and with the half-length below one and at 10
+/// half-lengths it is up to 0.005 p0 under loads beside the middle.
+const BESIDE: f64 = 20.0;
+
 /// Depth of the edge's layer, in half-lengths of the body, and terms of its series.
 const LAYER: f64 = 8.0;
 const TERMS: u32 = 60;
@@ -51,9 +56,11 @@ impl Field<'_> {
     /// Whether the point (`x`, `z`) is so far from the contact that its stress is that of the
     /// load's resultants.
     pub(super) fn is_far(&self, x: f64, z: f64) -> bool {
-        let distant = x.hypot(z) > FAR * self.stack.body().half;
+        let (reach, freed) = (FAR * self.stack.body().half, self.stack.body().end.freed);
+        let beside = if freed { BESIDE.max(reach) } else { reach };
+        let distant = (x * reach / beside).hypot(z) > reach;
         // Forces along a half-space's surface have no formula here.
-        distant && (self.stack.body().end.freed || self.traction.is_none())
+        distant && (freed || self.traction.is_none())
     }
 
     /// The stress at a far point under the `pieces` of the load.

@@ -1,6 +1,8 @@
-//! The scalars of a stress that are compared and drawn.
+//! What is compared and drawn: the contact pressure, and the scalars of a stress.
 
 use crate::base::StressTensor;
+use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
+use std::fmt;
 
 /// A scalar of a stress tensor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
@@ -51,5 +53,59 @@ impl Quantity {
             Quantity::VonMises => stress.von_mises(),
             Quantity::TauMax => stress.tau_max(),
         }
+    }
+}
+
+/// The contact pressure, or a scalar of the stress. Files hold its name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Variable {
+    /// The contact pressure.
+    Pressure,
+    /// A scalar of the stress.
+    Stress(Quantity),
+}
+
+impl Variable {
+    /// The pressure, then the stresses in the order of the files' columns.
+    pub fn all() -> impl Iterator<Item = Self> {
+        std::iter::once(Self::Pressure).chain(Quantity::ALL.map(Self::Stress))
+    }
+
+    /// The name used in files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pressure => "pressure",
+            Self::Stress(quantity) => quantity.name(),
+        }
+    }
+
+    /// The variable of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::all().find(|variable| variable.name() == name)
+    }
+
+    /// Whether it is one of the six components of the stress.
+    pub fn is_component(self) -> bool {
+        matches!(self, Self::Stress(Quantity::Stress(_)))
+    }
+}
+
+impl fmt::Display for Variable {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Serialize for Variable {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.serialize_str(self.name())
+    }
+}
+
+impl<'de> Deserialize<'de> for Variable {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(deserializer)?;
+        Self::from_name(&name)
+            .ok_or_else(|| de::Error::custom(format!("there is no variable '{name}'")))
     }
 }

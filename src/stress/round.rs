@@ -125,8 +125,8 @@ impl LocalContact {
         y.max(from + inset).min(to - inset)
     }
 
-    /// The Hertz contact of a `load` per length (C p0), its half-width in units of C its pressure
-    /// in units of p0; none pulls.
+    /// The Hertz contact of a `load` per length (C p0): its half-width in units of C and its
+    /// pressure in units of p0 are the same number. A tensile load has no contact.
     pub fn carrying(load: f64) -> Self {
         let half_width = (2.0 / PI * load.max(0.0)).sqrt();
         Self::endless(half_width, half_width)
@@ -195,6 +195,47 @@ impl RoundStress {
     pub fn mirrored_in_x(&self) -> Self {
         Self { flat: self.flat.mirrored_in_x(), round: self.round.mirrored_in_x() }
     }
+}
+
+/// Step of the difference quotient along x (C).
+pub(super) const STEP: f64 = 1e-4;
+
+/// The stresses of a body with a round surface, for each of `zs` and of `xs`, from `flat`, which
+/// gives those of the flat body at each of `zs` for a list of x, and for the place that each of
+/// them belongs to, under the plane `contact`. The slopes along x, at the places where the flat
+/// stress is `sloped`, are difference quotients, whose points share all sums.
+pub(crate) fn rounded(
+    xs: &[f64],
+    zs: &[f64],
+    contact: &LocalContact,
+    sloped: impl Fn(f64) -> bool,
+    flat: impl Fn(&[f64], &[f64]) -> Vec<Vec<FlatStress>>,
+) -> Vec<Vec<RoundStress>> {
+    // On the surface points are not shifted along x.
+    let below = zs.iter().any(|z| *z > 0.0);
+    let sloped = |x: f64| below && sloped(x);
+    let points = |&x: &f64| match sloped(x) {
+        true => vec![(x, x), (x - STEP, x), (x + STEP, x)],
+        false => vec![(x, x)],
+    };
+    let (all, places): (Vec<f64>, Vec<f64>) = xs.iter().flat_map(points).unzip();
+    let rows = zs.iter().zip(flat(&all, &places));
+    rows.map(|(&z, row)| {
+        let mut row = row.into_iter();
+        let mut next = || row.next().expect("one for each of all");
+        let at = |&x: &f64| {
+            let own = next();
+            let slope = if sloped(x) {
+                let (before, after) = (next(), next());
+                (after - before) * (0.5 / STEP)
+            } else {
+                FlatStress::default()
+            };
+            RoundStress::new(x, z, own, slope, contact)
+        };
+        xs.iter().map(at).collect()
+    })
+    .collect()
 }
 
 /// What a turn of the axes adds to a stress, per radian.

@@ -417,7 +417,7 @@ fn upon(
 mod tests {
     use super::*;
     use crate::base::Parity;
-    use crate::body::{EdgeModel, Resolution, Shape};
+    use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape};
 
     #[test]
     fn a_block_sums_its_wavenumbers_independently() {
@@ -433,12 +433,12 @@ mod tests {
         let shape = Shape { half: 5.0 + ledge, nu: 0.3 };
         let numbers = resolution.wavenumbers(shape.half, Parity::Even).resolving(1.0);
         let line = resolution.contact_axis(5.0);
+        let end = EdgeModel::QuarterSpace.end(0.3, None);
         let stack = Stack::new(
-            &line,
-            (true, false),
-            (0.0, shape),
-            EdgeModel::QuarterSpace.end(0.3, None),
-            (&resolution, numbers.coarse()),
+            LoadedLine { axis: &line, symmetric: true, slides: false },
+            Placed { middle: 0.0, shape, end },
+            &resolution,
+            numbers.coarse(),
         );
         let (body, layers) = &stack.parts()[0];
         let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.weights());

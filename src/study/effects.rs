@@ -40,7 +40,7 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
     let mut all = Vec::new();
     let mut absent: Vec<(Response, Vec<EdgeModel>)> = Vec::new();
     for &method in &run.methods {
-        for response in Response::every() {
+        for response in Response::all() {
             match effects_of(run, design, method, response) {
                 Some(effects) => all.push(effects),
                 None => match absent.iter_mut().find(|(of, _)| *of == response) {
@@ -51,7 +51,7 @@ pub fn analyse(run: &StudyRun) -> (Vec<Effects>, Vec<NotAnalysed>) {
         }
     }
     let missing = |response: &Response| absent.iter().any(|(of, _)| of == response);
-    let nothing = Response::all().all(|response| missing(&response));
+    let nothing = Response::errors().all(|response| missing(&response));
     if nothing {
         absent.retain(|(of, _)| matches!(of, Response::Found(_)));
     }

@@ -10,9 +10,10 @@
 //! sum w) and L1 = sum w |e| / sum w. The weights make RMS and L1 properties of the curve, not of
 //! how densely it was sampled. [`POINTS`] are on no curve: each counts alike.
 
+use super::measure::Measure;
 use super::source::Source;
 use crate::base::{Error, Result};
-use crate::stress::{Critical, Curves, Quantity, away_from_edges};
+use crate::stress::{Critical, Curves, Quantity, Variable, away_from_edges};
 use serde::{Deserialize, Serialize};
 
 /// The name that stands in place of a body for the contact pressure.
@@ -25,7 +26,7 @@ pub const POINTS: &str = "points";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Range {
-    /// Distance from the roller's edge within which stresses are excluded (C), >= 0.
+    /// Distance from an edge within which stresses are excluded (C), >= 0.
     pub stress_c: f64,
     /// The same for pressure (C): one set of rows for each distance. Summaries use the first.
     pub pressure_c: Vec<f64>,
@@ -43,14 +44,15 @@ pub struct ErrorRow {
     /// The case.
     pub case: String,
     /// The source whose error this is.
-    pub method: String,
+    pub method: Source,
     /// `block`, `roller`, or [`CONTACT`] for the pressure.
     pub body: String,
     /// The curve or pressure line.
     pub curve: String,
-    /// A [`Quantity`]'s name or `pressure`.
-    pub quantity: String,
-    /// Excluded distance from the roller's edge (C).
+    /// What is compared.
+    #[serde(rename = "quantity")]
+    pub variable: Variable,
+    /// Excluded distance from an edge (C).
     pub excluded_c: f64,
     /// Number of points compared.
     pub points: usize,
@@ -74,6 +76,17 @@ pub struct ErrorRow {
     pub ref_error_max: Option<f64>,
     /// RMS of the reference's own error over the same points (p0), where it states one.
     pub ref_error_rms: Option<f64>,
+}
+
+impl ErrorRow {
+    /// The error in a measure (p0).
+    pub fn measured(&self, measure: Measure) -> f64 {
+        match measure {
+            Measure::Max => self.max,
+            Measure::Rms => self.rms,
+            Measure::L1 => self.l1,
+        }
+    }
 }
 
 /// Measures of a difference over a range.
@@ -163,7 +176,7 @@ fn matching(reference: &[[f64; 3]], at: &[[f64; 3]], what: &str) -> Result<Vec<u
 struct Pair<'a> {
     body: &'a str,
     curve: &'a str,
-    quantity: &'a str,
+    variable: Variable,
     excluded_c: f64,
     at: &'a [[f64; 3]],
     value: &'a [f64],
@@ -172,7 +185,7 @@ struct Pair<'a> {
 }
 
 impl Pair<'_> {
-    fn row(&self, case: &str, method: &str, ends: [f64; 2]) -> Option<ErrorRow> {
+    fn row(&self, case: &str, method: &Source, ends: [f64; 2]) -> Option<ErrorRow> {
         let away = |at: &[f64; 3]| away_from_edges(*at, ends, self.excluded_c);
         let kept: Vec<bool> = self.at.iter().map(away).collect();
         let w = match self.curve {
@@ -186,10 +199,10 @@ impl Pair<'_> {
         let (peak_here, peak_there) = (peak(self.value, &kept), peak(self.reference, &kept));
         Some(ErrorRow {
             case: case.to_string(),
-            method: method.to_string(),
+            method: method.clone(),
             body: self.body.to_string(),
             curve: self.curve.to_string(),
-            quantity: self.quantity.to_string(),
+            variable: self.variable,
             excluded_c: self.excluded_c,
             points: m.points,
             max: m.max,
@@ -233,14 +246,14 @@ pub fn compare(
             let pair = Pair {
                 body: CONTACT,
                 curve: &line.name,
-                quantity: "pressure",
+                variable: Variable::Pressure,
                 excluded_c,
                 at: &at,
                 value: &value,
                 reference: &line.p,
                 own_error: line.own_error.clone(),
             };
-            rows.extend(pair.row(case, source.name(), ends));
+            rows.extend(pair.row(case, source, ends));
         }
     }
     for curve in &reference.stress {
@@ -256,14 +269,14 @@ pub fn compare(
             let pair = Pair {
                 body: curve.body.name(),
                 curve: &curve.name,
-                quantity: quantity.name(),
+                variable: Variable::Stress(quantity),
                 excluded_c: range.stress_c,
                 at: &curve.at,
                 value: &value,
                 reference: &truth,
                 own_error: curve.own_error.as_ref().map(|e| e.iter().map(|v| v[k]).collect()),
             };
-            rows.extend(pair.row(case, source.name(), ends));
+            rows.extend(pair.row(case, source, ends));
         }
     }
     Ok(rows)
@@ -339,8 +352,8 @@ pub fn summarise(rows: &[ErrorRow], range: &Range) -> Option<ErrorSummary> {
         let mean = chosen.iter().map(|r| r.rms * r.rms).sum::<f64>() / chosen.len() as f64;
         Some([max, mean.sqrt()])
     };
-    let is_component = |r: &ErrorRow| r.quantity.starts_with("sigma_");
-    let is_pressure = |r: &ErrorRow| r.quantity == "pressure";
+    let is_component = |r: &ErrorRow| r.variable.is_component();
+    let is_pressure = |r: &ErrorRow| r.variable == Variable::Pressure;
     let own = |select: &dyn Fn(&ErrorRow) -> bool| {
         rows.iter().filter(|r| select(r)).filter_map(|r| r.ref_error_max).reduce(f64::max)
     };
@@ -352,7 +365,7 @@ pub fn summarise(rows: &[ErrorRow], range: &Range) -> Option<ErrorSummary> {
             .collect::<Option<_>>()?,
         quantities: Quantity::ALL
             .iter()
-            .map(|q| both(&|r| r.quantity == q.name()))
+            .map(|q| both(&|r| r.variable == Variable::Stress(*q)))
             .collect::<Option<_>>()?,
         stress: both(&is_component)?,
         ref_error_pressure: own(&is_pressure),
@@ -371,7 +384,7 @@ mod tests {
 
     const ENDS: [f64; 2] = [-5.0, 5.0];
 
-    /// A depth curve under the roller's end with sigma_xx = f(z) and a pressure line p = g(y).
+    /// A depth curve under the overlap's end with sigma_xx = f(z) and a pressure line p = g(y).
     fn sampled(f: impl Fn(f64) -> f64, g: impl Fn(f64) -> f64) -> Curves {
         let z = [0.0, 0.05, 0.1, 0.3, 0.7, 1.5];
         let y = [0.0, 3.0, 4.5, 4.8, 4.9, 4.95, 5.0];
@@ -409,7 +422,7 @@ mod tests {
             |y| if y > 4.91 { 50.0 } else { 1.0 - 0.01 * y },
         );
         let rows = compare("c", ENDS, &reference, (&mirror(), &other), &Range::default()).unwrap();
-        let xx = rows.iter().find(|r| r.quantity == "sigma_xx").unwrap();
+        let xx = rows.iter().find(|r| r.variable == Variable::Stress(Quantity::Stress(0))).unwrap();
         assert_eq!((xx.points, xx.excluded_c), (4, 0.1));
         assert_eq!((xx.max, xx.max_at), (1.5, [0.0, 5.0, 1.5]));
         // Trapezoid of z and z^2 over 0.1, 0.3, 0.7, 1.5.
@@ -417,7 +430,7 @@ mod tests {
         let square = 0.2 * 0.05 + 0.4 * 0.29 + 0.8 * 1.37;
         assert_relative_eq!(xx.rms, (square / 1.4f64).sqrt(), epsilon = 1e-14);
         assert_eq!(xx.ref_error_max, None);
-        let p: Vec<_> = rows.iter().filter(|r| r.quantity == "pressure").collect();
+        let p: Vec<_> = rows.iter().filter(|r| r.variable == Variable::Pressure).collect();
         assert_eq!((p.len(), p[0].points, p[1].points), (2, 5, 4));
         assert_relative_eq!(p[0].max, 0.049, epsilon = 1e-14);
         assert_eq!(p[1].max_at, [0.0, 4.8, 0.0]);

@@ -12,6 +12,7 @@ pub mod factorial;
 pub mod gate;
 mod groups;
 pub mod live;
+pub mod measure;
 mod models;
 pub mod optimum;
 mod published;

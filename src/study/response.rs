@@ -1,14 +1,16 @@
 //! The responses: numbers of a case and model whose dependence on the factors is analysed.
 
-use super::run::{CaseRun, MethodResult, MethodRun};
+use super::measure::{Measure, Of};
+use super::run::{CaseRun, MethodDetails, MethodResult, MethodRun};
 use super::timing::Ratio;
-use crate::stress::Quantity;
+use crate::solve::edge::EdgeStrength;
+use crate::stress::{Quantity, Variable};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de};
 
 /// A number of a case and model whose dependence on the factors is analysed. Files hold its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// An error of a quantity in a measure.
+    /// The largest or the RMS error of something.
     Error(Of, Measure),
     /// Error of the largest von Mises stress (p0).
     CriticalValue,
@@ -25,7 +27,7 @@ pub enum Response {
 pub enum Found {
     /// Pressure at the centre (Pa).
     CentrePressure,
-    /// Largest pressure (Pa).
+    /// Largest pressure (Pa): the largest mean of a cell.
     LargestPressure,
     /// Largest von Mises stress outside the range left out (Pa).
     CriticalStress,
@@ -47,7 +49,8 @@ impl Found {
         }
     }
 
-    fn of(self, result: &MethodResult) -> Option<f64> {
+    /// Its value in SI units; none where all stresses were left out.
+    pub fn of(self, result: &MethodResult) -> Option<f64> {
         let summary = &result.solution.summary;
         Some(match self {
             Self::CentrePressure => summary.p_centre_pa,
@@ -58,68 +61,41 @@ impl Found {
     }
 }
 
-/// The quantity of an error.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
-    /// The contact pressure.
-    Pressure,
-    /// The six stress components together.
-    Stress,
-    /// One quantity.
-    Quantity(Quantity),
-}
-
-/// The measure of an error over curves.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Measure {
-    /// Root mean square.
-    Rms,
-    /// The largest magnitude.
-    Max,
-}
+const VON_MISES: Of = Of::Variable(Variable::Stress(Quantity::VonMises));
 
 impl Response {
     /// RMS error of the pressure.
-    pub const PRESSURE_RMS: Self = Self::Error(Of::Pressure, Measure::Rms);
+    pub const PRESSURE_RMS: Self = Self::Error(Of::Variable(Variable::Pressure), Measure::Rms);
     /// Largest error of the pressure.
-    pub const PRESSURE_MAX: Self = Self::Error(Of::Pressure, Measure::Max);
+    pub const PRESSURE_MAX: Self = Self::Error(Of::Variable(Variable::Pressure), Measure::Max);
     /// RMS error of the six stresses.
-    pub const STRESS_RMS: Self = Self::Error(Of::Stress, Measure::Rms);
+    pub const STRESS_RMS: Self = Self::Error(Of::Components, Measure::Rms);
     /// Largest error of the six stresses.
-    pub const STRESS_MAX: Self = Self::Error(Of::Stress, Measure::Max);
+    pub const STRESS_MAX: Self = Self::Error(Of::Components, Measure::Max);
     /// RMS error of the von Mises stress.
-    pub const VON_MISES_RMS: Self = Self::Error(Of::Quantity(Quantity::VonMises), Measure::Rms);
+    pub const VON_MISES_RMS: Self = Self::Error(VON_MISES, Measure::Rms);
     /// Largest error of the von Mises stress.
-    pub const VON_MISES_MAX: Self = Self::Error(Of::Quantity(Quantity::VonMises), Measure::Max);
+    pub const VON_MISES_MAX: Self = Self::Error(VON_MISES, Measure::Max);
 
     /// All that compare a model with FEM, in the order of the files.
-    pub fn all() -> impl Iterator<Item = Self> {
-        let errors = [Of::Pressure, Of::Stress].into_iter();
+    pub fn errors() -> impl Iterator<Item = Self> {
+        let errors = [Of::Variable(Variable::Pressure), Of::Components].into_iter();
         errors
-            .chain(Quantity::ALL.map(Of::Quantity))
+            .chain(Quantity::ALL.map(|of| Of::Variable(Variable::Stress(of))))
             .flat_map(|of| [Measure::Rms, Measure::Max].map(|by| Self::Error(of, by)))
             .chain([Self::CriticalValue, Self::CriticalDepth, Self::Log10Speedup])
     }
 
-    /// [`Response::all`], and the results of the models themselves.
-    pub fn every() -> impl Iterator<Item = Self> {
-        Self::all().chain(Found::ALL.map(Self::Found))
+    /// [`Response::errors`], and the results of the models themselves.
+    pub fn all() -> impl Iterator<Item = Self> {
+        Self::errors().chain(Found::ALL.map(Self::Found))
     }
 
     /// The name used in files, e.g. `von_mises_max`.
     pub fn name(self) -> String {
         match self {
             Self::Error(of, by) => {
-                let of = match of {
-                    Of::Pressure => "pressure",
-                    Of::Stress => "stress",
-                    Of::Quantity(quantity) => quantity.name(),
-                };
-                let by = match by {
-                    Measure::Rms => "rms",
-                    Measure::Max => "max",
-                };
-                format!("{of}_{by}")
+                format!("{}_{}", of.name(), by.name())
             }
             Self::CriticalValue => "critical_value".to_string(),
             Self::CriticalDepth => "critical_depth".to_string(),
@@ -130,7 +106,7 @@ impl Response {
 
     /// The response of this name.
     pub fn from_name(name: &str) -> Option<Self> {
-        Self::every().find(|response| response.name() == name)
+        Self::all().find(|response| response.name() == name)
     }
 
     /// Its unit: `p0`, `C` or `decades`, that of a result in SI.
@@ -151,21 +127,31 @@ impl Response {
             Self::Error(of, by) => {
                 let summary = result.summary.as_ref()?;
                 let [max, rms] = match of {
-                    Of::Pressure => *summary.pressure.first()?,
-                    Of::Stress => summary.stress,
-                    Of::Quantity(quantity) => summary.quantities[quantity.index()],
+                    Of::Variable(Variable::Pressure) => *summary.pressure.first()?,
+                    Of::Components => summary.stress,
+                    Of::Variable(Variable::Stress(of)) => summary.quantities[of.index()],
                 };
-                Some(match by {
-                    Measure::Rms => rms,
-                    Measure::Max => max,
-                })
+                match by {
+                    Measure::Rms => Some(rms),
+                    Measure::Max => Some(max),
+                    Measure::L1 => None,
+                }
             }
             Self::CriticalValue => Some(result.critical?.value - case.reference_critical()?.value),
             Self::CriticalDepth => Some(result.critical?.at[2] - case.reference_critical()?.at[2]),
             Self::Log10Speedup => Some(speedup(case, method)?.value.log10()),
+            // At a singular end it is that of the cells alone.
+            Self::Found(Found::LargestPressure) if has_singular_end(result) => None,
             Self::Found(found) => found.of(result),
         }
     }
+}
+
+/// Whether the pressure of a result grows without bound towards an end.
+fn has_singular_end(result: &MethodResult) -> bool {
+    let MethodDetails::Line(details) = &result.solution.summary.details else { return false };
+    let ends = details.edge.iter().chain(&details.edge_neg);
+    ends.into_iter().any(|edge| matches!(edge, EdgeStrength::Singular { .. }))
 }
 
 impl Serialize for Response {
@@ -200,7 +186,7 @@ mod tests {
 
     #[test]
     fn names_are_those_of_the_files_and_lead_back() {
-        let names: Vec<String> = Response::all().map(Response::name).collect();
+        let names: Vec<String> = Response::errors().map(Response::name).collect();
         assert_eq!(names.len(), 23);
         assert_eq!(
             names[..5],
@@ -210,7 +196,7 @@ mod tests {
             names[19..],
             ["tau_max_max", "critical_value", "critical_depth", "log10_speedup"]
         );
-        for response in Response::every() {
+        for response in Response::all() {
             assert_eq!(Response::from_name(&response.name()), Some(response));
         }
         assert_eq!(Response::from_name("stress_l1"), None);

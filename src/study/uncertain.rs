@@ -12,7 +12,7 @@ use crate::base::{BodyKind, Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Draft, Form, KEYS, Key};
 use crate::solve::{Options, SolvedCase};
-use crate::stress::{Curves, EDGE, Quantity, away_from_edges};
+use crate::stress::{Curves, EDGE, Quantity, Variable, away_from_edges};
 use rayon::prelude::*;
 use statrs::distribution::{ContinuousCDF, Normal};
 
@@ -131,8 +131,8 @@ pub struct Place {
     pub curve: String,
     /// The point (m).
     pub at_m: [f64; 3],
-    /// The stress; none for the contact pressure.
-    pub quantity: Option<Quantity>,
+    /// What it is.
+    pub variable: Variable,
 }
 
 /// The spreads of a solution (SI units).
@@ -236,7 +236,7 @@ fn places(nominal: &Curves) -> Vec<Place> {
             body: None,
             curve: line.name.clone(),
             at_m: [x * c_m, y * c_m, 0.0],
-            quantity: None,
+            variable: Variable::Pressure,
         })
     });
     let curves = nominal.stress.iter().flat_map(|curve| {
@@ -245,7 +245,7 @@ fn places(nominal: &Curves) -> Vec<Place> {
                 body: Some(curve.body),
                 curve: curve.name.clone(),
                 at_m: at.map(|v| v * c_m),
-                quantity: Some(quantity),
+                variable: Variable::Stress(quantity),
             })
         })
     });
@@ -352,7 +352,7 @@ mod tests {
         assert_ne!(points, latin_hypercube(3, 50, 8));
     }
 
-    /// Of a longer block, whose most stressed point lies at the roller's end.
+    /// Of a longer block, whose most stressed point lies at the overlap's end.
     #[test]
     fn the_critical_stress_is_that_of_all_curves() {
         let mut case = case();

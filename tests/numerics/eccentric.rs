@@ -2,8 +2,8 @@
 //! even and odd parts of both bodies.
 
 use crate::common::{apart, scene, small};
-use edgeline::base::{PerBody, StressTensor};
-use edgeline::body::{EdgeModel, Resolution};
+use edgeline::base::{Parity, PerBody, StressTensor};
+use edgeline::body::{Body, EdgeModel, Resolution, Shape};
 use edgeline::solve::{Scene, SceneBody, SolvedScene, Tilt};
 use edgeline::stress::BodyKind;
 use std::f64::consts::PI;
@@ -334,4 +334,66 @@ fn an_offset_is_relative() {
     // The nearer face takes more: both ends are singular, the one with the longer block more so.
     let [near, far] = [one.pressure.at(0.0, -4.9), one.pressure.at(0.0, 4.9)];
     assert!(far > near, "{near} {far}");
+}
+
+/// Bodies shorter than the contact is wide are plates in bending under all long waves: near k = 0
+/// their equations are close to singular at every resolution. The wave k H = 0.0174 is the lowest
+/// of most; Kirchhoff's plate has k times the turn at k = 0, and it grows by about k H.
+#[test]
+fn long_waves_turn_bodies_of_any_length_as_a_plate() {
+    for tolerance in [5e-3, 1e-3, 1e-4] {
+        let resolution = Resolution::for_tolerance(tolerance);
+        for (half, nu) in [(0.5, 0.0), (0.5, 0.3), (0.65, 0.45), (1.0, 0.3), (2.0, 0.0), (9.0, 0.3)]
+        {
+            let (contact, shape) = (resolution.contact_axis(half), Shape { half, nu });
+            let end = EdgeModel::QuarterSpace.end(nu, None);
+            let body = Body::new(&contact, shape, end, (Parity::Odd, false), &resolution);
+            let wave = 0.0174;
+            let lines = nalgebra::DVector::from_column_slice(contact.nodes());
+            let displacement = body.layer(wave / half).compliance * &lines;
+            let rule = contact.nodes().iter().zip(contact.weights());
+            let moment_of = |values: &[f64]| -> f64 {
+                rule.clone().zip(values).map(|((y, weight), value)| 2.0 * weight * y * value).sum()
+            };
+            let moment = moment_of(contact.nodes());
+            let turn = moment_of(displacement.as_slice()) / moment;
+            let ratio = wave / half * turn / moment / shape.turned();
+            println!("{tolerance} {half} {nu}: {ratio:.4}");
+            assert!((ratio - (1.0 + wave)).abs() < 0.03, "{tolerance} {half} {nu}: {ratio}");
+        }
+    }
+}
+
+/// Stresses of eccentric and offset scenes with bodies hardly longer than the contact's half-width,
+/// at coarse tolerances, are those of a finer one.
+#[test]
+fn short_bodies_bend_alike_at_all_tolerances() {
+    for half in [0.55, 0.6, 0.65, 0.8, 1.2] {
+        let at_middle = |tolerance: f64| {
+            offset([half, half], 0.0, 0.2 * half, EdgeModel::QuarterSpace, tolerance)
+        };
+        let beside = |tolerance: f64| {
+            let (by, arm) = (0.6 * half, 0.3 * half);
+            offset([half, half], by, arm, EdgeModel::QuarterSpace, tolerance)
+        };
+        let of = |make: &dyn Fn(f64) -> Scene, tolerance: f64| {
+            let solved = SolvedScene::new(&make(tolerance)).unwrap();
+            let at = |(x, y, z): &(f64, f64, f64)| {
+                stress(&solved, BodyKind::Roller, [*x, y * half, *z]).components()
+            };
+            [(0.5, 0.9, 0.8), (-0.5, -0.7, 0.8), (2.0, 0.5, 2.0)]
+                .iter()
+                .flat_map(at)
+                .collect::<Vec<_>>()
+        };
+        for make in [&at_middle as &dyn Fn(f64) -> Scene, &beside] {
+            let fine = of(make, 1e-4);
+            for (tolerance, limit) in [(3e-2, 1.0), (1e-2, 1.0), (5e-3, 1.5), (1e-3, 2.0)] {
+                let own = of(make, tolerance);
+                let worst = own.iter().zip(&fine).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+                println!("{half} {tolerance}: {:.2} tolerances", worst / tolerance);
+                assert!(worst < limit * tolerance, "{half} {tolerance}: {worst}");
+            }
+        }
+    }
 }

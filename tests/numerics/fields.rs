@@ -3,7 +3,7 @@
 
 use crate::common::{apart, at, free_ends, half_of, near, scene, small, solved, table, worse};
 use edgeline::base::{Material, Panels, Parity, StressTensor};
-use edgeline::body::{EdgeModel, Resolution, Shape, Stack};
+use edgeline::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape, Stack};
 use edgeline::case::{Case, Factors};
 use edgeline::kernels::hertz;
 use edgeline::solve::{Options, Point, Scene, SolvedScene, Tilt, solve};
@@ -46,11 +46,14 @@ fn field_of(amplitude: impl Fn(f64) -> f64) -> impl Fn([f64; 3]) -> StressTensor
     let wavenumbers = resolution.wavenumbers(4.0, Parity::Even);
     let axis = resolution.contact_axis(3.0);
     let stack = Stack::new(
-        &axis,
-        (true, false),
-        (0.0, Shape { half: 4.0, nu: 0.3 }),
-        EdgeModel::QuarterSpace.end(0.3, None),
-        (&resolution, wavenumbers.coarse()),
+        LoadedLine { axis: &axis, symmetric: true, slides: false },
+        Placed {
+            middle: 0.0,
+            shape: Shape { half: 4.0, nu: 0.3 },
+            end: EdgeModel::QuarterSpace.end(0.3, None),
+        },
+        &resolution,
+        wavenumbers.coarse(),
     );
     let amplitudes = axis.nodes().iter().map(|&y| vec![amplitude(y)]).collect();
     let pressure = Pressure::new(axis.clone(), true, vec![1.0; axis.len()], amplitudes);

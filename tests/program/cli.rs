@@ -672,7 +672,7 @@ fn uncertain_inputs_leave_bands() {
     assert!(table.iter().all(|r| number(r, "low_pa") <= number(r, "high_pa")));
     let plot = text("a", "plot-uncertainty.svg");
     let origin = concat!("flush-short, quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
-    assert!(plot.contains("two standard deviations") && plot.contains(origin), "{origin}");
+    assert!(plot.contains("95 % of the samples") && plot.contains(origin), "{origin}");
     let said =
         refused(folder.path(), &["solve", "flush-short", "--uncertain", "lod_n=5%", "--out", "d"]);
     assert!(said.contains("lod_n") && !folder.path().join("d").exists(), "{said}");

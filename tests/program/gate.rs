@@ -7,6 +7,7 @@ use edgeline::case::{Case, Sliding, Study};
 use edgeline::fem;
 use edgeline::solve::{Options, Solution, solve_group};
 use edgeline::study::gate::{self, Baseline, GateOutcome};
+use edgeline::study::measure::Measure;
 use edgeline::study::{Engine, Models, Range, Solver, StudyRun, StudySetup, reference, run};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -94,7 +95,7 @@ fn a_wrong_sign_of_any_component_on_any_curve_is_named() {
     let case = Study::parse(&one, Path::new("small.toml")).unwrap().corners.remove(0);
     let right = solve_group(&[case], &Options::new(EdgeModel::QuarterSpace)).remove(0).unwrap();
     let gates = gate::Gates::built_in().unwrap();
-    let widest = gates.gate.iter().filter(|g| g.measure.as_deref() == Some("rms"));
+    let widest = gates.gate.iter().filter(|g| g.measure == Some(Measure::Rms));
     let widest = widest.map(|g| g.limit).fold(0.0, f64::max);
     let (mut named, mut small) = (0, 0);
     for (at, curve) in right.curves.stress.iter().enumerate() {

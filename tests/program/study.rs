@@ -171,3 +171,31 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         assert!(done.stdout.is_empty(), "{arguments:?}");
     }
 }
+
+/// The block of this case ends before the roller at +y and beyond it at -y: both ends of the
+/// contact are drawn, where they are.
+#[test]
+fn plots_of_a_contact_that_is_not_symmetric_show_both_ends() {
+    let folder = tempfile::tempdir().unwrap();
+    let case = "name = \"offset\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n[block]\n\
+                young_pa = 210e9\npoisson = 0.3\n[dimensionless]\nW = 5e-4\nS_l = 5.0\nL_r = 1.0\n\
+                [pose]\noffset_m = -0.5e-3\n";
+    std::fs::write(folder.path().join("offset.toml"), case).unwrap();
+    let study = folder.path().join("study.toml");
+    std::fs::write(&study, "name = \"study\"\ncases = [\"offset.toml\"]\n").unwrap();
+    let arguments =
+        ["study", "study.toml", "--methods", "quarter-space", "--repeats", "0", "--out", "run"];
+    let done = edgeline(folder.path(), &arguments).output().unwrap();
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let plot = |name: &str| text(&folder.path().join(format!("run/plots/offset-{name}.svg")));
+    let pressure = plot("pressure");
+    for title in ["2 C beside the −y end", "2 C beside the +y end"] {
+        assert!(pressure.contains(title), "{title}");
+    }
+    assert!(plot("depth-block").contains("−y end") && plot("surface-roller").contains("−4"));
+    let summary: serde_json::Value =
+        serde_json::from_str(&text(&folder.path().join("run/summary.json"))).unwrap();
+    let of = |end: usize| summary["cases"][0]["overlap_m"][end].as_f64().unwrap();
+    let c_m = summary["cases"][0]["hertz"]["c_m"].as_f64().unwrap();
+    assert!((of(0) + 5.0 * c_m).abs() < 1e-12 && (of(1) - 5.0 * c_m + 0.5e-3).abs() < 1e-12);
+}

@@ -1,8 +1,8 @@
 //! One plot for each curve of a file: its points, and all sources on them.
 
 use crate::report::draw::{Figure, Panel, Series, look};
-use crate::report::plots::Shown;
-use crate::stress::{Curves, PressureLine, Quantity, StressCurve, away_from_edges};
+use crate::report::plots::in_p0;
+use crate::stress::{Curves, PressureLine, Quantity, StressCurve, Variable, away_from_edges};
 use crate::study::Source;
 use crate::study::errors::POINTS;
 
@@ -63,22 +63,20 @@ impl Plots<'_> {
         at: &[[f64; 3]],
         values: Vec<f64>,
         curve: &str,
-        band: Option<Vec<f64>>,
+        errors: Option<Vec<f64>>,
     ) -> Series {
         let axis = running(at);
-        let name = match &band {
+        let name = match &errors {
             Some(_) => format!("{} (band: the error it states)", source.title()),
             None => source.title().to_string(),
         };
-        Series {
-            name,
-            look: look(source),
+        let points = at.iter().zip(values).map(|(p, v)| (p[axis], v)).collect();
+        let series = Series {
             beyond: at.iter().map(|p| !away_from_edges(*p, self.ends, self.excluded)).collect(),
-            points: at.iter().zip(values).map(|(p, v)| (p[axis], v)).collect(),
             line: !source.is_engine() && curve != POINTS,
-            markers: true,
-            band,
-        }
+            ..Series::marks(&name, look(source), points)
+        };
+        series.within(errors)
     }
 
     fn panel(&self, title: String, y_label: String, at: &[[f64; 3]], series: Vec<Series>) -> Panel {
@@ -106,7 +104,7 @@ impl Plots<'_> {
             Some(self.series(source, &at, line.p.clone(), name, line.own_error.clone()))
         });
         let place = Self::place(&at);
-        let panel = self.panel(place, Shown::Pressure.symbol(), &at, series.collect());
+        let panel = self.panel(place, in_p0(Variable::Pressure), &at, series.collect());
         Figure {
             title: format!("{}: contact pressure, {name}", self.name),
             columns: 1,
@@ -130,7 +128,7 @@ impl Plots<'_> {
                     curve.own_error.as_ref().map(|e| e.iter().map(|v| v[q.index()]).collect());
                 Some(self.series(source, &own.at, values, &own.name, band))
             });
-            let symbol = Shown::Stress(q).symbol();
+            let symbol = in_p0(Variable::Stress(q));
             self.panel(symbol.clone(), symbol, &own.at, series.collect())
         });
         let place = Self::place(&own.at);

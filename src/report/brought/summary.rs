@@ -1,6 +1,7 @@
 //! A file of curves and what it was compared with, in numbers.
 
 use crate::base::number::fixed;
+use crate::stress::{Quantity, Variable};
 use crate::study::brought::{FileRun, OnPoints};
 use crate::study::{ErrorRow, Range, Source};
 use serde::{Deserialize, Serialize};
@@ -62,14 +63,15 @@ impl FileSummary {
     pub fn of(run: &FileRun, range: &Range) -> Self {
         let file = &run.file;
         let errors = run.sources.iter().map(|OnPoints { source, .. }| {
-            let own: Vec<&ErrorRow> =
-                run.errors.iter().filter(|r| r.method == source.name()).collect();
+            let own: Vec<&ErrorRow> = run.errors.iter().filter(|r| r.method == *source).collect();
             let first = range.pressure_c.first().copied();
             SourceErrors {
                 source: source.clone(),
-                pressure: worst(&own, |r| r.quantity == "pressure" && Some(r.excluded_c) == first),
-                stress: worst(&own, |r| r.quantity.starts_with("sigma_")),
-                von_mises: worst(&own, |r| r.quantity == "von_mises"),
+                pressure: worst(&own, |r| {
+                    r.variable == Variable::Pressure && Some(r.excluded_c) == first
+                }),
+                stress: worst(&own, |r| r.variable.is_component()),
+                von_mises: worst(&own, |r| r.variable == Variable::Stress(Quantity::VonMises)),
             }
         });
         Self {

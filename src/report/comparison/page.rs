@@ -4,7 +4,8 @@ use super::summary::Summary;
 use crate::base::Result;
 use crate::report::draw::Figure;
 use crate::report::page::fill;
-use crate::study::brought::Comparison;
+use crate::study::Source;
+use crate::study::brought::{Comparison, GATED};
 use minijinja::context;
 use serde_json::{Value, json};
 
@@ -54,18 +55,18 @@ fn curves(comparison: &Comparison) -> Vec<Value> {
             run.file.curves.stress.iter().map(|c| (c.body.name(), c.name.as_str(), c.at.len()));
         for (body, curve, points) in lines.chain(stress) {
             let own = run.errors.iter().filter(|r| r.body == body && r.curve == curve);
-            let of = |method: &str| {
-                let rows = own.clone().filter(move |r| r.method == method);
+            let of = |source: &Source| {
+                let rows = own.clone().filter(move |r| r.method == *source);
                 rows.map(|r| r.max).max_by(f64::total_cmp)
             };
             let errors: Vec<Value> = run
                 .sources
                 .iter()
-                .map(|on| json!({ "source": on.source.title(), "max": of(on.source.name()) }))
+                .map(|on| json!({ "source": on.source.title(), "max": of(&on.source) }))
                 .collect();
             let worst = own
                 .clone()
-                .filter(|r| r.method == "quarter-space")
+                .filter(|r| r.method == GATED.into())
                 .max_by(|a, b| a.max.total_cmp(&b.max));
             all.push(json!({
                 "reference": run.file.name,
@@ -74,7 +75,7 @@ fn curves(comparison: &Comparison) -> Vec<Value> {
                 "points": points,
                 "errors": errors,
                 "largest": worst.map(|r| r.max),
-                "quantity": worst.map(|r| r.quantity.clone()),
+                "quantity": worst.map(|r| r.variable),
                 "at": worst.map(|r| r.max_at),
             }));
         }

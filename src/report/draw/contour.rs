@@ -20,6 +20,8 @@ pub struct Map {
     pub down: bool,
     /// Values; the first axis runs fastest. What is not finite leaves a gap.
     pub values: Vec<f64>,
+    /// Largest value that counts: what exceeds it has its colour, and is not marked as the maximum.
+    pub limit: f64,
 }
 
 /// The scalar's largest value and its place.
@@ -82,7 +84,8 @@ fn above(polygon: &[Corner], level: f64) -> Vec<Corner> {
 impl Map {
     /// The scalar's largest value on the grid. `None` where no value is finite.
     pub fn maximum(&self) -> Option<Maximum> {
-        let finite = self.values.iter().enumerate().filter(|(_, v)| v.is_finite());
+        let counts = |v: f64| v.is_finite() && v <= self.limit;
+        let finite = self.values.iter().enumerate().filter(|(_, v)| counts(**v));
         let (i, &value) = finite.max_by(|a, b| a.1.total_cmp(b.1))?;
         let n = self.axes[0].len();
         Some(Maximum { at: [self.axes[0][i % n], self.axes[1][i / n]], value })
@@ -91,7 +94,7 @@ impl Map {
     /// The limits of the bands, ascending: round numbers from the scalar's least value or below to
     /// its largest or above.
     pub fn levels(&self) -> Vec<f64> {
-        let (low, high) = extent(self.values.iter().copied());
+        let (low, high) = extent(self.values.iter().map(|v| v.min(self.limit)));
         // A scalar that is the same everywhere but for rounding is one band.
         let step = round_step(((high - low) / BANDS).max(1e-6 * high.abs().max(1e-12)));
         let first = (low / step + 1e-9).floor() as i64;
@@ -189,7 +192,13 @@ mod tests {
         let z: Vec<f64> = (0..=10).map(|i| f64::from(i) * 0.2).collect();
         let height = |x: f64, z: f64| (-x * x - (z - 0.8).powi(2)).exp();
         let values = z.iter().flat_map(|z| x.iter().map(move |x| height(*x, *z)));
-        Map { label: "height".into(), values: values.collect(), axes: [x, z], down: true }
+        Map {
+            label: "height".into(),
+            values: values.collect(),
+            axes: [x, z],
+            down: true,
+            limit: f64::INFINITY,
+        }
     }
 
     /// Twice the area within a ring, positive or negative by its direction.
@@ -230,7 +239,13 @@ mod tests {
         // one.
         let axis: Vec<f64> = (0..60).map(f64::from).collect();
         let values = (0..3600u64).map(|i| ((i * i * 7919 + i * 104_729) % 1000) as f64).collect();
-        let map = Map { label: String::new(), axes: [axis.clone(), axis], down: false, values };
+        let map = Map {
+            label: String::new(),
+            axes: [axis.clone(), axis],
+            down: false,
+            values,
+            limit: f64::INFINITY,
+        };
         let rings = map.rings_above(500.0, |x, y| (0.17 * x, 0.17 * y));
         assert!(rings.len() > 20);
         for ring in rings {

@@ -75,7 +75,7 @@ impl Figure {
         let series = self.panels.iter().flat_map(|p| &p.series);
         let series =
             series.filter(|s| !s.points.is_empty()).map(|s| (s.name.as_str(), Sample::Series(s)));
-        let shades = self.panels.iter().filter_map(|p| p.shade.as_ref());
+        let shades = self.panels.iter().flat_map(|p| &p.shades);
         let shades = shades.map(|s| (s.name.as_str(), Sample::Shade));
         let mut all: Vec<(&str, Sample, Point)> = Vec::new();
         let (mut x, mut y) = (LEGEND_LEFT, LEGEND_TOP);
@@ -161,7 +161,8 @@ mod tests {
         let axis: Vec<f64> = (0..=10).map(|i| 0.2 * f64::from(i)).collect();
         let values = axis.iter().flat_map(|z| axis.iter().map(move |y| (y - z * z).exp()));
         let (values, axes) = (values.collect(), [axis.clone(), axis.clone()]);
-        let map = Map { label: "height (m)".into(), axes, down: true, values };
+        let map =
+            Map { label: "height (m)".into(), axes, down: true, values, limit: f64::INFINITY };
         let (x_label, y_label) = ("y / C".to_string(), "z / C".to_string());
         let panel = Panel { map: Some(map), x_label, y_label, ..Default::default() };
         let figure = Figure {

@@ -92,8 +92,8 @@ pub struct Series {
     pub line: bool,
     /// Whether points are marked.
     pub markers: bool,
-    /// Half-height of a band around the points.
-    pub band: Option<Vec<f64>>,
+    /// Where a band begins and ends at each point, in values of y.
+    pub band: Option<Vec<[f64; 2]>>,
     /// Points that the axes need not make room for, such as those at a singular edge.
     pub beyond: Vec<bool>,
 }
@@ -110,10 +110,19 @@ impl Series {
         Self { line: true, ..Self::marks(name, look, points) }
     }
 
-    /// Height of the band at a point, from and to; the point's own where there is no band.
+    /// The same with a band of these half-heights around the points.
+    #[must_use]
+    pub fn within(self, errors: Option<Vec<f64>>) -> Self {
+        let around = |(point, error): (&(f64, f64), f64)| [point.1 - error, point.1 + error];
+        let band =
+            errors.map(|errors| self.points.iter().zip(errors).map(around).collect::<Vec<_>>());
+        Self { band, ..self }
+    }
+
+    /// Where the band begins and ends at a point; the point's own value where there is no band.
     pub(super) fn span(&self, i: usize) -> [f64; 2] {
-        let half = self.band.as_ref().and_then(|b| b.get(i)).copied().unwrap_or(0.0);
-        [self.points[i].1 - half, self.points[i].1 + half]
+        let band = self.band.as_ref().and_then(|band| band.get(i));
+        band.copied().unwrap_or([self.points[i].1; 2])
     }
 }
 
@@ -178,8 +187,8 @@ pub struct Panel {
     pub bars: Vec<Bar>,
     /// A scalar as bands of colour below the series, with a colour bar; its limits are the axes'.
     pub map: Option<Map>,
-    /// A range of x that is set off from the rest.
-    pub shade: Option<Shade>,
+    /// Ranges of x that are set off from the rest; those beyond its limits are not drawn.
+    pub shades: Vec<Shade>,
     /// Logarithmic axes x, y.
     pub log: (bool, bool),
     /// Names instead of numbers at x = 0, 1, ...
@@ -254,7 +263,7 @@ mod tests {
         let panel = Panel { series: vec![series.clone()], ..Default::default() };
         let [x, y] = panel.limits();
         assert!(x == (0.0, 2.0) && y.1 < 3.0 && y.0 < 1.0);
-        series.band = Some(vec![5.0, 0.1, 0.1]);
+        let series = series.within(Some(vec![5.0, 0.1, 0.1]));
         let [_, y] = Panel { series: vec![series], ..Default::default() }.limits();
         assert!(y.0 < -4.0 && y.1 > 6.0 && y.1 < 7.0);
     }

@@ -14,6 +14,8 @@ const RIGHT: f64 = 16.0;
 /// Room on the left for the label of the axis, and between numbers and axis.
 const LABEL: f64 = 25.0;
 pub const GAP: f64 = 6.0;
+/// Height of a line of words (pixels).
+const LINE: f64 = 14.0;
 /// Numbers beside each other need more room than numbers above each other.
 const X_NUMBER: f64 = 60.0;
 const Y_NUMBER: f64 = 42.0;
@@ -58,9 +60,13 @@ impl<'a> Plot<'a> {
 
     /// Adds the panel's shapes.
     pub fn draw(&self, picture: &mut Picture) {
-        if let Some(Shade { from, to, .. }) = self.panel.shade {
-            let [a, b] = [from, to].map(|v| self.x.at(v.clamp(self.x.low, self.x.high)));
-            picture.rectangle((a, self.top), (b, self.bottom), shade());
+        for Shade { from, to, .. } in &self.panel.shades {
+            let [from, to] = [from.max(self.x.low), to.min(self.x.high)];
+            if from < to {
+                let corners = [(from, self.top), (to, self.bottom)];
+                let [a, b] = corners.map(|(x, y)| (self.x.at(x), y));
+                picture.rectangle(a, b, shade());
+            }
         }
         self.draw_grid(picture);
         self.draw_words(picture);
@@ -267,16 +273,15 @@ impl<'a> Plot<'a> {
             Rule::Horizontal(v, text) => {
                 let y = sharp(self.y.at(*v));
                 picture.line(vec![(self.left, y), (self.right, y)], style);
-                let at = (self.right - 3.0 - 36.0 * nth, y - 8.0);
-                picture.text(Text::new(&**text, at, Anchor::End));
+                picture.text(Text::new(&**text, self.end_of_level(*v, nth), Anchor::End));
             }
         }
     }
 
     /// Words beside their places: to the right where there is room, and moved up or down where they
-    /// would lie on each other or leave the panel.
+    /// would lie on a point, on each other or outside the panel, with a line to their place.
     fn draw_notes(&self, picture: &mut Picture) {
-        let mut taken: Vec<(f64, f64, f64)> = Vec::new();
+        let mut taken = self.taken();
         for note in &self.panel.notes {
             let at = (self.x.at(note.at.0), self.y.at(note.at.1));
             let width = letters::width(&note.text, TEXT);
@@ -284,18 +289,41 @@ impl<'a> Plot<'a> {
             let from = if right { at.0 + 8.0 } else { at.0 - 8.0 - width };
             let free = |level: f64| {
                 let apart = |&(a, b, l): &(f64, f64, f64)| {
-                    from >= b || a >= from + width || (l - level).abs() >= 14.0
+                    from >= b || a >= from + width || (l - level).abs() >= LINE
                 };
                 (self.top + 7.0..=self.bottom - 7.0).contains(&level) && taken.iter().all(apart)
             };
-            let steps = (0..20).map(|step| 14.0 * f64::from(step));
+            let steps = (0..40).map(|step| 0.5 * LINE * f64::from(step));
             let mut levels = steps.flat_map(|d| [at.1 - d, at.1 + d]);
             let level = levels.find(|l| free(*l)).unwrap_or(at.1);
             taken.push((from, from + width, level));
             let (x, anchor) =
                 if right { (from, Anchor::Start) } else { (from + width, Anchor::End) };
+            if (level - at.1).abs() > 0.5 * LINE {
+                let away = if right { -2.0 } else { 2.0 };
+                picture.line(vec![at, (x + away, level)], Style::stroked(INK, 0.7).faded(0.6));
+            }
             picture.text(Text::new(&*note.text, (x, level), anchor));
         }
+    }
+
+    /// The places of points and of the words at level lines: from, to, and height.
+    fn taken(&self) -> Vec<(f64, f64, f64)> {
+        let points = self.panel.series.iter().filter(|s| s.markers).flat_map(|s| &s.points);
+        let mark = |p: &(f64, f64)| (self.x.at(p.0) - 5.0, self.x.at(p.0) + 5.0, self.y.at(p.1));
+        let words = self.panel.rules.iter().enumerate().filter_map(|(i, rule)| match rule {
+            Rule::Horizontal(v, text) => {
+                let (x, y) = self.end_of_level(*v, i as f64);
+                Some((x - letters::width(text, TEXT), x, y))
+            }
+            Rule::Vertical(..) => None,
+        });
+        points.map(mark).chain(words).collect()
+    }
+
+    /// Where the word of a level line ends, the `nth` one of the panel.
+    fn end_of_level(&self, v: f64, nth: f64) -> Point {
+        (self.right - 3.0 - 36.0 * nth, sharp(self.y.at(v)) - 8.0)
     }
 }
 

@@ -21,7 +21,7 @@ pub(super) fn tables(files: &StudyFiles) -> Vec<Value> {
 /// itself.
 fn row(row: &StudyRow) -> Value {
     let errors: Map<String, Value> =
-        Response::all().map(|r| (r.name(), json!(row.response(r)))).collect();
+        Response::errors().map(|r| (r.name(), json!(row.response(r)))).collect();
     json!({
         "case": row.case,
         "err": row.err,

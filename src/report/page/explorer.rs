@@ -4,11 +4,11 @@
 use crate::base::HertzScales;
 use crate::base::number::significant;
 use crate::report::brought::{FileCurves, Of, of_case};
-use crate::report::plots::Shown;
+use crate::report::plots::in_p0;
 use crate::report::study_files::StudyFiles;
 use crate::report::study_rows::{CurveRow, OwnErrorRow, PressureRow};
 use crate::report::study_summary::CaseSummary;
-use crate::stress::Quantity;
+use crate::stress::{Quantity, Variable};
 use crate::study::errors::POINTS;
 use crate::study::{CONTACT, Engine, Source};
 use serde::Serialize;
@@ -17,7 +17,7 @@ use serde_json::{Map, Value, json};
 /// The data of the page's script.
 pub(super) fn data(files: &StudyFiles) -> Value {
     let symbols: Map<String, Value> =
-        Shown::all().map(|shown| (shown.name().to_string(), json!(shown.symbol()))).collect();
+        Variable::all().map(|of| (of.name().to_string(), json!(in_p0(of)))).collect();
     let sources = files.sources();
     let brought = files.summary.cases.iter().flat_map(|case| &case.brought);
     let mut brought: Vec<Source> = brought.map(|file| Engine::brought(&file.name).into()).collect();
@@ -32,7 +32,7 @@ pub(super) fn data(files: &StudyFiles) -> Value {
         "references": references.collect::<Vec<_>>(),
         "brought": brought,
         "sources": sources,
-        "quantities": Shown::all().map(Shown::name).collect::<Vec<_>>(),
+        "quantities": Variable::all().map(Variable::name).collect::<Vec<_>>(),
         "symbols": symbols,
         "range": files.summary.range,
     })
@@ -50,7 +50,7 @@ fn case_data(files: &StudyFiles, case: &CaseSummary) -> Value {
     json!({
         "name": name,
         "label": label,
-        "S_l": case.slenderness,
+        "ends": case.overlap().map(five_digits),
         "c_m": case.hertz.c_m,
         "p0_pa": case.hertz.p0_pa,
         "curves": curves(files, case),
@@ -111,7 +111,7 @@ fn curves(files: &StudyFiles, case: &CaseSummary) -> Map<String, Value> {
         let key = format!("{CONTACT}/{}", rows[0].line);
         let curve = entry(&mut all, key, || CurveData::new(points, c_m));
         let p: Vec<f64> = rows.iter().map(|r| in_p0(r.p_pa)).collect();
-        curve.values.insert(rows[0].source.to_string(), json!({ Shown::Pressure.name(): p }));
+        curve.values.insert(rows[0].source.to_string(), json!({ Variable::Pressure.name(): p }));
     }
     let own: Vec<&CurveRow> = files.curves.iter().filter(|r| r.case == case.name).collect();
     let place = |r: &CurveRow| (r.source.clone(), r.body, r.curve.clone());
@@ -130,9 +130,9 @@ fn curves(files: &StudyFiles, case: &CaseSummary) -> Map<String, Value> {
     for row in files.fem_error.iter().filter(is_own) {
         let key = format!("{}/{}", row.body, row.curve);
         let Some((_, curve)) = all.iter_mut().find(|(k, _)| *k == key) else { continue };
-        let stresses = Quantity::ALL.map(|of| (Shown::Stress(of), row.stress(of)));
-        for (shown, error_pa) in stresses.into_iter().chain([(Shown::Pressure, row.pressure_pa)]) {
-            let list = curve.fem_error.entry(shown.name()).or_insert_with(|| json!([]));
+        let stresses = Quantity::ALL.map(|of| (Variable::Stress(of), row.stress(of)));
+        for (of, error_pa) in stresses.into_iter().chain([(Variable::Pressure, row.pressure_pa)]) {
+            let list = curve.fem_error.entry(of.name()).or_insert_with(|| json!([]));
             let list = list.as_array_mut().expect("made above");
             list.extend(error_pa.map(|error_pa| json!(in_p0(error_pa))));
         }
@@ -158,7 +158,7 @@ fn brought(file: &FileCurves) -> Vec<(String, CurveData)> {
     let mut all = Vec::new();
     for line in &own.pressure {
         let mut data = new(&line.name, line.at.iter().map(|[x, y]| [*x, *y, 0.0]).collect());
-        let quantity = Shown::Pressure.name();
+        let quantity = Variable::Pressure.name();
         for (source, curves) in &file.all {
             let Some(line) = curves.line(&line.name) else { continue };
             data.values.insert(source.to_string(), json!({ quantity: rounded(line.p.clone()) }));
@@ -216,11 +216,11 @@ fn errors(files: &StudyFiles, name: &str) -> Map<String, Value> {
         .map(|Of { reference, row }| (row, brought_name(reference, &row.curve)));
     for (row, curve) in standard.chain(brought).filter(|(row, _)| row.case == name) {
         let key = format!("{}/{curve}", row.body);
-        let slot = &mut errors.entry(key).or_insert_with(|| json!({}))[&row.quantity];
+        let slot = &mut errors.entry(key).or_insert_with(|| json!({}))[row.variable.name()];
         // Pressure has a row for each range; the first is the one of the summaries.
-        if slot.get(&row.method).is_none() {
+        if slot.get(row.method.name()).is_none() {
             let [max, rms, l1] = [row.max, row.rms, row.l1].map(five_digits);
-            slot[&row.method] = json!({ "max": max, "rms": rms, "l1": l1 });
+            slot[row.method.name()] = json!({ "max": max, "rms": rms, "l1": l1 });
             if let Some(own) = row.ref_error_max {
                 slot["fem_error_max"] = json!(five_digits(own));
             }

@@ -132,7 +132,7 @@
     // unless nothing else is in view.
     const { caseData, curve, key } = chosen();
     const excluded = key.startsWith("contact") ? data.range.pressure_c[0] : data.range.stress_c;
-    const near = curve.points.map((p) => Math.hypot(Math.abs(p[1]) - caseData.S_l, p[2]) < excluded * (1 - 1e-6));
+    const near = curve.points.map((p) => caseData.ends.some((end) => Math.hypot(p[1] - end, p[2]) < excluded * (1 - 1e-6)));
     const counted = visible.filter((i) => !near[i]);
     for (const s of d.series) {
       for (const i of counted.length > 1 ? counted : visible) {

@@ -22,7 +22,7 @@ const CAVEATS: [&str; 5] = [
      that we have.",
     "The stress correction of guilbault is a reconstruction: the formula of its transition factor \
      is not in the text that we have.",
-    "For L_r < 1 the pressure grows without bound towards the roller's edge. Peaks there are those \
+    "For L_r < 1 the pressure grows without bound towards the end of the shorter body. Peaks there are those \
      of a mesh, so the surroundings of the edge are left out and the rest of the curves compared.",
     "The models take both bodies for half-spaces with end faces and the gap for a parabola. A real \
      roller also carries a nearly uniform tension across its diameter of the order of p0 C / (2 R).",

@@ -1,17 +1,27 @@
 //! The plots of one case: pressure and stresses of all sources on the standard curves.
 
-use super::symbol::Shown;
+use super::symbol::in_p0;
 use crate::base::{BodyKind, StressTensor};
 use crate::report::brought::{FileCurves, Plots, of_case, plain};
 use crate::report::draw::{Figure, Panel, Series, Shade, look};
 use crate::report::study_files::StudyFiles;
 use crate::report::study_summary::CaseSummary;
-use crate::stress::{Quantity, away_from_edge};
+use crate::stress::{Quantity, Variable, away_from_edges};
 use crate::study::{CONTACT, Source};
 
-/// Length of the surface that is shown before the roller's end (C). On the whole of a long roller
-/// the end would be too narrow to read.
+/// Lengths of the pressure and of the surface that are shown beside an end of the overlap (C). On
+/// the whole of a long contact an end would be too narrow to read.
+const LAST_PRESSURE: f64 = 2.0;
 const LAST: f64 = 5.0;
+
+/// Part of half the overlap by which a point lies beyond its middle if it is not there by rounding.
+const BEYOND_MIDDLE: f64 = 1e-6;
+
+/// The depth curves at the places along the contact, and where these are.
+const DEPTHS: [(&str, &str); 3] =
+    [("depth-centre", "middle"), ("depth-0.9", "0.9 of the half-length"), ("depth-end", "end")];
+const DEPTHS_BEHIND: [(&str, &str); 2] =
+    [("depth-0.9-neg", "0.9 at the −y end"), ("depth-end-neg", "−y end")];
 
 /// A curve of a case and what it shows.
 #[derive(Clone, Copy)]
@@ -105,70 +115,91 @@ impl<'a> CasePlots<'a> {
                 false => ("", None),
             };
             let name = format!("{}{whose}", source.title());
-            let half = self.case.slenderness;
-            let beyond = points.iter().map(|(at, _)| !away_from_edge(*at, half, self.excluded()));
-            (!points.is_empty()).then(|| Series {
-                name,
-                look: look(source),
+            let ends = self.case.overlap();
+            let beyond = points.iter().map(|(at, _)| !away_from_edges(*at, ends, self.excluded()));
+            let series = || Series {
                 beyond: beyond.collect(),
-                points: points.iter().map(|(at, value)| (at[axis as usize], *value)).collect(),
                 line: !source.is_engine(),
-                markers: true,
-                band: own_errors,
-            })
+                ..Series::marks(
+                    &name,
+                    look(source),
+                    points.iter().map(|(at, value)| (at[axis as usize], *value)).collect(),
+                )
+            };
+            (!points.is_empty()).then(|| series().within(own_errors))
         };
         self.sources().into_iter().filter_map(series).collect()
     }
 
-    /// Up to this distance from the roller's edge nothing is compared (C).
+    /// Up to this distance from an edge nothing is compared (C).
     fn excluded(&self) -> f64 {
         self.files.summary.range.stress_c
     }
 
     /// The part of an axis that is not compared; the curve meets the edge at its value `edge`.
-    fn shade(&self, edge: f64) -> Option<Shade> {
+    fn shade(&self, edge: f64) -> Shade {
         let (from, to) = (edge - self.excluded(), edge + self.excluded());
-        Some(Shade { from, to, name: "not compared: singular edge".to_string() })
+        Shade { from, to, name: "not compared: singular edge".to_string() }
     }
 
-    /// The last `length` of the y axis (C).
-    fn before_the_end(&self, length: f64) -> Option<(f64, f64)> {
-        let half = self.case.slenderness;
-        Some(((half - length).max(0.0), half))
+    /// The parts of an axis along y that are not compared.
+    fn shades_along(&self) -> Vec<Shade> {
+        self.case.overlap().map(|end| self.shade(end)).into()
+    }
+
+    /// Whether the curves go over both halves of the contact, because it is not symmetric.
+    fn is_two_sided(&self) -> bool {
+        let [from, to] = self.case.overlap_m;
+        let least = 0.5 * (from + to) - BEYOND_MIDDLE * (to - from);
+        let mut rows = self.files.pressure.iter().filter(|row| row.case == self.case.name);
+        rows.any(|row| row.line == "along-y" && row.at_m[1] < least)
+    }
+
+    /// Ranges of y (C) of this `length` beside the ends that the curves go to, and what they are
+    /// called; the whole line where they would cover it.
+    fn beside_ends(&self, length: f64) -> Vec<(f64, f64, &'static str)> {
+        let [from, to] = self.case.overlap();
+        if !self.is_two_sided() {
+            return vec![((0.5 * (from + to)).max(to - length), to, "end")];
+        }
+        if to - from <= 2.0 * length {
+            return vec![(from, to, "both ends")];
+        }
+        vec![(from, from + length, "−y end"), (to - length, to, "+y end")]
     }
 
     fn pressure(&self) -> Figure {
         let panel = |title: &str, line: &str, axis: Axis| Panel {
             title: title.to_string(),
             x_label: axis.label().to_string(),
-            y_label: Shown::Pressure.symbol(),
+            y_label: in_p0(Variable::Pressure),
             series: self.series(Curve::Pressure(line), axis),
             ..Default::default()
         };
-        let along = |title: &str, length: f64| Panel {
-            shade: self.shade(self.case.slenderness),
-            x_range: self.before_the_end(length),
-            ..panel(title, "along-y", Axis::Y)
-        };
+        let along =
+            |title: &str| Panel { shades: self.shades_along(), ..panel(title, "along-y", Axis::Y) };
+        let ends = self.beside_ends(LAST_PRESSURE).into_iter().map(|(from, to, place)| Panel {
+            x_range: Some((from, to)),
+            ..along(&format!("{LAST_PRESSURE} C beside the {place}"))
+        });
+        let mut panels = vec![along("along the contact line, x = 0")];
+        panels.extend(ends);
+        panels.push(panel("across the contact, in the middle", "along-x", Axis::X));
         Figure {
             title: format!("{}: contact pressure", self.case.name),
-            columns: 3,
-            panels: vec![
-                along("along the contact line, x = 0", f64::INFINITY),
-                along("last 2 C before the roller's end", 2.0),
-                panel("across the contact, y = 0", "along-x", Axis::X),
-            ],
+            columns: panels.len(),
+            panels,
             panel_size: (380, 330),
         }
     }
 
     /// The curves from files, each on its own points.
     fn brought(&self) -> Vec<(String, Figure)> {
-        let (half, excluded) = (self.case.slenderness, self.excluded());
+        let (ends, excluded) = (self.case.overlap(), self.excluded());
         let of_file = |file: FileCurves| {
             let name = &file.summary.name;
             let all = file.all.iter().map(|(source, curves)| (source.clone(), curves)).collect();
-            let plots = Plots { name, all, ends: [-half, half], excluded };
+            let plots = Plots { name, all, ends, excluded };
             let named = |(curve, figure)| (format!("{name}-{curve}"), figure);
             plots.figures().into_iter().map(named).collect::<Vec<_>>()
         };
@@ -185,7 +216,7 @@ impl<'a> CasePlots<'a> {
         Panel {
             title: title.to_string(),
             x_label: axis.label().to_string(),
-            y_label: Shown::Stress(of).symbol(),
+            y_label: in_p0(Variable::Stress(of)),
             series: self.series(Curve::Stress(body, name, of), axis),
             ..Default::default()
         }
@@ -193,40 +224,46 @@ impl<'a> CasePlots<'a> {
 
     fn surface(&self, body: BodyKind) -> Figure {
         let [xx, yy, zz] = ["sigma_xx", "sigma_yy", "sigma_zz"].map(component);
-        let half = self.case.slenderness;
-        let panel = |of: Quantity| Panel {
-            shade: self.shade(half),
-            x_range: self.before_the_end(LAST),
-            ..self.stress(&Shown::Stress(of).symbol(), (body, "surface-along-y"), Axis::Y, of)
+        let shown = self.beside_ends(LAST);
+        let panels = |of: Quantity| {
+            let symbol = in_p0(Variable::Stress(of));
+            let whole = self.stress(&symbol, (body, "surface-along-y"), Axis::Y, of);
+            let panel = |&(from, to, place): &(f64, f64, &str)| Panel {
+                title: if shown.len() > 1 { format!("{symbol}, {place}") } else { symbol.clone() },
+                shades: self.shades_along(),
+                x_range: Some((from, to)),
+                ..whole.clone()
+            };
+            shown.iter().map(panel).collect::<Vec<_>>()
         };
-        let part = if half > LAST { format!(", last {LAST} C") } else { String::new() };
+        let [from, to] = self.case.overlap();
+        let shorter = shown.iter().any(|(a, b, _)| b - a < 0.499 * (to - from));
+        let part = if shorter { format!(", {LAST} C beside the end") } else { String::new() };
         let (case, body) = (&self.case.name, body.name());
+        let all = [xx, yy, zz, Quantity::VonMises, Quantity::TauMax];
         Figure {
             title: format!("{case}: surface of the {body} along y{part} (x = 0, z = 0)"),
-            columns: 3,
-            panels: [xx, yy, zz, Quantity::VonMises, Quantity::TauMax].map(panel).into(),
+            columns: if shown.len() > 1 { 4 } else { 3 },
+            panels: all.into_iter().flat_map(panels).collect(),
             panel_size: (380, 300),
         }
     }
 
     fn depth(&self, body: BodyKind, quantities: &[Quantity], what: &str) -> Figure {
-        let places = [
-            ("depth-centre", "y = 0"),
-            ("depth-0.9", "y = 0.9 L1/2"),
-            ("depth-end", "y = L1/2 (end)"),
-        ];
-        let panels = quantities.iter().flat_map(|&of| {
-            places.iter().map(move |&(curve, place)| {
-                let title = format!("{}, {place}", Shown::Stress(of).symbol());
-                Panel {
-                    shade: if curve == "depth-end" { self.shade(0.0) } else { None },
-                    ..self.stress(&title, (body, curve), Axis::Z, of)
-                }
-            })
-        });
+        let behind = if self.is_two_sided() { &DEPTHS_BEHIND[..] } else { &[] };
+        let places: Vec<_> = DEPTHS.iter().chain(behind).collect();
+        let panel = |of: Quantity, (curve, place): &(&str, &str)| {
+            let title = format!("{}, {place}", in_p0(Variable::Stress(of)));
+            let at_edge = curve.starts_with("depth-end");
+            Panel {
+                shades: at_edge.then(|| self.shade(0.0)).into_iter().collect(),
+                ..self.stress(&title, (body, curve), Axis::Z, of)
+            }
+        };
+        let panels = quantities.iter().flat_map(|&of| places.iter().map(move |p| panel(of, p)));
         Figure {
             title: format!("{}: {what} over depth in the {} (x = 0)", self.case.name, body.name()),
-            columns: 3,
+            columns: places.len(),
             panels: panels.collect(),
             panel_size: (380, 290),
         }

@@ -39,16 +39,29 @@ impl<'a> EffectRows<'a> {
     fn title(&self, row: &EffectRow) -> String {
         match row.term.split(" x ").collect::<Vec<_>>()[..] {
             [main] => factor(self.files, main).0,
-            ref several => {
-                let short = several.iter().map(|name| factor(self.files, name).1);
-                short.collect::<Vec<_>>().join(" × ")
-            }
+            _ => self.short(row),
+        }
+    }
+
+    /// The name of an effect by letters, where the factors have them.
+    fn short(&self, row: &EffectRow) -> String {
+        let short = row.term.split(" x ").map(|name| factor(self.files, name).1);
+        short.collect::<Vec<_>>().join(" × ")
+    }
+
+    /// The unit of the response on a plot, and how many of it are one of the files'.
+    fn plotted(&self) -> (&'static str, f64) {
+        match self.response.unit() {
+            "Pa" => ("MPa", 1e-6),
+            "m" => ("µm", 1e6),
+            unit => (unit, 1.0),
         }
     }
 
     fn half_normal(&self) -> Panel {
-        let points: Vec<(f64, f64)> =
-            self.rows.iter().map(|r| (r.half_normal_quantile, r.effect.abs())).collect();
+        let (unit, scale) = self.plotted();
+        let point = |r: &&EffectRow| (r.half_normal_quantile, scale * r.effect.abs());
+        let points: Vec<(f64, f64)> = self.rows.iter().map(point).collect();
         // Names of those that stand out, and of the largest two in any case: the small ones lie
         // close together and are noise.
         let mut largest: Vec<f64> = points.iter().map(|p| p.1).collect();
@@ -56,17 +69,17 @@ impl<'a> EffectRows<'a> {
         let second = largest.get(1).copied().unwrap_or(0.0);
         let notes = self.rows.iter().zip(&points).filter_map(|(row, &at)| {
             let named = at.1 >= second || row.verdict != Some(Verdict::Noise);
-            named.then(|| Note { at, text: self.title(row) })
+            named.then(|| Note { at, text: self.short(row) })
         });
         Panel {
             title: label(self.response),
             x_label: "half-normal quantile".to_string(),
-            y_label: format!("|effect| ({})", self.response.unit()),
+            y_label: format!("|effect| ({unit})"),
             series: vec![Series::marks("", self.look, points.clone())],
             notes: notes.collect(),
             rules: self
                 .limits()
-                .map(|(v, name)| Rule::Horizontal(v, name))
+                .map(|(v, name)| Rule::Horizontal(scale * v, name))
                 .chain([Rule::Horizontal(0.0, String::new())])
                 .collect(),
             // Fifteen effects reach 2.13; names stand beside the points.
@@ -76,9 +89,10 @@ impl<'a> EffectRows<'a> {
     }
 
     fn pareto(&self) -> Panel {
+        let (unit, scale) = self.plotted();
         let bar = |row: &&EffectRow| Bar {
             name: self.title(row),
-            value: row.effect.abs(),
+            value: scale * row.effect.abs(),
             colour: self.look.colour,
             strong: row.verdict == Some(Verdict::Active),
         };
@@ -86,9 +100,9 @@ impl<'a> EffectRows<'a> {
         bars.sort_by(|a, b| b.value.total_cmp(&a.value));
         Panel {
             title: label(self.response),
-            x_label: format!("|effect| ({}); full: beyond SME", self.response.unit()),
+            x_label: format!("|effect| ({unit}); full: beyond SME"),
             bars,
-            rules: self.limits().map(|(v, name)| Rule::Vertical(v, name)).collect(),
+            rules: self.limits().map(|(v, name)| Rule::Vertical(scale * v, name)).collect(),
             ..Default::default()
         }
     }
@@ -138,7 +152,7 @@ fn interactions(of: &EffectRows) -> Vec<Panel> {
     let mut panels: Vec<Panel> = pairs
         .into_iter()
         .map(|pair| Panel {
-            y_label: format!("mean of the corners ({})", of.response.unit()),
+            y_label: format!("mean of the corners ({})", of.plotted().0),
             ..interaction(&corners, of, pair)
         })
         .collect();
@@ -161,11 +175,12 @@ fn interaction(corners: &[&StudyRow], of: &EffectRows, [a, b]: [&str; 2]) -> Pan
         all.dedup();
         all
     };
+    let (_, scale) = of.plotted();
     let mean = |x: f64, line: f64| -> Option<f64> {
         let at = |row: &StudyRow, factor, level| files.factor(row, factor) == Some(level);
         let here = corners.iter().filter(|row| at(row, a, x) && at(row, b, line));
         let all: Vec<f64> = here.filter_map(|row| row.response(of.response)).collect();
-        (!all.is_empty()).then(|| all.iter().sum::<f64>() / all.len() as f64)
+        (!all.is_empty()).then(|| scale * all.iter().sum::<f64>() / all.len() as f64)
     };
     let colour = of.look.colour;
     let looks = [

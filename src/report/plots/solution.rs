@@ -48,10 +48,12 @@ struct Plots<'a, D> {
 /// The plots of `solution` by the names of their files: pressure, its map, and for each body that
 /// has curves its stresses. `by` names what solved the case.
 pub fn of_solution<D>(case: &Case, by: &str, solution: &Solution<D>) -> Vec<(String, Figure)> {
-    let hertz = solution.curves.hertz;
-    let [block, roller] = BodyKind::ALL.map(|body| case.ends_m(body));
-    let ends = [block[0].max(roller[0]), block[1].min(roller[1])].map(|y| y / hertz.c_m);
-    let plots = Plots { solution, title: format!("{}, {by}", case.name), hertz, ends };
+    let plots = Plots {
+        solution,
+        title: format!("{}, {by}", case.name),
+        hertz: solution.curves.hertz,
+        ends: case.overlap(),
+    };
     let mut figures =
         vec![("pressure".to_string(), plots.pressure()), ("pressure-map".to_string(), plots.map())];
     if let Some(heights) = case.heights() {
@@ -102,7 +104,7 @@ fn profile<D>(case: &Case, title: &str, solution: &Solution<D>) -> Option<Figure
         let points = places(ends[body]).map(|y| (y * MM, drop(body, y) * UM)).collect();
         Some(Series { markers: false, ..Series::curve(BodyKind::ALL[body].name(), look, points) })
     };
-    let both = [ends[0][0].max(ends[1][0]), ends[0][1].min(ends[1][1])];
+    let both = case.overlap_m();
     let middle = 0.5 * (both[0] + both[1]);
     let height = |y: f64| heights.as_ref().map_or(0.0, |heights| heights.at(0.0, y - middle));
     let gap = |y: f64| drop(0, y) + drop(1, y) - height(y) - summary.tilt_rad * y;
@@ -152,10 +154,14 @@ impl<D> Plots<'_, D> {
     }
 
     /// The edges' surroundings on an axis along y.
-    fn shade(&self) -> Option<Shade> {
-        let [from, to] =
-            [self.ends[1] - EDGE, self.ends[1] + EDGE].map(|y| y * self.hertz.c_m * MM);
-        Some(Shade { from, to, name: "within 0.1 C of the edge".into() })
+    fn shades(&self) -> Vec<Shade> {
+        let mm = |y: f64| y * self.hertz.c_m * MM;
+        let shade = |end: f64| Shade {
+            from: mm(end - EDGE),
+            to: mm(end + EDGE),
+            name: "within 0.1 C of an edge".into(),
+        };
+        self.ends.map(shade).into()
     }
 
     /// One curve from its places (C) and values (p0).
@@ -205,7 +211,7 @@ impl<D> Plots<'_, D> {
             title: format!("{}: contact pressure", self.title),
             columns: 3,
             panels: vec![
-                Panel { shade: self.shade(), ..along },
+                Panel { shades: self.shades(), ..along },
                 pressure("Across the contact, in its middle", "along-x", 0, "x (mm)"),
                 load,
             ],
@@ -222,7 +228,8 @@ impl<D> Plots<'_, D> {
         let most = outside.map(|cell| cell.p).fold(0.0, f64::max);
         let capped = cells.iter().any(|cell| cell.p > most);
         let label = if capped { "p (MPa), as far as 0.1 C from the ends" } else { "p (MPa)" };
-        self.map_of("contact pressure", label, |cell| cell.p.min(most) * p0_pa * MPA)
+        let limit = most * p0_pa * MPA;
+        self.map_of("contact pressure", (label, limit), |cell| cell.p * p0_pa * MPA)
     }
 
     /// The heights over the whole contact.
@@ -230,11 +237,16 @@ impl<D> Plots<'_, D> {
         let c_m = self.hertz.c_m;
         let middle = 0.5 * (self.ends[0] + self.ends[1]);
         let height = |cell: &PressureCell| heights.at(cell.x * c_m, (cell.y - middle) * c_m);
-        self.map_of("heights", "height (µm)", |cell| height(cell) * 1e6)
+        self.map_of("heights", ("height (µm)", f64::INFINITY), |cell| height(cell) * 1e6)
     }
 
-    /// A `value` over the whole contact.
-    fn map_of(&self, what: &str, label: &str, value: impl Fn(&PressureCell) -> f64) -> Figure {
+    /// A `value` over the whole contact, with its label and its [`Map::limit`].
+    fn map_of(
+        &self,
+        what: &str,
+        (label, limit): (&str, f64),
+        value: impl Fn(&PressureCell) -> f64,
+    ) -> Figure {
         let c_m = self.hertz.c_m;
         let cells = &self.solution.cells;
         let lines = |of: &dyn Fn(usize) -> f64| {
@@ -253,7 +265,7 @@ impl<D> Plots<'_, D> {
             }
         }
         let axes = [ys, xs].map(|axis| axis.iter().map(|v| v * c_m * MM).collect());
-        let map = Map { label: label.into(), axes, down: false, values };
+        let map = Map { label: label.into(), axes, down: false, values, limit };
         let title = format!("{}: {what}", self.title);
         Figure::of_map(title, ["y (mm)", "x (mm)"], map)
     }
@@ -270,7 +282,7 @@ impl<D> Plots<'_, D> {
                 x_label: ["x (mm)", "y (mm)", "z (mm)"][axis].into(),
                 y_label: format!("{} (MPa)", symbol(of)),
                 series: curves.collect(),
-                shade: if axis == 1 { self.shade() } else { None },
+                shades: if axis == 1 { self.shades() } else { Vec::new() },
                 ..Panel::default()
             }
         };

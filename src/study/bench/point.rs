@@ -2,7 +2,7 @@
 
 use crate::body::EdgeModel;
 use crate::case::Case;
-use crate::stress::Curves;
+use crate::stress::{Curves, Variable};
 use crate::study::case_form::CaseForm;
 use crate::study::errors::{ErrorRow, Range, compare, summarise};
 use crate::study::source::Source;
@@ -36,9 +36,9 @@ impl Deviation {
     pub fn of(rows: &[ErrorRow], range: &Range) -> Option<Self> {
         let summary = summarise(rows, range)?;
         let pressure_c = range.pressure_c.first()?;
-        let counts = |r: &&ErrorRow| match r.quantity.as_str() {
-            "pressure" => r.excluded_c == *pressure_c,
-            quantity => quantity.starts_with("sigma_") && CURVES.contains(&r.curve.as_str()),
+        let counts = |r: &&ErrorRow| match r.variable {
+            Variable::Pressure => r.excluded_c == *pressure_c,
+            variable => variable.is_component() && CURVES.contains(&r.curve.as_str()),
         };
         let [pressure_max, pressure_rms] = *summary.pressure.first()?;
         let [stress_max, stress_rms] = summary.stress;

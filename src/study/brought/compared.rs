@@ -6,7 +6,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::study::errors::Range;
-use crate::study::gate::{Gate, GateOutcome, Number, of_errors};
+use crate::study::gate::{Gate, GateOutcome, Kind, Number, NumberOf, Selected, Whole, of_errors};
 use crate::study::run::Reference;
 use crate::study::source::Engine;
 
@@ -75,17 +75,13 @@ impl Held<'_> {
         numbers.push(Number {
             case: case.clone(),
             method: GATED,
-            body: String::new(),
-            curve: String::new(),
-            quantity: LOAD.to_string(),
-            excluded_c: None,
-            measure: "",
+            of: NumberOf::Whole(Whole::Load),
             value: self.load_error_rel,
         });
         let error = file.statements.error_p0.unwrap_or(UNSTATED_ERROR);
         let evaluate = |gate: &Gate| {
             let widened = match self.limits {
-                Limits::Widened(_) if gate.quantity != LOAD => gate.limit + error,
+                Limits::Widened(_) if gate.selected != LOAD => gate.limit + error,
                 _ => gate.limit,
             };
             let name = format!("{}: {}", file.name, gate.name);
@@ -104,11 +100,11 @@ impl Held<'_> {
     /// says nothing of them.
     fn check(&self, run: &FileRun) -> Result<()> {
         let numbers = of_curves(run);
-        let of_curves = || self.gated().filter(|gate| gate.quantity != LOAD);
+        let of_curves = || self.gated().filter(|gate| gate.selected != LOAD);
         if numbers.is_empty() || of_curves().any(|gate| numbers.iter().any(|n| gate.takes(n))) {
             return Ok(());
         }
-        let same = |gate: &&Gate| numbers.iter().any(|n| n.quantity == gate.quantity);
+        let same = |gate: &&Gate| numbers.iter().any(|n| gate.selected.takes(&n.of));
         let wanted = distances(of_curves().filter(same).filter_map(|gate| gate.excluded_c));
         let [message, remedy] = if wanted.is_empty() {
             [
@@ -116,7 +112,7 @@ impl Held<'_> {
                 "add a gate for what the file has, or leave the file out".to_string(),
             ]
         } else {
-            let own = distances(numbers.iter().filter_map(|n| n.excluded_c));
+            let own = distances(numbers.iter().filter_map(|n| n.of.excluded_c()));
             [
                 format!(
                     "nothing of it is held to a limit: those of pressure are for points outside \
@@ -136,7 +132,8 @@ impl Held<'_> {
         let (Limits::Widened(gates) | Limits::Given(gates)) = self.limits;
         gates
             .iter()
-            .filter(|gate| gate.method == GATED && !ELSEWHERE.contains(&gate.quantity.as_str()))
+            .filter(|gate| gate.method == GATED)
+            .filter(|gate| matches!(gate.selected, Selected::Error(_) | LOAD))
     }
 
     /// Given gates that no file has numbers for fail: a wrong filter must not look like a pass.
@@ -152,7 +149,7 @@ impl Held<'_> {
 
 /// The numbers of a file's curves against the gated model.
 fn of_curves(run: &FileRun) -> Vec<Number> {
-    of_errors(&run.case, GATED, run.errors.iter().filter(|r| r.method == GATED.name()))
+    of_errors(&run.case, GATED, run.errors.iter().filter(|r| r.method == GATED.into()))
 }
 
 /// Distances in words, each once.
@@ -163,23 +160,10 @@ fn distances(all: impl Iterator<Item = f64>) -> String {
     all.iter().map(f64::to_string).collect::<Vec<_>>().join(" and ")
 }
 
-/// The gate of the load.
-const LOAD: &str = "load";
-
-/// Quantities of gates that a study has and a comparison has not.
-const ELSEWHERE: [&str; 3] = ["critical_value", "critical_depth", "speedup"];
+/// The gates of the load.
+const LOAD: Selected = Selected::Whole(Whole::Load);
 
 fn nothing_compared(name: &str) -> GateOutcome {
-    GateOutcome {
-        study: String::new(),
-        name: name.to_string(),
-        method: GATED.name().to_string(),
-        kind: crate::study::gate::Kind::Coverage,
-        passed: false,
-        value: None,
-        limit: 0.0,
-        margin: None,
-        compared: 0,
-        note: "nothing was compared: no curve, or all points next to an edge".to_string(),
-    }
+    let note = "nothing was compared: no curve, or all points next to an edge";
+    GateOutcome::nothing(name, Some(GATED), Kind::Coverage, note)
 }

@@ -479,11 +479,10 @@ impl<'a> Table<'a> {
             let [from, to] = self.case.overlap();
             let on = |[x, y]: &[f64; 2]| x.abs() <= NEAR && (from..=to).contains(y);
             if !self.curves.pressure.iter().any(|line| line.at.iter().any(on)) {
+                let [from, to] = self.case.overlap_m().map(stated);
                 let message = format!(
-                    "has no point on the contact, which has x = 0 and y from {} to {} m in our axes: check \
-                     units, axes and origin",
-                    stated(from * self.curves.hertz.c_m),
-                    stated(to * self.curves.hertz.c_m)
+                    "has no point on the contact, which has x = 0 and y from {from} to {to} m in our axes: \
+                     check units, axes and origin"
                 );
                 return Err(refuse(self.path, None, message));
             }

@@ -1,4 +1,6 @@
+use super::thresholds::BUILTIN_GATES;
 use super::*;
+use crate::body::EdgeModel;
 use crate::case::{Case, Study};
 use crate::study::synthetic::{self, Twist};
 use std::collections::BTreeSet;
@@ -112,6 +114,21 @@ fn a_speed_up_does_not_count_for_a_wrong_answer() {
     let wrong = evaluate(&synthetic::run(Twist::ShearSign), &gates, Some(&accepted));
     let speed = wrong.iter().find(|o| o.name == "speed").unwrap();
     assert!(!speed.passed && speed.note.starts_with("not counted"), "{}", speed.note);
+}
+
+#[test]
+fn a_speed_up_that_fails_says_where_and_spoils_no_other() {
+    let speed = |name: &str, limit: f64| {
+        format!(
+            "[[gate]]\nname = \"{name}\"\nmethod = \"quarter-space\"\nquantity = \"speedup\"\nlimit = {limit:?}\n"
+        )
+    };
+    let text = format!("{}{}{GATES}", speed("slow", 1e9), speed("fast", 100.0));
+    let gates = parse(&text, Path::new("gates.toml")).unwrap();
+    let run = synthetic::run(Twist::None);
+    let failed = failed(&evaluate(&run, &gates, Some(&Baseline::of(&run))));
+    assert_eq!(failed.len(), 1, "{failed:?}");
+    assert!(failed[0].starts_with("limit quarter-space slow: worst at "), "{failed:?}");
 }
 
 #[test]

@@ -1,0 +1,84 @@
+//! What is known of a contact before it is solved: by slices without neighbours.
+
+use super::scene::{Scene, Tilt};
+use crate::base::BodyKind;
+use crate::body::Resolution;
+use crate::contact::{Shaped, Slices};
+
+/// How far beyond a first guess the axis reaches, in half-lengths of the contact.
+pub(super) const MARGIN: f64 = 0.15;
+
+/// Half-length (own units) of a body with free ends below which a load beside its middle asks for
+/// the resolution of [`Resolution::COARSE`] at least. Under long waves the equations of a plate in
+/// bending are close to singular, and between its ends there are few panels: at coarser ones their
+/// errors decide, and stresses are wrong by a multiple of p0.
+const BENDS: f64 = 2.0;
+
+/// A half-width (C) from which a contact has a unit of its own.
+const WIDER: f64 = 1.4;
+
+impl Scene {
+    /// The resolution for a tolerance (p0), where `slices` are what is known of a contact that may
+    /// end before its bodies do.
+    pub(super) fn resolution(&self, tolerance: f64, slices: Option<&Slices>) -> Resolution {
+        let tolerance = match self.bends_short_bodies() {
+            true => tolerance.min(Resolution::COARSE),
+            false => tolerance,
+        };
+        let overlap = self.overlap();
+        if slices.is_some_and(|slices| self.ends_inside(slices)) {
+            return Resolution::for_tips(tolerance);
+        }
+        let (end, corner) = (self.end(BodyKind::Block), self.corner_exponent());
+        let level = Resolution::of(tolerance, &end, corner);
+        let Some(slices) = slices else { return level };
+        let gap = self.gap();
+        let turns = [0, 1].map(|side| {
+            let outward = 2.0 * side as f64 - 1.0;
+            let end = slices.ends[side].clamp(overlap[0], overlap[1]);
+            gap.turns_within(end, -outward)
+        });
+        level.following(turns[0].min(turns[1]))
+    }
+
+    /// Whether a load beside the middle of a short body with free ends bends it.
+    fn bends_short_bodies(&self) -> bool {
+        let is_short = |kind: BodyKind| self.end(kind).freed && self.bodies[kind].half < BENDS;
+        !self.is_symmetric() && BodyKind::ALL.into_iter().any(is_short)
+    }
+
+    /// Whether a contact of these `slices` ends well before its bodies do.
+    pub(super) fn ends_inside(&self, slices: &Slices) -> bool {
+        let (overlap, least) = (self.overlap(), MARGIN * self.half_length);
+        slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
+    }
+
+    /// The unit of length, in C, in which the contact has a half-width of about 1, or a half-length
+    /// where that is shorter. That of Hertz's line contact is left as it is where the contact is
+    /// not much wider.
+    pub(super) fn own_unit(&self) -> f64 {
+        if !self.may_end() {
+            return 1.0;
+        }
+        let slices = self.slices(&self.gap());
+        let (widest, half) = (slices.widest(), 0.5 * (slices.ends[1] - slices.ends[0]));
+        if half < widest && self.ends_inside(&slices) {
+            return half;
+        }
+        if widest > WIDER { widest } else { 1.0 }
+    }
+
+    /// The load's moment if the tilt is free, and the tilt that is held otherwise.
+    fn moment_and_tilt(&self) -> (Option<f64>, f64) {
+        match self.tilt {
+            Tilt::Held(tilt) => (None, tilt),
+            Tilt::Free(arm) => (Some(self.load * arm), 0.0),
+        }
+    }
+
+    /// A first guess of the contact.
+    pub(super) fn slices(&self, gap: &Shaped) -> Slices {
+        let (moment, tilt) = self.moment_and_tilt();
+        Slices::new(gap, self.overlap(), self.load, moment, tilt)
+    }
+}

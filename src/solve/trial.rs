@@ -1,0 +1,418 @@
+//! The contact on a line of trial ends: its ends are moved to where it was found to end, and a tilt
+//! that is held at a depth is sought.
+
+use super::deep::{self, Touch};
+use super::first_guess::MARGIN;
+use super::scene::{Scene, SceneBody, Tilt};
+use crate::base::stop::go_on;
+use crate::base::{BodyKind, Error, Panels, Result, Wavenumbers};
+use crate::body::{LoadedLine, Placed, Resolution, Shape, Stack};
+use crate::contact::{
+    self, Compliance, ContactSettings, ContactSolution, Problem, Rotation, Shaped, Slices,
+};
+use crate::stress::{Field, Load, Pressure};
+use nalgebra::DMatrix;
+use std::time::Instant;
+
+/// Largest condition number of a body's equations for which rounding is negligible: it costs this
+/// many units of 1e-16. Scenes over the whole legal range stay below a thousandth of it
+/// (docs/robustness.md).
+const WORST_CONDITION: f64 = 1e7;
+
+/// Tolerance of the contact's iteration, in tolerances of the scene.
+pub(super) const CONTACT_TOLERANCE: f64 = 1e-2;
+
+/// Most contacts that are solved until the ends are found, or the tilt that is held.
+const MOST_TRIALS: usize = 10;
+
+/// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser
+/// tolerances. Below, it falls with the tolerance, as the pressure is steep beside an end, to the
+/// part `CLOSEST` of this.
+const END_ERROR: f64 = 2e-3;
+const CLOSEST: f64 = 0.1;
+
+/// Tolerance of a contact whose tilt is sought, in those of others.
+const FOLLOWS: f64 = 0.1;
+
+/// Most tilts between the surfaces that are tried for one that is held at a depth, and those after
+/// which the contact's own error is allowed: two solutions, as far apart as that, may follow each
+/// other from the same tilt.
+const MOST_TILTS: usize = 20;
+const PATIENCE: usize = 10;
+
+/// The part of the overlap that the contact's axis covers.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Line {
+    /// Its ends along y.
+    ends: [f64; 2],
+    /// Whether the contact may end before the axis does.
+    pub open: [bool; 2],
+}
+
+impl Line {
+    /// A first guess.
+    pub fn first(scene: &Scene, slices: Option<&Slices>) -> Self {
+        Self::reaching(scene, slices.map_or(scene.overlap(), |slices| slices.ends), MARGIN)
+    }
+
+    /// An axis up to `ends`, and at open ends a `margin` beyond them, in half-lengths.
+    fn reaching(scene: &Scene, ends: [f64; 2], margin: f64) -> Self {
+        let overlap = scene.overlap();
+        let longest = scene.half_length;
+        let [from, to] = ends.map(|end| end.clamp(overlap[0], overlap[1]));
+        let beyond = margin * 0.5 * (to - from);
+        let wanted = [from - beyond, to + beyond];
+        // What all but reaches the end of the bodies ends there.
+        let near = |side: usize| (wanted[side] - overlap[side]).abs() <= END_ERROR * longest;
+        let past = [wanted[0] <= overlap[0] || near(0), wanted[1] >= overlap[1] || near(1)];
+        Self {
+            ends: [0, 1].map(|side| if past[side] { overlap[side] } else { wanted[side] }),
+            open: past.map(|past| !past),
+        }
+    }
+
+    /// Half of the line's length.
+    fn half(&self) -> f64 {
+        0.5 * (self.ends[1] - self.ends[0])
+    }
+}
+
+/// The moment about y = 0 of a contact's pressure.
+fn moment(axis: &Panels, contact: &ContactSolution) -> f64 {
+    let lines = contact.transform(0.0);
+    let nodes = axis.nodes().iter().zip(axis.weights());
+    nodes.zip(lines.iter()).map(|((y, weight), line)| weight * y * line).sum()
+}
+
+/// Bodies on an axis.
+pub(super) struct Parts {
+    pub axis: Panels,
+    pub wavenumbers: Wavenumbers,
+    /// The block and the roller; one for both if they are alike.
+    pub bodies: Vec<Stack>,
+    /// The compliance of both together at each coarse wavenumber.
+    pub compliances: Vec<DMatrix<f64>>,
+    /// The largest condition number of their equations.
+    pub condition: f64,
+}
+
+/// A contact whose ends are found.
+pub(super) struct Settled {
+    pub line: Line,
+    pub parts: Parts,
+    pub contact: ContactSolution,
+    pub known: Known,
+    /// Whether the ends no longer moved.
+    pub is_settled: bool,
+    /// Time spent on the bodies (s).
+    pub setup: f64,
+}
+
+/// What is known of a contact from another solution of it.
+pub(super) struct Known {
+    /// The half-widths; none where the contact cannot end before the bodies do.
+    pub slices: Option<Slices>,
+    /// The condition between the surfaces for a tilt that is held at a depth.
+    pub spring: Option<Spring>,
+}
+
+/// See [`Rotation::Sprung`].
+#[derive(Clone, Copy)]
+pub(super) struct Spring {
+    tilt: f64,
+    compliance: f64,
+}
+
+/// How accurate a contact is to be (p0), and how far it may violate the laws of contact.
+pub(super) struct Accuracy {
+    pub tolerance: f64,
+    pub soundness: f64,
+}
+
+/// What contacts are solved with.
+pub(super) struct Trial<'a> {
+    pub scene: &'a Scene,
+    pub resolution: &'a Resolution,
+    /// Whether the pressure has the power of an end that it reaches. Before the contact's ends are
+    /// known it may carry nothing there.
+    pub powers: bool,
+    pub accuracy: Accuracy,
+    pub gap: &'a Shaped,
+}
+
+impl Trial<'_> {
+    /// The contact from a first guess of its `line`, and from what else is known of it.
+    pub fn settled(&self, mut line: Line, mut known: Known) -> Result<Settled> {
+        let mut setup = 0.0;
+        for trial in 1.. {
+            go_on()?;
+            let start = Instant::now();
+            let parts = self.parts(&line)?;
+            setup += start.elapsed().as_secs_f64();
+            let contact = self.contact(&parts, &line, &mut known)?;
+            let found = self.found(&line, &contact);
+            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= self.end_error() * line.half();
+            let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
+            if same || trial == MOST_TRIALS {
+                return Ok(Settled { line, parts, contact, known, is_settled: same, setup });
+            }
+            line = found;
+        }
+        unreachable!("the trials end")
+    }
+
+    /// How closely an end is found, in half-lengths of the contact.
+    fn end_error(&self) -> f64 {
+        END_ERROR * (self.accuracy.tolerance / Resolution::COARSE).clamp(CLOSEST, 1.0)
+    }
+
+    /// The line that ends where the contact was found to end.
+    fn found(&self, line: &Line, contact: &ContactSolution) -> Line {
+        if !self.scene.may_end() {
+            return *line;
+        }
+        let [mut from, to] = contact.ends;
+        // An end that was not found lies farther out.
+        let most = 0.2 * line.half();
+        let limited = |found: f64, at: f64| found.clamp(at - most, at + most);
+        let to = limited(to, line.ends[1]);
+        from = if self.scene.is_symmetric() { -to } else { limited(from, line.ends[0]) };
+        Line::reaching(self.scene, [from, to], 0.0)
+    }
+
+    /// The bodies on a line.
+    fn parts(&self, line: &Line) -> Result<Parts> {
+        let (scene, resolution) = (self.scene, self.resolution);
+        let symmetric = scene.is_symmetric();
+        let known = scene.corner_exponents();
+        let exponents = [0, 1].map(|side| known[side].filter(|_| self.powers && !line.open[side]));
+        let (axis, parity) =
+            resolution.contact_line(line.ends, exponents, &self.gap.kinks(), symmetric);
+        let halves = [scene.bodies.block.half, scene.bodies.roller.half];
+        let wavenumbers = resolution.wavenumbers_of(&halves, parity);
+        let coarse = wavenumbers.coarse();
+        let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
+        // Bodies with the same ends and Poisson's ratio share one computation.
+        let distinct =
+            if scene.bodies_are_alike() { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
+        let stack = |&kind: &BodyKind| {
+            let SceneBody { half, middle, nu, .. } = scene.bodies[kind];
+            let placed = Placed { middle, shape: Shape { half, nu }, end: scene.end(kind) };
+            let line = LoadedLine { axis: &axis, symmetric, slides: scene.slides };
+            Stack::new(line, placed, resolution, coarse)
+        };
+        let bodies: Vec<Stack> = distinct.iter().map(stack).collect();
+        let condition = checked_condition(&bodies)?;
+        let compliances = (0..coarse.len()).map(|i| {
+            let mut total = DMatrix::zeros(axis.len(), axis.len());
+            bodies[0].add_compliance(i, block.share, &mut total);
+            bodies[bodies.len() - 1].add_compliance(i, roller.share, &mut total);
+            total
+        });
+        let compliances = compliances.collect();
+        Ok(Parts { axis, wavenumbers, bodies, compliances, condition })
+    }
+
+    /// The contact on a line, from what is `known` of it, to which it adds.
+    fn contact(&self, parts: &Parts, line: &Line, known: &mut Known) -> Result<ContactSolution> {
+        let settings = ContactSettings {
+            modes: self.resolution.modes,
+            spacing: self.resolution.spacing,
+            tolerance: CONTACT_TOLERANCE * self.accuracy.tolerance,
+            max_iterations: 40,
+            soundness: self.accuracy.soundness,
+        };
+        match self.scene.tilt {
+            Tilt::Held(wanted) if self.scene.depth != 0.0 => {
+                self.held(parts, line, known, (wanted, settings))
+            }
+            Tilt::Held(_) | Tilt::Free(_) => self.solved(parts, line, known, (None, &settings)),
+        }
+    }
+
+    /// The contact with this `rotation` in place of the scene's, if there is one.
+    fn solved(
+        &self,
+        parts: &Parts,
+        line: &Line,
+        known: &mut Known,
+        (rotation, settings): (Option<Rotation>, &ContactSettings),
+    ) -> Result<ContactSolution> {
+        let matrices = &parts.compliances;
+        let compliance = Compliance { wavenumbers: &parts.wavenumbers, matrices };
+        let of_scene = problem(self.scene, &compliance, &parts.axis, self.gap, line.open);
+        let rotation = rotation.unwrap_or(of_scene.rotation);
+        let problem = Problem { rotation, guess: known.slices.as_ref(), ..of_scene };
+        let solution = contact::solve(&problem, settings)?;
+        if self.scene.may_end() {
+            known.slices = Slices::of_solution(&parts.axis, &solution).or(known.slices.take());
+        }
+        Ok(solution)
+    }
+
+    /// The contact with the `wanted` tilt at the depth where it is held. Between the surfaces it is
+    /// another one, by what the load tilts the bodies up to there: nearly a multiple of its moment.
+    fn held(
+        &self,
+        parts: &Parts,
+        line: &Line,
+        known: &mut Known,
+        (wanted, settings): (f64, ContactSettings),
+    ) -> Result<ContactSolution> {
+        let scene = self.scene;
+        let mut secants = Secants::default();
+        let mut off = f64::INFINITY;
+        // A pressure within the tolerance does not follow a change of the tilt below it.
+        let settings = ContactSettings { tolerance: FOLLOWS * settings.tolerance, ..settings };
+        let rough = ContactSettings { soundness: f64::INFINITY, ..settings };
+        for trial in 0..MOST_TILTS {
+            let Spring { tilt, compliance } =
+                known.spring.unwrap_or(Spring { tilt: wanted, compliance: 0.0 });
+            let rotation = Some(Rotation::Sprung { tilt, compliance });
+            let solution = self.solved(parts, line, known, (rotation, &rough))?;
+            let deep = self.tilt(parts, &solution);
+            off = (deep - wanted) * scene.half_length;
+            // Solutions from different guesses differ by less than their error, and so do their
+            // tilts.
+            let error = CONTACT_TOLERANCE * self.accuracy.tolerance;
+            let exhausted = secants.width() * scene.half_length <= error || trial >= PATIENCE;
+            if off.abs() <= error || exhausted && off.abs() <= self.accuracy.tolerance {
+                known.spring = Some(Spring { tilt, compliance });
+                return self.solved(parts, line, known, (rotation, &settings));
+            }
+            known.spring = Some(match known.spring {
+                Some(_) => Spring { tilt: secants.next(tilt, deep - wanted), compliance },
+                None => {
+                    let moment = moment(&parts.axis, &solution);
+                    let about_middle = moment - scene.middle * scene.load;
+                    let compliance = (deep - solution.tilt) / about_middle;
+                    // Below zero there may be two solutions.
+                    let compliance = if compliance > 0.0 { compliance } else { 0.0 };
+                    Spring { tilt: tilt + compliance * moment - (deep - wanted), compliance }
+                }
+            });
+        }
+        Err(Error::NotConverged {
+            iterations: MOST_TILTS,
+            residual: off.abs(),
+            remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
+        })
+    }
+
+    /// The tilt at the depth where it is held.
+    fn tilt(&self, parts: &Parts, contact: &ContactSolution) -> f64 {
+        let scene = self.scene;
+        let (widths, modes) = (contact.half_widths.clone(), contact.coefficients.clone());
+        let pressure = Pressure::new(parts.axis.clone(), scene.is_symmetric(), widths, modes);
+        let moments = pressure.moments(&parts.wavenumbers);
+        let [block, roller] =
+            [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
+                Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
+            });
+        deep::tilt(scene, [&block, &roller], &touch(&pressure, contact), scene.depth)
+    }
+}
+
+/// Where the bodies touch on the axis of a pressure, and their load.
+pub(super) fn touch(pressure: &Pressure, contact: &ContactSolution) -> Touch {
+    let [from, to] = pressure.ends();
+    let [first, last] = contact.ends.map(|end| end.clamp(from, to));
+    let first = if pressure.is_symmetric() { -last } else { first };
+    let ends = if first < last { [first, last] } else { [from, to] };
+    Touch::new(ends, &pressure.whole_line())
+}
+
+/// Whether the contact ends before its bodies do, at either end: its axis does, or the last nodes
+/// carry no load.
+pub(super) fn left_open(scene: &Scene, line: &Line, contact: &ContactSolution) -> [bool; 2] {
+    let last = contact.coefficients.len() - 1;
+    let outermost = [if scene.is_symmetric() { last } else { 0 }, last];
+    [0, 1].map(|side| {
+        let lifted = contact.coefficients[outermost[side]].is_empty();
+        line.open[side] || scene.may_end() && lifted
+    })
+}
+
+/// The largest condition number of the bodies' equations, refused if rounding would not be
+/// negligible.
+fn checked_condition(bodies: &[Stack]) -> Result<f64> {
+    let condition = bodies.iter().map(Stack::condition).fold(1.0, f64::max);
+    if condition <= WORST_CONDITION {
+        return Ok(condition);
+    }
+    Err(Error::Unsound {
+        law: "the condition number of the end faces' equations",
+        value: condition,
+        limit: WORST_CONDITION,
+        remedy: "take a coarser [accuracy] tolerance or less extreme lengths".into(),
+    })
+}
+
+/// The contact of a scene on an `axis`, which holds one half of it if it is symmetric.
+pub(super) fn problem<'a>(
+    scene: &Scene,
+    compliance: &'a Compliance<'a>,
+    axis: &'a Panels,
+    gap: &'a Shaped,
+    open: [bool; 2],
+) -> Problem<'a> {
+    let symmetric = scene.is_symmetric();
+    let rotation = match scene.tilt {
+        Tilt::Held(tilt) => Rotation::Held(tilt),
+        Tilt::Free(arm) => Rotation::Free(scene.load * arm),
+    };
+    Problem {
+        compliance,
+        axis,
+        both_ends: !symmetric,
+        gap,
+        load: if symmetric { 0.5 * scene.load } else { scene.load },
+        rotation,
+        open: [open[0] && !symmetric, open[1]],
+        recedes: [scene.may_end() && !symmetric, scene.may_end()],
+        guess: None,
+    }
+}
+
+/// The search for the zero of a function whose slope is about 1, or at least of one sign: by
+/// secants, and within two arguments whose values are of different signs as soon as both are known.
+#[derive(Debug, Default)]
+struct Secants {
+    /// The argument and the value before.
+    last: Option<[f64; 2]>,
+    /// The last arguments with a value below zero, and above.
+    below: Option<f64>,
+    above: Option<f64>,
+}
+
+impl Secants {
+    /// Distance of two arguments with values of different signs; infinite as long as one is
+    /// unknown.
+    fn width(&self) -> f64 {
+        match (self.below, self.above) {
+            (Some(one), Some(other)) => (other - one).abs(),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The next argument to try, after the value at one.
+    fn next(&mut self, at: f64, value: f64) -> f64 {
+        let side = if value < 0.0 { &mut self.below } else { &mut self.above };
+        *side = Some(at);
+        let step = match self.last.replace([at, value]) {
+            Some([before, was]) if value != was => {
+                let longest = LONGEST_STEP * (at - before).abs();
+                (-value * (at - before) / (value - was)).clamp(-longest, longest)
+            }
+            _ => -value,
+        };
+        let wanted = at + step;
+        match (self.below, self.above) {
+            (Some(a), Some(b)) if !(a.min(b)..a.max(b)).contains(&wanted) => 0.5 * (a + b),
+            _ => wanted,
+        }
+    }
+}
+
+/// Most of a step of [`Secants`] in steps before it.
+const LONGEST_STEP: f64 = 8.0;
