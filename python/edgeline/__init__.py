@@ -14,7 +14,7 @@ semi-analytically, by the code of the program `edgeline`.
         load={"force_n": 10e3},
     )
     solution = edgeline.solve(case)
-    print(solution.summary["p_max_pa"])
+    print(solution.summary["p_centre_pa"])
     print(solution.pressure(0.0, [0.0, 2e-3, 4.9e-3]))
     print(solution.stress("block", 0.0, 0.0, [0.0, 0.2e-3, 0.4e-3]).shape)  # (3, 6)
 
@@ -36,9 +36,13 @@ The case file is explained in `cases/README.md` of the project, the method in
 `docs/theory.md`, this package in `docs/python.md`.
 """
 
+from importlib.metadata import version
+
 from edgeline._case import Case
 from edgeline._native import Error
 from edgeline._solution import COMPONENTS, Solution, solve, von_mises
 from edgeline._sweep import sweep
+
+__version__ = version("edgeline")
 
 __all__ = ["COMPONENTS", "Case", "Error", "Solution", "solve", "sweep", "von_mises"]

@@ -10,6 +10,33 @@ from typing import Any
 from edgeline import _native as native
 
 
+def _merged(old: Mapping[str, Any], new: Mapping[str, Any]) -> dict[str, Any]:
+    """The tables `old` with what `new` changes in them."""
+    merged = dict(old)
+    for key, value in new.items():
+        merged[key] = value
+        before = old.get(key)
+        if isinstance(value, Mapping) and isinstance(before, Mapping):
+            kind = before.get("kind")
+            # Another kind of profile has other keys.
+            if value.get("kind", kind) == kind:
+                merged[key] = _merged(before, value)
+    return merged
+
+
+def native_of(case: object) -> native.Case:
+    """The native part of a case.
+
+    Raises `TypeError` for what is no case.
+    """
+    if isinstance(case, Case):
+        return case._native
+    raise TypeError(
+        f"{case!r} is no Case: give edgeline.Case(...), or edgeline.Case.from_toml(...) with a "
+        "file's path or the name of a built-in case"
+    )
+
+
 class Case:
     """A contact problem in SI units, read and checked as the command line does.
 
@@ -105,17 +132,11 @@ class Case:
 
             case.changed(name="heavier", load={"force_n": 20e3})
 
-        A key that becomes None is removed. Lengths and load are those of
-        `Case.tables`, in SI units.
+        A key that becomes None is removed; a profile of another `kind` takes the
+        place of the old one. Lengths and load are those of `Case.tables`, in SI
+        units.
         """
-        merged = self.tables
-        for key, value in tables.items():
-            old = merged.get(key)
-            if isinstance(value, Mapping) and isinstance(old, dict):
-                merged[key] = {**old, **value}
-            else:
-                merged[key] = value
-        return type(self)(**merged)
+        return type(self)(**_merged(self.tables, tables))
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, Case) and self.to_toml() == other.to_toml()

@@ -32,6 +32,12 @@ def dataset(
 
     places = {"x": x, "y": y} if z is None else {"x": x, "y": y, "z": z}
     axes = {name: np.atleast_1d(np.asarray(v, dtype=np.float64)) for name, v in places.items()}
+    for name, values in axes.items():
+        if values.ndim > 1:
+            raise Error(
+                f"{name} of shape {values.shape} is not valid: a grid takes a scalar or 1-D values "
+                "along each axis; `Solution.stress` takes points of any shape"
+            )
     coordinates = {f"{name}_m": (name, v, {"units": "m"}) for name, v in axes.items()}
     about = {"case": solution.summary["case"], "method": solution.summary["method"]}
     pascals = {"units": "Pa"}

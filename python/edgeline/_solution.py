@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from edgeline import _native
-from edgeline._case import Case
+from edgeline._native import Error
+from edgeline._case import Case, native_of
 
 if TYPE_CHECKING:
     import xarray
@@ -40,9 +41,10 @@ def solve(
     interpreter's lock is released. A solve has all processors; beside another
     one, of another Python thread, it has one.
 
-    Raises `edgeline.Error` for a case that cannot be solved.
+    Raises `edgeline.Error` for a case that cannot be solved, and `TypeError` for
+    what is no case.
     """
-    return Solution(case, _native.solve(case._native, method, tolerance, engine))
+    return Solution(case, _native.solve(native_of(case), method, tolerance, engine))
 
 
 def von_mises(stress: ArrayLike) -> NDArray[np.float64]:
@@ -77,8 +79,9 @@ class Solution:
     def summary(self) -> dict[str, Any]:
         """The results in numbers: what `edgeline solve` writes into `summary.json`.
 
-        Among them `p_centre_pa`, `p_max_pa` and its place `p_max_at_m` (x, y),
-        `approach_m`, `load_n`, `hertz` (`c_m`, `p0_pa`, `e_star_pa`), the most
+        Among them `p_centre_pa`, the largest mean pressure of a cell `p_max_pa` and
+        its place `p_max_at_m` (x, y), which at a singular end (`details`, `edge`)
+        says nothing but how narrow the cells are, `approach_m`, `load_n`, `hertz` (`c_m`, `p0_pa`, `e_star_pa`), the most
         stressed place `critical` (`body`, `measure`, `value_pa`, `at_m`), and
         `converged`.
         """
@@ -130,6 +133,8 @@ class Solution:
         """Contact pressure (Pa) at x, y (m), 0 outside the contact.
 
         `x` and `y` broadcast; the result has their common shape.
+
+        Raises `edgeline.Error` that names the first point that is not finite.
         """
         x, y = np.broadcast_arrays(*(np.asarray(v, dtype=np.float64) for v in (x, y)))
         found = self._native.pressure(x.ravel(), y.ravel())
@@ -156,6 +161,8 @@ class Solution:
         The folder is made if it is not there. Raises `edgeline.Error` where it
         cannot be written, or another run writes it.
         """
+        if not os.fspath(folder):
+            raise Error("folder = '' is not valid: it is no folder; give '.' for the current one")
         self._native.write(folder)
 
     def to_xarray(
@@ -194,5 +201,5 @@ class Solution:
         summary = self.summary
         return (
             f"<edgeline.Solution {summary['case']} by {summary['method']}: "
-            f"p_max {summary['p_max_pa']:.4g} Pa>"
+            f"p_centre {summary['p_centre_pa']:.4g} Pa>"
         )

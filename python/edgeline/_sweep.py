@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from edgeline import _native
-from edgeline._case import Case
+from edgeline._case import Case, native_of
 from edgeline._native import Error
 
 if TYPE_CHECKING:
@@ -86,7 +86,11 @@ def sweep(
         raise Error(
             f"into = {into!r} is not valid: there is no such table; give numpy, pandas or arrow"
         )
-    natives = [case._native for case in cases]
+    if jobs is not None and jobs < 1:
+        raise Error(f"jobs = {jobs} is not valid: at least one case is solved at a time")
+    if shard is not None:
+        shard = _shard(shard)
+    natives = [native_of(case) for case in cases]
     if progress is True:
         with _Bar(len(natives)) as bar:
             rows, table = _native.sweep(natives, method, tolerance, jobs, shard, bar.update)
@@ -101,6 +105,18 @@ def sweep(
 
         return pyarrow.table({"row": rows, **table})
     return {"row": rows, **{name: np.asarray(values) for name, values in table.items()}}
+
+
+def _shard(shard: object) -> tuple[int, int]:
+    """A part of a sweep, as a pair of whole numbers."""
+    match shard:
+        case (int(part), int(parts)) if part > 0 and parts > 0:
+            return part, parts
+        case _:
+            raise Error(
+                f"shard = {shard!r} is not valid: give a pair of whole numbers, (1, 3) for the first "
+                "of three parts"
+            )
 
 
 class _Bar:

@@ -76,8 +76,17 @@ fn without_line(error: base::Error) -> base::Error {
     }
 }
 
+/// Levels of tables, each deeper than those of any case file, beyond which no more is read.
+const MOST_LEVELS: usize = 8;
+
 /// A table of a case file; what is None does not stand there.
 fn table(values: &Bound<'_, PyDict>, path: &str) -> PyResult<toml::Table> {
+    if path.matches('.').count() >= MOST_LEVELS {
+        return Err(PyTypeError::new_err(format!(
+            "tables stand in each other {MOST_LEVELS} levels deep, or one in itself: a case file has three \
+             levels at most"
+        )));
+    }
     let mut table = toml::Table::new();
     for (key, given) in values {
         let key: String = key.extract()?;

@@ -10,8 +10,8 @@ use edgeline::report::cells::contents;
 use edgeline::report::columns::Columns;
 use edgeline::report::solution::{tables, write_locked};
 use edgeline::solve::{
-    CellOptions, CellSolution, Options, Point, SolvedCase, check_grid, solve_on_cells,
-    stress_on_cells,
+    CellOptions, CellSolution, Options, Point, SolvedCase, check_grid, check_points,
+    solve_on_cells, stress_on_cells,
 };
 use edgeline::stress::Grid;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray4, PyArrayMethods, PyReadonlyArray1};
@@ -146,6 +146,22 @@ impl Solution {
     }
 }
 
+/// Points whose stresses are computed at once: between them signals, such as that of Ctrl-C, are
+/// heard.
+const AT_ONCE: usize = 4096;
+
+/// Refuses a place on the surface that is no place.
+fn check_finite(x: &[f64], y: &[f64]) -> Result<()> {
+    let bad = x.iter().zip(y).position(|(x, y)| !x.is_finite() || !y.is_finite());
+    let Some(i) = bad else { return Ok(()) };
+    Err(Error::Value {
+        key: format!("point {}", i + 1),
+        value: format!("({}, {}) m", x[i], y[i]),
+        reason: "x and y are finite numbers".into(),
+        remedy: "correct it, or leave it out".into(),
+    })
+}
+
 /// A body by its name.
 fn body(name: &str) -> Result<BodyKind> {
     BodyKind::find(name).ok_or_else(|| Error::Value {
@@ -185,6 +201,7 @@ impl Solution {
         y: PyReadonlyArray1<'py, f64>,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (x, y) = (x.as_slice()?, y.as_slice()?);
+        check_finite(x, y).map_err(raised)?;
         let HertzScales { c_m, p0_pa, .. } = self.case.hertz();
         let at = |(x, y): (&f64, &f64)| p0_pa * self.at(x / c_m, y / c_m);
         let found: Vec<f64> = work(py, || x.iter().zip(y).map(at).collect())?;
@@ -203,14 +220,16 @@ impl Solution {
         let body = body(body_name).map_err(raised)?;
         let (x, y, z) = (x.as_slice()?, y.as_slice()?, z.as_slice()?);
         let p0_pa = self.case.hertz().p0_pa;
-        let found = work(py, || {
-            let places = x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]).collect();
-            let found = self.stresses(body, places)?;
-            Ok(found.iter().flat_map(|s| (*s * p0_pa).components()).collect::<Vec<f64>>())
-        })?
-        .map_err(raised)?;
-        let n = x.len();
-        found.into_pyarray(py).reshape([n, 6])
+        let places = x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]);
+        let places: Vec<[f64; 3]> = places.collect();
+        check_points(&self.case, body, &places).map_err(raised)?;
+        let mut found: Vec<f64> = Vec::with_capacity(6 * places.len());
+        for some in places.chunks(AT_ONCE) {
+            let stresses = work(py, || self.stresses(body, some.to_vec()))?.map_err(raised)?;
+            found.extend(stresses.iter().flat_map(|s| (*s * p0_pa).components()));
+            py.check_signals()?;
+        }
+        found.into_pyarray(py).reshape([places.len(), 6])
     }
 
     /// Stresses (Pa) at every combination of x, y and z (m), shape (6, nz, ny, nx).

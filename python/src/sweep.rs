@@ -49,14 +49,19 @@ pub fn sweep<'py>(
     let (rows, columns) = guarded(py, |_| {
         let solved = run(&cases, &settings, shard, jobs, progress.as_ref())?;
         let named = |(row, outcome): &Row| {
+            let name = cases.get(*row).map_or("", |case| &case.name);
             let mut columns = vec![
-                ("case".to_string(), Value::Text(cases[*row].name.clone())),
+                ("case".to_string(), Value::Text(name.to_string())),
                 ("method".to_string(), Value::Text(settings.method.name().to_string())),
             ];
             columns.extend(results(outcome));
             columns
         };
-        let columns = Columns::of_rows("sweep", solved.iter().map(named));
+        let columns = match solved.is_empty() {
+            // Without rows there are the same columns.
+            true => Columns::of_rows("sweep", [named(&(0, Err(String::new())))]).without_rows(),
+            false => Columns::of_rows("sweep", solved.iter().map(named)),
+        };
         let rows: Vec<i64> = solved.iter().map(|(row, _)| *row as i64).collect();
         PyResult::Ok((rows, columns))
     })??;

@@ -2,11 +2,34 @@
 
 use crate::errors::Error;
 use pyo3::prelude::*;
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Calls that are at work.
 static AT_WORK: AtomicUsize = AtomicUsize::new(0);
+
+/// The threads of one process, by its number.
+static POOL: Mutex<Option<(u32, Arc<ThreadPool>)>> = Mutex::new(None);
+
+/// All threads of this process. A forked process has none of its parent's threads, only what
+/// looks like them: waiting for those would never end.
+fn threads() -> Option<Arc<ThreadPool>> {
+    let mut known = POOL.lock().unwrap_or_else(PoisonError::into_inner);
+    let process = std::process::id();
+    if let Some((own, pool)) = &*known
+        && *own == process
+    {
+        return Some(pool.clone());
+    }
+    let pool = Arc::new(ThreadPoolBuilder::new().build().ok()?);
+    if let Some((_, of_parent)) = known.replace((process, pool.clone())) {
+        // Ending threads that are not there would never end either.
+        std::mem::forget(of_parent);
+    }
+    Some(pool)
+}
 
 /// Counts a call as at work while it lives.
 struct AtWork;
@@ -42,16 +65,18 @@ pub fn guarded<T: Send>(py: Python<'_>, work: impl FnOnce(bool) -> T + Send) -> 
 }
 
 /// As [`guarded`]. One call has all processors; a call beside another one has a thread of its own,
-/// so that calls of several Python threads do not wait for each other's parts.
+/// so that calls of several Python threads do not wait for each other's parts. In a forked process
+/// the count of calls is that of its parent's threads, of which none goes on.
 ///
 /// # Errors
 /// As [`guarded`].
 pub fn work<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResult<T> {
     guarded(py, |beside| {
-        match beside.then(|| rayon::ThreadPoolBuilder::new().num_threads(1).build()) {
-            Some(Ok(own)) => own.install(work),
-            // Where no thread is to be had, waiting is what is left.
-            _ => work(),
+        let one = || ThreadPoolBuilder::new().num_threads(1).build().ok().map(Arc::new);
+        match if beside { one() } else { threads() } {
+            Some(pool) => pool.install(work),
+            // Where no thread is to be had, this one is left.
+            None => work(),
         }
     })
 }

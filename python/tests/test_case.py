@@ -73,6 +73,15 @@ def test_a_changed_case_keeps_the_rest() -> None:
     assert heavier.tables["roller"] == case.tables["roller"]
     assert heavier.hertz["c_m"] == pytest.approx(np.sqrt(2.0) * case.hertz["c_m"], rel=1e-12)
     assert heavier != case
+    crowned = case.changed(roller={"profile": {"kind": "crown", "radius_m": 2.0}})
+    assert crowned.changed(roller={"profile": {"radius_m": 3.0}}).tables["roller"]["profile"] == {
+        "kind": "crown",
+        "radius_m": 3.0,
+    }
+    other = {"kind": "logarithmic", "amplitude_m": 1e-6}
+    assert crowned.changed(roller={"profile": other}).tables["roller"]["profile"]["kind"] == (
+        "logarithmic"
+    )
 
 
 @pytest.mark.parametrize(
@@ -96,6 +105,10 @@ def test_wrong_tables_are_refused(wrong: dict[str, Any], wanted: str) -> None:
 def test_what_no_file_holds_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="load.force_n is a <class 'object'>"):
         edgeline.Case(**{**tables(), "load": {"force_n": object()}})
+    within: dict[str, Any] = {}
+    within["load"] = within
+    with pytest.raises(TypeError, match="levels deep"):
+        edgeline.Case(**within)
 
 
 @pytest.mark.parametrize(

@@ -47,6 +47,24 @@ def test_others_run_while_one_solves(case: edgeline.Case) -> None:
     assert len(within) >= 5, f"{len(within)} ticks in {ended - began:.3f} s"
 
 
+def test_a_forked_process_solves_too() -> None:
+    """It has none of its parent's threads, which may have solved before."""
+    code = (
+        "import os, signal, edgeline\n"
+        "case = edgeline.Case.from_toml('flush-short')\n"
+        "first = edgeline.solve(case, tolerance=1e-2).summary['p_centre_pa']\n"
+        "if (child := os.fork()) == 0:\n"
+        "    signal.alarm(60)\n"
+        "    again = edgeline.solve(case, tolerance=1e-2).summary['p_centre_pa']\n"
+        "    rows = edgeline.sweep([case, case], tolerance=1e-2)['p_centre_pa']\n"
+        "    os._exit(0 if again == first and (abs(rows / first - 1) < 1e-6).all() else 1)\n"
+        "assert os.waitpid(child, 0)[1] == 0\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert edgeline.__version__.count(".") == 2
+
+
 def test_every_public_name_is_documented() -> None:
     for name in edgeline.__all__:
         thing = getattr(edgeline, name)

@@ -135,10 +135,15 @@ def test_what_does_not_exist_is_refused(case: edgeline.Case, solution: edgeline.
         (lambda: solution.stress("block", 0, 0, [0, -1]), "z of point 2 (block) = -1 m"),
         (lambda: solution.stress("roller", 0, 1, 0), "y of point 1 (roller) = 1 m"),
         (lambda: solution.stress("block", np.nan, 0, 0), "x of point 1 (block) = NaN m"),
+        (lambda: solution.stress("block", [0] * 5000, 0, [0] * 4999 + [-1]), "z of point 5000"),
+        (lambda: solution.pressure([0, np.nan], 0), "point 2 = (NaN, 0) m"),
+        (lambda: solution.write(""), "folder = ''"),
     ]:
         with pytest.raises(edgeline.Error) as error:
             refused()
         assert str(error.value).startswith(wanted)
+    with pytest.raises(TypeError, match="'flush-short' is no Case"):
+        edgeline.solve("flush-short")  # type: ignore[arg-type]
 
 
 def test_a_tolerance_is_refused_as_by_the_command_line(

@@ -84,7 +84,22 @@ def test_shards_have_each_case_once(cases: list[edgeline.Case]) -> None:
 
 
 def test_nothing_to_do_is_done() -> None:
-    assert edgeline.sweep([])["row"].tolist() == []
+    nothing = edgeline.sweep([])
+    assert nothing["row"].tolist() == []
+    some = edgeline.sweep([edgeline.Case.from_toml("flush-short")], tolerance=1e-1)
+    assert list(nothing) == list(some)
+    assert {name: v.dtype.kind for name, v in nothing.items() if name != "row"} == {
+        name: v.dtype.kind for name, v in some.items() if name != "row"
+    }
+
+
+def test_numbers_of_jobs_and_parts_are_checked(cases: list[edgeline.Case]) -> None:
+    for wrong in (0, -1):
+        with pytest.raises(edgeline.Error, match=f"jobs = {wrong} is not valid"):
+            edgeline.sweep(cases, jobs=wrong)
+    for shard in ("1/3", (1.0, 3), (0, 3), 1):
+        with pytest.raises(edgeline.Error, match="give a pair of whole numbers"):
+            edgeline.sweep(cases, shard=shard)  # type: ignore[arg-type]
 
 
 def test_progress_counts_and_can_end_a_sweep(cases: list[edgeline.Case]) -> None:
