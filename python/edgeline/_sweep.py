@@ -104,7 +104,12 @@ def sweep(
         import pyarrow
 
         return pyarrow.table({"row": rows, **table})
-    return {"row": rows, **{name: np.asarray(values) for name, values in table.items()}}
+    return {"row": rows, **{name: _column(values) for name, values in table.items()}}
+
+
+def _column(values: NDArray[np.float64] | list[str]) -> NDArray[Any]:
+    """A column of numbers or of texts, which may be empty."""
+    return values if isinstance(values, np.ndarray) else np.asarray(values, dtype=np.str_)
 
 
 def _shard(shard: object) -> tuple[int, int]:

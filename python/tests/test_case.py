@@ -78,7 +78,7 @@ def test_a_changed_case_keeps_the_rest() -> None:
         "kind": "crown",
         "radius_m": 3.0,
     }
-    other = {"kind": "logarithmic", "amplitude_m": 1e-6}
+    other = {"kind": "logarithmic", "amplitude_m": 1e-6, "k": 0.95}
     assert crowned.changed(roller={"profile": other}).tables["roller"]["profile"]["kind"] == (
         "logarithmic"
     )
