@@ -199,7 +199,7 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
         let mut spec = ProfileSpec::new(kind);
         if let Some(file) = table.get("file") {
             if kind != ProfileKind::Table {
-                let reason = format!("a {name} profile has no file");
+                let reason = format!("the profile {name} has no file");
                 return Err(file.refuse(reason, "remove it, or write kind = \"table\""));
             }
             let place = file.beside(path)?;

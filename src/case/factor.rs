@@ -119,7 +119,7 @@ impl FactorKey {
                     let reason = match kind {
                         None => format!("the {body} has no profile"),
                         Some(kind) => {
-                            format!("no number of a {} profile sets its end drop", kind.name())
+                            format!("no number of the profile {} sets its end drop", kind.name())
                         }
                     };
                     let remedy = format!(

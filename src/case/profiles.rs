@@ -191,10 +191,10 @@ fn check_numbers(spec: &ProfileSpec, place: &str) -> Result<()> {
     for key in ProfileSpec::NUMBERS {
         let (own, value, reason) = match spec.number(key) {
             Some(value) if !wanted.contains(&key) => {
-                (key, stated(value), format!("a {kind} profile has no such number"))
+                (key, stated(value), format!("the profile {kind} has no such number"))
             }
             None if wanted.contains(&key) => {
-                let reason = format!("a {kind} profile needs {key}, which is missing");
+                let reason = format!("the profile {kind} needs {key}, which is missing");
                 ("kind", format!("{kind:?}"), reason)
             }
             _ => continue,

@@ -99,9 +99,12 @@ impl Code {
                 (case.sliding.friction.to_string(), "the deck's contact is frictionless");
             return refuse("sliding.friction", value, reason, remedy);
         }
-        if BodyKind::ALL.into_iter().any(|body| case.profile(body).is_some()) {
-            let reason = "the deck takes straight generatrices only";
-            return refuse("profile", case.name.clone(), reason, remedy);
+        for body in BodyKind::ALL {
+            if let Some(spec) = case.profile_spec(body) {
+                let reason = "the deck takes straight generatrices only";
+                let key = format!("{}.profile.kind", body.name());
+                return refuse(&key, spec.kind.name().to_string(), reason, remedy);
+            }
         }
         Ok(())
     }
@@ -135,7 +138,7 @@ mod tests {
             ("sliding-flush", "sliding.friction = 0.3 is not valid"),
             ("eccentric-flush", "load.eccentricity_m = 0.00015 is not valid"),
             ("offset-flush-end", "pose.offset_m = "),
-            ("crown-inside", "profile = crown-inside is not valid"),
+            ("crown-inside", "roller.profile.kind = crown is not valid"),
         ] {
             let said = refused(&find(name));
             assert!(said.starts_with(wanted), "{said}");

@@ -176,8 +176,8 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
     let table = |file: &str| format!("kind = \"table\"\nfile = \"{file}\"");
     for (from, to, wanted) in [
         ("k = 0.98", "k = 1.0", "roller.profile.k = 1.0 is not valid"),
-        ("k = 0.98", "", "a logarithmic profile needs k, which is missing"),
-        ("k = 0.98", "k = 0.98\nk1 = 2.0", "a logarithmic profile has no such number"),
+        ("k = 0.98", "", "the profile logarithmic needs k, which is missing"),
+        ("k = 0.98", "k = 0.98\nk1 = 2.0", "the profile logarithmic has no such number"),
         ("\"logarithmic\"", "\"crowned\"", "there is no such profile; did you mean crown?"),
         ("amplitude_m = 3e-6", "amplitude_m = 3e-2", "the profile drops by"),
         ("eccentricity_m = 0.25e-3", "eccentricity_m = 6e-3", "the roller would fall over"),

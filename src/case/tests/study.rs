@@ -319,7 +319,7 @@ fn errors_of_factors_name_key_line_and_remedy() {
                 "[factors]\nW = [1e-4]\n\"roller.end_drop\" = [1, 2]\n",
             ],
             "\"roller.end_drop\"",
-            "no number of a lundberg profile sets its end drop; give [roller.profile] one of the kinds crown",
+            "no number of the profile lundberg sets its end drop; give [roller.profile] one of the kinds crown",
         ),
         ([&scene, w, "eccentricity = [0, 5]\n"], "eccentricity", "less than 1"),
         ([&scene, w, "eccentricity = [0, 0.6]\n"], "[factors]", "lies outside the overlap"),

@@ -92,16 +92,16 @@ fn drift_gate(
     now: &Baseline,
     baseline: Option<Baseline>,
 ) -> GateOutcome {
-    let has_baseline = baseline.is_some();
     let accepted = baseline.unwrap_or_default();
     let compared: usize = now.numbers.values().map(BTreeMap::len).sum();
     // Changes beyond the limit, and the largest change.
     let beyond = accepted.changes(now, limit);
     let largest = accepted.changes(now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
-    let note = if !has_baseline {
-        "there are no accepted numbers: accept them with `edgeline gate --accept`".to_string()
-    } else if compared == 0 {
+    let note = if compared == 0 {
         "nothing was compared".to_string()
+    } else if accepted.numbers.is_empty() {
+        "there are no accepted numbers of this study and model: accept them with `edgeline gate --accept`"
+            .to_string()
     } else {
         match beyond.first() {
             None => "nothing moved".to_string(),
