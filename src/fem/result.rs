@@ -37,8 +37,8 @@ pub struct FemSummary {
     pub equilibrium_residual: f64,
     /// Residual of complementarity, relative.
     pub complementarity_residual: f64,
-    /// Approach (m) of the roller's mid-plane and the block's bottom: that of the model, which depends
-    /// on how deep the block is.
+    /// Approach (m) of the roller's mid-plane and the block's bottom: that of the model, which
+    /// depends on how deep the block is.
     pub approach_m: f64,
     /// Pressure at the contact's centre (Pa).
     pub p_centre_pa: f64,
