@@ -6,7 +6,7 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput};
 use edgeline::base::{Material, Parity};
-use edgeline::body::{Body, EdgeModel, Layer, Resolution, Shape};
+use edgeline::body::{Body, EdgeModel, Layer, Part, Resolution, Shape};
 use edgeline::case::{Case, Factors};
 use edgeline::contact::{self, Compliance, ContactSettings, Problem, Rotation, Straight};
 use edgeline::kernels::wave::{Direction, Places, WAVES, Wanted, WaveTable};
@@ -82,8 +82,7 @@ fn layers(scene: &Scene, resolution: &Resolution) -> (Body, Vec<Layer>) {
     let block = &scene.bodies.block;
     let shape = Shape { half: block.half, nu: block.nu };
     let line = resolution.contact_axis(scene.half_length);
-    let body =
-        Body::new(&line, shape, scene.end(BodyKind::Block), (Parity::Even, false), resolution);
+    let body = Body::new(&line, shape, scene.end(BodyKind::Block), Part::EVEN, resolution);
     let wavenumbers = resolution.wavenumbers(block.half, Parity::Even);
     let layers = wavenumbers.coarse().nodes().iter().map(|&k| body.layer(k)).collect();
     (body, layers)

@@ -1,6 +1,7 @@
 //! Axes chosen from a requested accuracy.
 
 use super::end::End;
+use super::part::Part;
 use crate::base::{Corner, Panels, Parity, Wavenumbers};
 use serde::{Deserialize, Serialize};
 
@@ -29,8 +30,8 @@ const BENDING_RATIO: f64 = 2.0;
 /// the longer one.
 const UNLIKE: f64 = 10.0;
 
-/// Half-length (C) of a body up to which the first panel of its end faces' depth under an odd load
-/// is in proportion to it. Under long waves the equations of a plate in bending are close to
+/// Half-length (C) of a body up to which the first panel of its end faces' depth is in proportion
+/// to it if loads bend it. Under long waves the equations of a plate in bending are close to
 /// singular, and errors at the corner, relative to the length, take the place of what is left: with
 /// panels of one size a body of half-length 0.65 turns by 0.7 to 1.4 times the right angle at the
 /// lowest wavenumber of tolerances of 1e-2, or by the opposite one at coarser ones.
@@ -66,7 +67,7 @@ const FACE_TAIL: f64 = 8.0;
 pub struct Resolution {
     /// Gauss nodes per panel along y and along the end faces' depth.
     pub order: usize,
-    /// Panel next to a loaded corner.
+    /// Panel next to a loaded corner (C).
     pub corner: f64,
     /// Growth of panels within 0.02 C of a corner: the nearer, the less a load weighs in what is
     /// computed farther away.
@@ -75,18 +76,18 @@ pub struct Resolution {
     pub ratio: f64,
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// Smallest distance along the line between independent half-widths, and of the last one from
-    /// the end.
+    /// Smallest distance (C) along the line between independent half-widths, and of the last one
+    /// from the end.
     pub spacing: f64,
-    /// Largest wavenumber.
+    /// Largest wavenumber (1/C).
     pub k_max: f64,
     /// Gauss nodes per panel of wavenumbers.
     pub k_order: usize,
-    /// Largest width of the panels on which the pressure's transform is resolved.
+    /// Largest width of the panels on which the pressure's transform is resolved (1/C).
     pub k_step: f64,
     /// Growth of the wavenumber panels above 0.5; below it panels grow by 10 or 20.
     pub k_ratio: f64,
-    /// Largest end of the first wavenumber panel.
+    /// Largest end of the first wavenumber panel (1/C).
     pub k_min: f64,
     /// Images of the corrected pressure in the end faces on either side, in lengths of the body;
     /// beyond them uniform strips carry its mean.
@@ -627,14 +628,12 @@ impl Resolution {
         &self,
         ledge: f64,
         half: f64,
-        parity: Parity,
+        Part { parity, bends, .. }: Part,
         exponent: Option<f64>,
     ) -> Panels {
         let deepest = self.face_reach / self.smallest_wavenumber(half, parity);
-        let first = match parity {
-            Parity::Even => self.end_panel(ledge),
-            Parity::Odd => self.end_panel(ledge) * (half / SLENDER).min(1.0),
-        };
+        let part = if bends { (half / SLENDER).min(1.0) } else { 1.0 };
+        let first = part * self.end_panel(ledge);
         let mut s = self.graded(first, FACE_TAIL);
         // Panels may grow faster where the load only decays.
         let growth = match parity {

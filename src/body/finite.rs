@@ -8,6 +8,7 @@
 
 use super::axes::{PLATE_FADES, Resolution, ledge};
 use super::end::End;
+use super::part::Part;
 use super::stencil::{Image, Peak, Sources, Stencil};
 use crate::base::{Panels, Parity, StressTensor, linear};
 use crate::kernels::bessel::k0;
@@ -154,24 +155,24 @@ fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<
 }
 
 impl Body {
-    /// A body of this `shape` with end faces `end`, under loads of one `parity` on `contact`, an
-    /// axis on one side of the body's middle; where it `slides`, the contact may carry a traction
-    /// along x.
+    /// A body of this `shape` with end faces `end`, under one `part` of the loads on `contact`, an
+    /// axis on one side of the body's middle.
     pub fn new(
         contact: &Panels,
         shape: Shape,
         end: End,
-        (parity, slides): (Parity, bool),
+        part: Part,
         resolution: &Resolution,
     ) -> Self {
         let Shape { half, nu } = shape;
+        let Part { parity, slides, .. } = part;
         let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = ledge(contact, half);
         let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
         let exponent = corner.map(|c| c.exponent);
         let contact = first..first + contact.len();
-        let face = Sources::new(resolution.face_axis(ledge, half, parity, exponent));
+        let face = Sources::new(resolution.face_axis(ledge, half, part, exponent));
         let surface = Sources::new(surface);
         let images = images(half, &end, parity, resolution);
         // An image that the displacement weighs has its full weight in the stresses.

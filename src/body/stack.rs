@@ -5,6 +5,7 @@ use super::end::End;
 use super::finite::{Body, Layer, Shape};
 use super::fold::Fold;
 use super::long_waves::LongWaves;
+use super::part::Part;
 use crate::base::{Panels, Parity};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -61,7 +62,8 @@ impl Stack {
             nodes[..long.nodes().len()].copy_from_slice(long.nodes());
         }
         let part = |&parity: &Parity| {
-            let body = Body::new(fold.axis(), shape, end, (parity, slides), resolution);
+            let part = Part { parity, bends, slides };
+            let body = Body::new(fold.axis(), shape, end, part, resolution);
             let layers = nodes.par_iter().map(|&k| body.layer(k)).collect();
             (body, layers)
         };

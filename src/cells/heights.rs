@@ -130,7 +130,7 @@ impl Heights {
         let [nx, ny] = self.shape;
         let count = (nx * ny) as f64;
         let mean = self.values_m.iter().sum::<f64>() / count;
-        // From the middle, the two slopes and the mean do not know each other.
+        // Counted from the middle, the two slopes and the mean are orthogonal.
         let from_middle = |i: usize, n: usize| i as f64 - 0.5 * (n - 1) as f64;
         let slope = |along: &dyn Fn(usize) -> f64| {
             let terms = || self.values_m.iter().enumerate().map(|(at, h)| (along(at), h));

@@ -59,10 +59,10 @@ impl Complementarity<'_> {
     /// sum, whose multiplier is D, and with arms another one, whose multiplier is T: conjugate
     /// gradients, preconditioned and projected (Polonsky and Keer 1999, Wear 231, 206; with a
     /// preconditioner Vollebregt 2014, J. Comput. Phys. 257, 333). Once the residual on the set has
-    /// fallen, cells that pull leave the set and cells that penetrate enter it. The pressures are
-    /// set to the prescribed load, and the displacement is taken anew, whenever cells were cut off,
-    /// not carried along with what the step does: that is what the published iteration leaves
-    /// inexact.
+    /// fallen, cells of tensile pressure leave the set and cells that penetrate enter it. The
+    /// pressures are set to the prescribed load, and the displacement is taken anew, whenever cells
+    /// were cut off, not carried along with what the step does: that is what the published
+    /// iteration leaves inexact.
     pub(super) fn solve(
         &mut self,
         start: Vec<f64>,
@@ -86,8 +86,8 @@ impl Complementarity<'_> {
             let residual = Residual::new(&set.contact, &u, &misfit);
             let (on_set, relative) = (residual.on_set.sqrt(), residual.relative());
             progress(iterations, relative);
-            let pulled = pressure.iter().any(|p| *p < 0.0);
-            if (relative <= tolerance && !pulled) || iterations >= most {
+            let tensile = pressure.iter().any(|p| *p < 0.0);
+            if (relative <= tolerance && !tensile) || iterations >= most {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 return State { pressure, motion, residual: relative, iterations };
             }
@@ -227,8 +227,8 @@ impl Line {
     }
 }
 
-/// Lets cells that pull leave the contact and those whose `misfit` says that they penetrate enter
-/// it. Whether any did, and whether pull was cut off.
+/// Lets cells of tensile pressure leave the contact, and those enter it whose `misfit` says that
+/// they penetrate. Whether any did, and whether tension was cut off.
 fn change(pressure: &mut [f64], contact: &mut [bool], misfit: &[f64]) -> (bool, bool) {
     let (mut changed, mut cut) = (false, false);
     for ((p, contact), misfit) in pressure.iter_mut().zip(contact).zip(misfit) {

@@ -13,11 +13,12 @@ pub enum Rotation {
     Held(f64),
     /// They are free to tilt under a load of this moment.
     Free(f64),
-    /// They are held at a distance: the tilt and `compliance` times the moment sum to `tilt`.
+    /// They are held by a spring: the tilt is that of the spring's far end less what the load's
+    /// moment turns it back.
     Sprung {
-        /// The tilt without a moment.
+        /// The tilt of the far end, which is the bodies' own without a moment.
         tilt: f64,
-        /// The tilt that a moment takes.
+        /// The turn by a unit moment (1 / (2 C^2 R p0)).
         compliance: f64,
     },
 }

@@ -5,8 +5,8 @@
 pub struct ContactSettings {
     /// Modes of the pressure across the contact.
     pub modes: usize,
-    /// Smallest distance of nodes with an independent half-width, from each other along the line
-    /// and from its end.
+    /// Smallest distance (C) of nodes with an independent half-width, from each other along the
+    /// line and from its end.
     pub spacing: f64,
     /// Largest negligible amplitude of the pressure's edge singularity (p0).
     pub tolerance: f64,

@@ -6,16 +6,16 @@ use nalgebra::DVector;
 /// Contact pressure of the whole line.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactSolution {
-    /// Half-width of the contact at each node.
+    /// Half-width of the contact at each node (C).
     pub half_widths: Vec<f64>,
-    /// Coefficients of the modes at each node.
+    /// Coefficients of the modes at each node (p0).
     pub coefficients: Vec<Vec<f64>>,
     /// Approach in units of C^2 / (2 R), relative to points at a distance set by the smallest
     /// wavenumber: that of material points follows from the stresses.
     pub approach: f64,
     /// Tilt in units of C / (2 R): the growth of the approach per C along y.
     pub tilt: f64,
-    /// The contact's ends along the axis.
+    /// The contact's ends along the axis (C).
     pub ends: [f64; 2],
     /// Number of iterations.
     pub iterations: usize,

@@ -9,6 +9,7 @@ use crate::body::EdgeModel;
 use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
 use crate::study::gate::GateOutcome;
+use crate::study::timing::Ratio;
 
 /// Sentences for the head of a report, the most important first.
 pub fn sentences(summary: &StudySummary) -> Vec<String> {
@@ -137,13 +138,15 @@ fn equal_error(speedups: &[Speedup]) -> Option<String> {
     let cases = if here.len() == 1 { "case" } else { "cases" };
     let codes =
         if here.iter().all(|s| s.engine.is_fenicsx()) { "FEM" } else { "the faster FEM code" };
+    let in_words =
+        |ratio: &Ratio| format!("{} ± {}", rounded(ratio.value), rounded(ratio.plus_minus));
+    let span = match here.len() {
+        1 => in_words(&low),
+        _ => format!("{} to {}", in_words(&low), in_words(&high)),
+    };
     Some(format!(
-        "Timed in one run on one machine and each right to {level} p0 of its own limit, {codes} took {} ± \
-         {} to {} ± {} times as long as quarter-space ({} {cases}).",
-        rounded(low.value),
-        rounded(low.plus_minus),
-        rounded(high.value),
-        rounded(high.plus_minus),
+        "Timed in one run on one machine and each right to {level} p0 of its own limit, {codes} took {span} \
+         times as long as quarter-space ({} {cases}).",
         here.len()
     ))
 }
@@ -185,7 +188,6 @@ mod tests {
     use super::*;
     use crate::study::Engine;
     use crate::study::gate::Kind;
-    use crate::study::timing::Ratio;
 
     #[test]
     fn failed_gates_are_named() {
@@ -231,6 +233,8 @@ mod tests {
         assert!(text.contains("right to 0.005 p0"), "{text}");
         assert!(text.contains("2,100 ± 42 to 8,000 ± 160 times as long"), "{text}");
         assert!(text.ends_with("(2 cases)."), "{text}");
+        let text = equal_error(&speedups[..2]).unwrap();
+        assert!(text.contains("took 2,100 ± 42 times as long") && text.ends_with("(1 case)."));
         assert!(equal_error(&[]).is_none());
     }
 }

@@ -27,8 +27,7 @@ const DEPTH: f64 = 3.0;
 pub struct Passage {
     /// The body.
     pub body: BodyKind,
-    /// Where the contact's middle is seen from the place, negated: the x of the history, ascending
-    /// (C).
+    /// The places' distances from the contact's middle during the passage, ascending (C).
     pub x: Vec<f64>,
     /// Places along the body, ascending (C); of a contact that is symmetric about y = 0 those from
     /// there on.

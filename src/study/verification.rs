@@ -277,7 +277,7 @@ impl<'a> Side<'a> {
         grid_index(sizes, &changes.collect::<Vec<f64>>())
     }
 
-    /// What it does not know of itself.
+    /// Its own uncertainty of a part; none where it is not known.
     fn uncertainty(&self, part: Part) -> Option<f64> {
         match &self.own {
             Own::Refined(refined) => part.difference(self.curves, (*refined)?),

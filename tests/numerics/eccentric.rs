@@ -3,7 +3,7 @@
 
 use crate::common::{apart, scene, small};
 use edgeline::base::{Parity, PerBody, StressTensor};
-use edgeline::body::{Body, EdgeModel, Resolution, Shape};
+use edgeline::body::{Body, EdgeModel, Part, Resolution, Shape};
 use edgeline::solve::{Scene, SceneBody, SolvedScene, Tilt};
 use edgeline::stress::BodyKind;
 use std::f64::consts::PI;
@@ -347,7 +347,8 @@ fn long_waves_turn_bodies_of_any_length_as_a_plate() {
         {
             let (contact, shape) = (resolution.contact_axis(half), Shape { half, nu });
             let end = EdgeModel::QuarterSpace.end(nu, None);
-            let body = Body::new(&contact, shape, end, (Parity::Odd, false), &resolution);
+            let part = Part { parity: Parity::Odd, bends: true, slides: false };
+            let body = Body::new(&contact, shape, end, part, &resolution);
             let wave = 0.0174;
             let lines = nalgebra::DVector::from_column_slice(contact.nodes());
             let displacement = body.layer(wave / half).compliance * &lines;

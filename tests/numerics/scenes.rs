@@ -108,7 +108,7 @@ impl Draw {
 #[derive(Clone, Copy)]
 enum Law {
     Load,
-    Pull,
+    Tension,
     Gap,
     Penetration,
     Mirror,
@@ -124,7 +124,7 @@ enum Law {
 /// The largest violation of each law in units of its limit.
 const LAWS: [(&str, f64); 12] = [
     ("load (relative)", 1e-9),
-    ("pull (tolerances)", 1.0),
+    ("tension (tolerances)", 1.0),
     ("gap under the pressure (tolerances)", 3.0),
     ("penetration (tolerances)", 1.0),
     ("mirror symmetry (p0)", 1e-9),
@@ -224,7 +224,7 @@ fn run(draw: &Draw, compare: bool) -> edgeline::base::Result<Outcome> {
         for j in (0..axis.len()).filter(outside) {
             let (a, c) = solved.pressure.at_node(j);
             let pressed = c.iter().any(|c| *c != 0.0);
-            note(Law::Pull, -strip::pressure(a, c, a * t) / draw.tolerance);
+            note(Law::Tension, -strip::pressure(a, c, a * t) / draw.tolerance);
             note(Law::Penetration, -gaps[j] / draw.tolerance);
             if t < 1.0 && pressed {
                 note(Law::Gap, gaps[j].abs() / draw.tolerance);

@@ -3,7 +3,7 @@
 
 use crate::common::{apart, at, case, curve_points, half_of, near, scene, small, solved, worse};
 use edgeline::base::{Panels, Parity, StressTensor};
-use edgeline::body::{Body, EdgeModel, Resolution, Shape};
+use edgeline::body::{Body, EdgeModel, Part, Resolution, Shape};
 use edgeline::case::Case;
 use edgeline::kernels::{hertz, love, strip};
 use edgeline::solve::{Options, Point, Scene, SolvedScene, solve};
@@ -253,7 +253,7 @@ fn compliance_is_reciprocal() {
     ] {
         let axis = resolution.contact_axis(5.0);
         let (shape, end) = (Shape { half, nu: 0.3 }, model.end(0.3, None));
-        let body = Body::new(&axis, shape, end, (Parity::Even, false), &resolution);
+        let body = Body::new(&axis, shape, end, Part::EVEN, &resolution);
         let (nodes, weights) = (axis.nodes(), axis.weights());
         let shapes: [&dyn Fn(f64) -> f64; 4] =
             [&|_| 1.0, &|y| (y / 5.0).powi(8), &|y| (0.3 * PI * y).cos(), &|y| {
@@ -287,15 +287,9 @@ fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
     let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
         let (line, shape) = (resolution.contact_axis(slenderness), Shape { half, nu });
-        Body::new(
-            &line,
-            shape,
-            EdgeModel::QuarterSpace.end(nu, None),
-            (Parity::Even, false),
-            resolution,
-        )
-        .layer(k)
-        .condition
+        Body::new(&line, shape, EdgeModel::QuarterSpace.end(nu, None), Part::EVEN, resolution)
+            .layer(k)
+            .condition
     };
     let say = |what: &str, values: Vec<f64>| {
         println!(
@@ -352,8 +346,7 @@ fn smallest_energy(slenderness: f64, length_ratio: f64, model: EdgeModel, psi: f
     let half = slenderness / length_ratio;
     let shape = Shape { half, nu: 0.3 };
     let axis = resolution.contact_axis(slenderness);
-    let body =
-        Body::new(&axis, shape, model.end(0.3, Some(psi)), (Parity::Even, false), &resolution);
+    let body = Body::new(&axis, shape, model.end(0.3, Some(psi)), Part::EVEN, &resolution);
     let root: Vec<f64> = axis.weights().iter().map(|w| w.sqrt()).collect();
     let wavenumbers = resolution.wavenumbers(half, Parity::Even);
     let energies = wavenumbers.coarse().nodes().iter().map(|&k| {

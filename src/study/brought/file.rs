@@ -341,6 +341,11 @@ impl<'a> Table<'a> {
             let text = &record[column.at];
             let number = || match text.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(value * column.si),
+                // Some programs write the decimals of some languages.
+                _ if text.replace(',', ".").parse::<f64>().is_ok() => Err(at(
+                    column,
+                    format!("'{text}' has a comma: write its decimals after a point"),
+                )),
                 _ => Err(at(column, format!("'{text}' is not a finite number"))),
             };
             match column.meaning {
