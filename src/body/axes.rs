@@ -30,11 +30,13 @@ const BENDING_RATIO: f64 = 2.0;
 /// the longer one.
 const UNLIKE: f64 = 10.0;
 
-/// Half-length (C) of a body up to which the first panel of its end faces' depth is in proportion
-/// to it if loads bend it. Under long waves the equations of a plate in bending are close to
-/// singular, and errors at the corner, relative to the length, take the place of what is left: with
-/// panels of one size a body of half-length 0.65 turns by 0.7 to 1.4 times the right angle at the
-/// lowest wavenumber of tolerances of 1e-2, or by the opposite one at coarser ones.
+/// Half-length (C) of a body below which the first panel of its end faces' depth is, in proportion,
+/// that of a body of half-length [`SLENDER`], if loads bend it. Under long waves the equations of a
+/// plate in bending are close to singular, and errors at the corner, relative to the length, take
+/// the place of what is left: with panels of one size a body of half-length 0.65 turns by 0.7 to
+/// 1.4 times the right angle at the lowest wavenumber of tolerances of 1e-2, or by the opposite one
+/// at coarser ones.
+const SHORT: f64 = 2.0;
 const SLENDER: f64 = 5.0;
 
 /// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest
@@ -632,7 +634,9 @@ impl Resolution {
         exponent: Option<f64>,
     ) -> Panels {
         let deepest = self.face_reach / self.smallest_wavenumber(half, parity);
-        let part = if bends { (half / SLENDER).min(1.0) } else { 1.0 };
+        // Where an end is singular, what cancels at the other one would no longer do so.
+        let finer = bends && exponent.is_none() && half < SHORT;
+        let part = if finer { half / SLENDER } else { 1.0 };
         let first = part * self.end_panel(ledge);
         let mut s = self.graded(first, FACE_TAIL);
         // Panels may grow faster where the load only decays.
