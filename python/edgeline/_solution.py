@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from edgeline import _native
-from edgeline._native import Error
 from edgeline._case import Case, native_of
+from edgeline._native import Error
 
 if TYPE_CHECKING:
     import xarray
@@ -79,11 +79,13 @@ class Solution:
     def summary(self) -> dict[str, Any]:
         """The results in numbers: what `edgeline solve` writes into `summary.json`.
 
-        Among them `p_centre_pa`, the largest mean pressure of a cell `p_max_pa` and
-        its place `p_max_at_m` (x, y), which at a singular end (`details`, `edge`)
-        says nothing but how narrow the cells are, `approach_m`, `load_n`, `hertz` (`c_m`, `p0_pa`, `e_star_pa`), the most
+        Among them `p_centre_pa`, `p_max_pa` and its place `p_max_at_m` (x, y),
+        `approach_m`, `load_n`, `hertz` (`c_m`, `p0_pa`, `e_star_pa`), the most
         stressed place `critical` (`body`, `measure`, `value_pa`, `at_m`), and
         `converged`.
+
+        `p_max_pa` is the largest mean pressure of a cell: at a singular end
+        (`edge` in `details`) it tells no more than how narrow the cells are.
         """
         summary: dict[str, Any] = json.loads(self._native.summary())
         return summary

@@ -222,7 +222,7 @@ impl Solution {
         let p0_pa = self.case.hertz().p0_pa;
         let places = x.iter().zip(y).zip(z).map(|((x, y), z)| [*x, *y, *z]);
         let places: Vec<[f64; 3]> = places.collect();
-        check_points(&self.case, body, &places).map_err(raised)?;
+        check_points(&self.case, places.iter().map(|at_m| (body, *at_m))).map_err(raised)?;
         let mut found: Vec<f64> = Vec::with_capacity(6 * places.len());
         for some in places.chunks(AT_ONCE) {
             let stresses = work(py, || self.stresses(body, some.to_vec()))?.map_err(raised)?;

@@ -636,9 +636,8 @@ impl Resolution {
         let deepest = self.face_reach / self.smallest_wavenumber(half, parity);
         // Where an end is singular, what cancels at the other one would no longer do so.
         let finer = bends && exponent.is_none() && half < SHORT;
-        let part = if finer { half / SLENDER } else { 1.0 };
-        let first = part * self.end_panel(ledge);
-        let mut s = self.graded(first, FACE_TAIL);
+        let share = if finer { half / SLENDER } else { 1.0 };
+        let mut s = self.graded(share * self.end_panel(ledge), FACE_TAIL);
         // Panels may grow faster where the load only decays.
         let growth = match parity {
             Parity::Even => self.ratio * self.ratio,
@@ -667,11 +666,10 @@ impl Resolution {
             );
         };
         // One panel suffices for bodies that are not much longer than the contact is wide.
-        let slow = SLOW.max(smallest);
-        if slow > smallest {
-            equal(smallest, slow, if slow <= 20.0 * smallest { 20.0 } else { 10.0 });
+        if smallest < SLOW {
+            equal(smallest, SLOW, if SLOW <= 20.0 * smallest { 20.0 } else { 10.0 });
         }
-        equal(slow, self.k_max, self.k_ratio);
+        equal(SLOW.max(smallest), self.k_max, self.k_ratio);
         Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
     }
 
@@ -698,10 +696,8 @@ impl Resolution {
             Parity::Even => self.k_min.min(1.0 / half),
             Parity::Odd => BENDS / half,
         };
-        match of_body > 0.5 * SLOW {
-            true => of_body.clamp(SLOW, LONGEST),
-            false => of_body,
-        }
+        // No panel of its own is left below the slow waves' end.
+        if of_body > 0.5 * SLOW { of_body.clamp(SLOW, LONGEST) } else { of_body }
     }
 
     /// Wavenumbers along an end face's depth, for the plate of half-thickness `half`: its remainder

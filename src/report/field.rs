@@ -199,7 +199,6 @@ impl<'a> Quarter<'a> {
         let end = (0..y.len()).min_by(|i, j| far(&y[*i]).total_cmp(&far(&y[*j]))).expect("places");
         let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
         let (limit, critical) = self.critical();
-        let shown = |i: usize, j: usize, k: usize| self.von_mises(i, j, k);
         let figure = |place: &str,
                       labels,
                       axes: [&Vec<f64>; 2],
@@ -214,16 +213,23 @@ impl<'a> Quarter<'a> {
         };
         let depth = format!("z = {:.2} C (critical depth)", z[critical]);
         [
-            ("x0", figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| shown(middle, j, k))),
+            (
+                "x0",
+                figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| {
+                    self.von_mises(middle, j, k)
+                }),
+            ),
             (
                 "end",
                 figure("the +y end of the contact", ["x / C", "z / C"], [x, z], true, &|i, k| {
-                    shown(i, end, k)
+                    self.von_mises(i, end, k)
                 }),
             ),
             (
                 "critical-depth",
-                figure(&depth, ["y / C", "x / C"], [y, x], false, &|j, i| shown(i, j, critical)),
+                figure(&depth, ["y / C", "x / C"], [y, x], false, &|j, i| {
+                    self.von_mises(i, j, critical)
+                }),
             ),
         ]
     }

@@ -18,16 +18,18 @@ pub struct Extent {
     depth_m: f64,
 }
 
-/// Refuses `points_m` (m) of a body of `case` that lie outside it.
+/// Refuses points (m) of the bodies of `case` that lie outside them.
 ///
 /// # Errors
 /// [`Error::Value`] that names the first one.
-pub fn check_points(case: &Case, body: BodyKind, points_m: &[[f64; 3]]) -> Result<(), Error> {
-    let extent = Extent::of(case, body);
-    let check = |(i, at_m): (usize, &[f64; 3])| {
-        extent.check(*at_m).map_err(|outside| outside.of_point(i, body))
+pub fn check_points(
+    case: &Case,
+    points_m: impl IntoIterator<Item = (BodyKind, [f64; 3])>,
+) -> Result<(), Error> {
+    let check = |(i, (body, at_m)): (usize, (BodyKind, [f64; 3]))| {
+        Extent::of(case, body).check(at_m).map_err(|outside| outside.of_point(i, body))
     };
-    points_m.iter().enumerate().try_for_each(check)
+    points_m.into_iter().enumerate().try_for_each(check)
 }
 
 /// A coordinate outside a body.
@@ -51,7 +53,7 @@ impl Outside {
     }
 
     /// The error of the coordinate of a `body`'s point number `index` from zero.
-    pub fn of_point(self, index: usize, body: BodyKind) -> Error {
+    fn of_point(self, index: usize, body: BodyKind) -> Error {
         let key = format!("{} of point {} ({})", self.axis, index + 1, body.name());
         self.refused(key)
     }

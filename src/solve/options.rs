@@ -1,6 +1,6 @@
 //! The edge model of a solution, and what to compute.
 
-use super::extent::Extent;
+use super::extent::check_points;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -78,11 +78,7 @@ impl Options {
                 remedy: format!("did you mean {nearest}? There are {}", CURVE_NAMES.join(", ")),
             });
         }
-        for (i, point) in self.points.iter().enumerate() {
-            let inside = Extent::of(case, point.body).check(point.at_m);
-            inside.map_err(|outside| outside.of_point(i, point.body))?;
-        }
-        Ok(())
+        check_points(case, self.points.iter().map(|point| (point.body, point.at_m)))
     }
 }
 

@@ -90,7 +90,7 @@ impl Passage {
 
     /// Whether a place counts: not within 0.1 C of the overlap's edges, where stresses may have no
     /// limit.
-    pub fn counts(&self, place: usize) -> bool {
+    fn counts(&self, place: usize) -> bool {
         let [y, z] = self.place(place);
         away_from_edges([0.0, y, z], self.ends, EDGE)
     }

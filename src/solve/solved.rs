@@ -139,8 +139,8 @@ impl SolvedCase {
     /// # Errors
     /// [`crate::base::Error::Value`] that names the first point outside the body.
     pub fn stress(&self, body: BodyKind, points: &[[f64; 3]]) -> Result<Vec<StressTensor>> {
-        let in_m: Vec<_> = points.iter().map(|at| at.map(|v| v * self.hertz.c_m)).collect();
-        check_points(&self.case, body, &in_m)?;
+        let in_m = |at: &[f64; 3]| (body, at.map(|v| v * self.hertz.c_m));
+        check_points(&self.case, points.iter().map(in_m))?;
         let places: Vec<_> = points.iter().map(|at| (body, *at)).collect();
         let found = self.scene.stresses(&[], &places).points;
         Ok(found.iter().map(|s| self.shaped(body, s)).collect())

@@ -224,9 +224,9 @@ impl Trial<'_> {
         };
         match self.scene.tilt {
             Tilt::Held(wanted) if self.scene.depth != 0.0 => {
-                self.held(parts, line, known, (wanted, settings))
+                self.held(parts, line, known, wanted, settings)
             }
-            Tilt::Held(_) | Tilt::Free(_) => self.solved(parts, line, known, (None, &settings)),
+            Tilt::Held(_) | Tilt::Free(_) => self.solved(parts, line, known, None, &settings),
         }
     }
 
@@ -236,7 +236,8 @@ impl Trial<'_> {
         parts: &Parts,
         line: &Line,
         known: &mut Known,
-        (rotation, settings): (Option<Rotation>, &ContactSettings),
+        rotation: Option<Rotation>,
+        settings: &ContactSettings,
     ) -> Result<ContactSolution> {
         let matrices = &parts.compliances;
         let compliance = Compliance { wavenumbers: &parts.wavenumbers, matrices };
@@ -257,7 +258,8 @@ impl Trial<'_> {
         parts: &Parts,
         line: &Line,
         known: &mut Known,
-        (wanted, settings): (f64, ContactSettings),
+        wanted: f64,
+        settings: ContactSettings,
     ) -> Result<ContactSolution> {
         let scene = self.scene;
         let mut secants = Secants::default();
@@ -269,7 +271,7 @@ impl Trial<'_> {
             let Spring { tilt, compliance } =
                 known.spring.unwrap_or(Spring { tilt: wanted, compliance: 0.0 });
             let rotation = Some(Rotation::Sprung { tilt, compliance });
-            let solution = self.solved(parts, line, known, (rotation, &rough))?;
+            let solution = self.solved(parts, line, known, rotation, &rough)?;
             let deep = self.tilt(parts, &solution);
             off = (deep - wanted) * scene.half_length;
             // Solutions from different guesses differ by less than their error, and so do their
@@ -278,7 +280,7 @@ impl Trial<'_> {
             let exhausted = secants.width() * scene.half_length <= error || trial >= PATIENCE;
             if off.abs() <= error || exhausted && off.abs() <= self.accuracy.tolerance {
                 known.spring = Some(Spring { tilt, compliance });
-                return self.solved(parts, line, known, (rotation, &settings));
+                return self.solved(parts, line, known, rotation, &settings);
             }
             known.spring = Some(match known.spring {
                 Some(_) => Spring { tilt: secants.next(tilt, deep - wanted), compliance },

@@ -10,7 +10,7 @@
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
 use super::round::{LocalContact, RoundStress, STEP, rounded};
-use super::target::{KeptPlates, Loaded, Target};
+use super::target::{KeptPlates, Loaded, ON_FACE, Target};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
 use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
@@ -37,7 +37,7 @@ const INTERPOLATION_POWER: f64 = 1.25;
 /// fall like a power of k leave about k times the last one.
 const NEGLIGIBLE: f64 = 0.08;
 
-/// Points closer to a surface than this (C, or in body half-lengths) count as on it.
+/// Points closer to the loaded surface than this (C) count as on it.
 const ON_SURFACE: f64 = 1e-9;
 
 /// The stress field of one body.
@@ -428,7 +428,7 @@ impl<'a> Field<'a> {
     /// Whether `y` (C) lies on an end face.
     fn on_face(&self, y: f64) -> bool {
         let half = self.stack.body().half;
-        half - (y - self.stack.middle).abs() < ON_SURFACE * half
+        half - (y - self.stack.middle).abs() < ON_FACE * half
     }
 
     /// The stress of the endless contact with the local pressure plus `remainder`.

@@ -10,7 +10,7 @@ use crate::kernels::wave::{WAVES, Wanted, WaveTable};
 use std::sync::{Arc, Mutex};
 
 /// Points closer to an end face than this (in body half-lengths) count as on it.
-const ON_FACE: f64 = 1e-9;
+pub(super) const ON_FACE: f64 = 1e-9;
 
 /// Depth (C) that stands for the surface under a traction along x, see [`below`].
 const UNDER_SURFACE: f64 = 1e-5;

@@ -114,8 +114,7 @@ impl Series {
     #[must_use]
     pub fn within(self, errors: Option<Vec<f64>>) -> Self {
         let around = |(point, error): (&(f64, f64), f64)| [point.1 - error, point.1 + error];
-        let band =
-            errors.map(|errors| self.points.iter().zip(errors).map(around).collect::<Vec<_>>());
+        let band = errors.map(|errors| self.points.iter().zip(errors).map(around).collect());
         Self { band, ..self }
     }
 

@@ -117,16 +117,13 @@ impl<'a> CasePlots<'a> {
             let name = format!("{}{whose}", source.title());
             let ends = self.case.overlap();
             let beyond = points.iter().map(|(at, _)| !away_from_edges(*at, ends, self.excluded()));
-            let series = || Series {
+            let drawn = points.iter().map(|(at, value)| (at[axis as usize], *value)).collect();
+            let series = Series {
                 beyond: beyond.collect(),
                 line: !source.is_engine(),
-                ..Series::marks(
-                    &name,
-                    look(source),
-                    points.iter().map(|(at, value)| (at[axis as usize], *value)).collect(),
-                )
+                ..Series::marks(&name, look(source), drawn)
             };
-            (!points.is_empty()).then(|| series().within(own_errors))
+            (!points.is_empty()).then(|| series.within(own_errors))
         };
         self.sources().into_iter().filter_map(series).collect()
     }
