@@ -37,7 +37,7 @@ pub const BUILTIN_STUDIES: [(&str, &str); 3] = [
 
 /// Whether there is a file, or a pipe, at `path`; a folder does not hide what is built in under its
 /// name.
-pub(super) fn is_given(path: &Path) -> bool {
+pub fn is_given(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
 

@@ -10,7 +10,7 @@ use super::records::Records;
 use super::values::{checked_tolerance, chosen_models, source};
 use crate::base::number::{duration, duration_with_spread, rounded};
 use crate::base::{Error, Result};
-use crate::case::{Case, Study};
+use crate::case::{Case, Study, is_given};
 use crate::fem::{Code, Driver};
 use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
@@ -125,7 +125,7 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
     let built_in: Vec<Study> = Study::all_built_in().collect();
     let mut all: Vec<Case> = Vec::new();
     for path in named {
-        let is = |name: &str| path.as_os_str() == name && !path.exists();
+        let is = |name: &str| path.as_os_str() == name && !is_given(path);
         let of_studies = || built_in.iter().flat_map(Study::cases);
         let found: Vec<Case> = if let Some(study) = built_in.iter().find(|s| is(&s.name)) {
             study.cases().cloned().collect()

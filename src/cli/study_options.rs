@@ -9,7 +9,7 @@ use super::records::Records;
 use super::values::{chosen_models, source, unsuited};
 use crate::base::Result;
 use crate::body::EdgeModel;
-use crate::case::{BUILTIN_STUDIES, Case, Study};
+use crate::case::{BUILTIN_STUDIES, Case, Study, is_given};
 use crate::fem::FemResults;
 use crate::host::{self, check_memory};
 use crate::solve::{Options, solve_group};
@@ -96,7 +96,7 @@ impl StudyOptions {
         let mut names = BUILTIN_STUDIES.iter().map(|(name, _)| *name);
         match &self.study {
             None => names.next(),
-            Some(path) if path.exists() => None,
+            Some(path) if is_given(path) => None,
             Some(path) => names.find(|name| path.as_os_str() == *name),
         }
     }

@@ -199,3 +199,17 @@ fn plots_of_a_contact_that_is_not_symmetric_show_both_ends() {
     let c_m = summary["cases"][0]["hertz"]["c_m"].as_f64().unwrap();
     assert!((of(0) + 5.0 * c_m).abs() < 1e-12 && (of(1) - 5.0 * c_m + 0.5e-3).abs() < 1e-12);
 }
+
+/// As `--out` makes one.
+#[test]
+fn a_folder_does_not_hide_a_built_in_study() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::create_dir(folder.path().join("factorial")).unwrap();
+    let arguments = ["study", "factorial", "--methods", "mirror", "--repeats", "0", "--json"];
+    let done = edgeline(folder.path(), &[&arguments[..], &["--out", "factorial"]].concat())
+        .output()
+        .unwrap();
+    assert_eq!(done.status.code(), Some(0), "{}", said(&done));
+    let summary: serde_json::Value = serde_json::from_slice(&done.stdout).unwrap();
+    assert!(summary["gates"].as_array().unwrap().len() > 1, "{}", summary["gates"]);
+}
