@@ -3,7 +3,7 @@
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::{Case, Factors, Fatigue};
-use crate::base::number::stated;
+use crate::base::number::{significant, stated};
 use crate::base::{Error, Result};
 use std::f64::consts::PI;
 
@@ -41,6 +41,7 @@ impl Case {
         check_numbers(&Draft::of(self, Form::Load))?;
         self.check_raceway()?;
         self.check_factors()?;
+        self.check_width()?;
         self.check_pose()?;
         self.check_fatigue()?;
         self.check_heights()?;
@@ -157,14 +158,40 @@ impl Case {
         let (radius, shorter) = (self.equivalent_radius_m(), self.shorter_m());
         let force = |load: f64| load * self.contact_modulus() * radius * shorter;
         // C = 2 R sqrt(W / pi) is L / (2 S_l).
-        let by_width = |slenderness: f64| PI * (shorter / (4.0 * slenderness * radius)).powi(2);
+        let of_width = |width: f64| PI * (width / (2.0 * radius)).powi(2);
+        let by_width = |slenderness: f64| of_width(shorter / (2.0 * slenderness));
+        let widest = of_width(self.largest_width_m());
         let (least, most) = Factors::SLENDERNESS_RANGE;
         let (low, high) = Factors::LOAD_RANGE;
         let (weakest, strongest) = key("load.force_n").range;
         [
             force(low.max(by_width(most))).max(weakest),
-            force(high.min(by_width(least))).min(strongest),
+            force(high.min(by_width(least)).min(widest)).min(strongest),
         ]
+    }
+
+    /// Largest legal half-width C (m): that part of the smaller radius which the largest legal W
+    /// gives on a plane block.
+    fn largest_width_m(&self) -> f64 {
+        let roller = self.roller.radius_m;
+        let smaller = self.block.radius_m.map_or(roller, |radius| radius.abs().min(roller));
+        2.0 * (Factors::LOAD_RANGE.1 / PI).sqrt() * smaller
+    }
+
+    /// Refuses a contact too wide for its radii: in a closely conforming raceway W says nothing of
+    /// that.
+    fn check_width(&self) -> Result<()> {
+        let (own, most) = (self.hertz().c_m, self.largest_width_m());
+        if self.load.approach_m.is_some() || own <= most * ROUNDING {
+            return Ok(());
+        }
+        let [own, most] = [own, most].map(|v| significant(v, 3));
+        let reason = format!(
+            "the half-width C becomes {own} m, and must not exceed {most} m, a quarter of the smaller radius: \
+             the gap would be no parabola"
+        );
+        let remedy = "lower the load, or make the raceway's radius differ more from the roller's";
+        Err(key("load.force_n").refuse(self.load.force_n, reason, remedy))
     }
 
     /// Checks the factors that follow from the load and the lengths; without a force, the lengths

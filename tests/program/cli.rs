@@ -193,6 +193,11 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
             "length_m = 12e-3\nradius_m = -9e-3",
             "does not fit into this raceway",
         ),
+        (
+            "length_m = 12e-3",
+            "length_m = 12e-3\nradius_m = -10.01e-3",
+            "a quarter of the smaller radius",
+        ),
     ] {
         assert!(good.contains(from), "{from}");
         std::fs::write(path.join("bad.toml"), good.replacen(from, to, 1)).unwrap();
