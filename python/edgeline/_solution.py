@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import warnings
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -41,10 +42,16 @@ def solve(
     interpreter's lock is released. A solve has all processors; beside another
     one, of another Python thread, it has one.
 
+    Warns (`UserWarning`) where the program would: of a solution that is not
+    `converged`, and of a tolerance below the finest.
+
     Raises `edgeline.Error` for a case that cannot be solved, and `TypeError` for
     what is no case.
     """
-    return Solution(case, _native.solve(native_of(case), method, tolerance, engine))
+    solved = _native.solve(native_of(case), method, tolerance, engine)
+    for warning in solved.warnings():
+        warnings.warn(warning, stacklevel=2)
+    return Solution(case, solved)
 
 
 def von_mises(stress: ArrayLike) -> NDArray[np.float64]:

@@ -5,7 +5,7 @@ use crate::errors::raised;
 use crate::tables::table;
 use crate::work::work;
 use edgeline::base::{BodyKind, Error, HertzScales, Result, StressTensor};
-use edgeline::cli::values::{checked_residual, checked_tolerance};
+use edgeline::cli::values::{checked_residual, checked_tolerance, too_fine};
 use edgeline::report::cells::contents;
 use edgeline::report::columns::Columns;
 use edgeline::report::solution::{tables, write_locked};
@@ -181,6 +181,16 @@ impl Solution {
             Solved::Cells(cells) => serde_json::to_string(&cells.solution.summary),
         }
         .expect("a summary is plain data")
+    }
+
+    /// What to know of the solution, and what to beware of.
+    fn warnings(&self) -> Vec<String> {
+        match &self.solved {
+            Solved::Line(line) => {
+                too_fine(&self.case).into_iter().chain(line.1.summary.warning()).collect()
+            }
+            Solved::Cells(cells) => cells.solution.summary.warning().into_iter().collect(),
+        }
     }
 
     /// All tables by their names.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import gc
 import json
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -186,3 +187,12 @@ def test_plots_show_pressure_and_curves(solution: edgeline.Solution) -> None:
     pyplot.close("all")
     with pytest.raises(edgeline.Error, match="give one of .*depth-centre"):
         solution.plot("depth-center")
+
+
+def test_what_the_program_warns_of_is_a_warning() -> None:
+    case = edgeline.Case.from_toml("flush-short")
+    with pytest.warns(UserWarning, match="is that of a tolerance of 1e-4, which 5e-5 takes, too"):
+        edgeline.solve(case, "half-space", tolerance=5e-5)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        edgeline.solve(case, tolerance=1e-2)

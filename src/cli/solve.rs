@@ -30,9 +30,9 @@ use std::path::PathBuf;
 /// Writes summary.json, pressure.csv (the contact pressure, one row per cell), line_load.csv (load
 /// per length and half-width along the contact), curves.csv (stresses on the standard curves of
 /// both bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg
-/// and .png (pressure, its map, stresses of both bodies) and summary.html, a page of one sheet
-/// about the case. With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281,
-/// steel's constant. With --uncertain, what uncertain inputs make of the results. Takes well under
+/// and .png (pressure, its map, stresses of both bodies) and summary.html, a page about the case.
+/// With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281, steel's
+/// constant. With --uncertain, what uncertain inputs make of the results. Takes well under
 /// a second, with --uncertain that for each sample; with --field, or for a scene that is not
 /// symmetric, a few seconds.
 ///
@@ -315,12 +315,8 @@ fn tell<D: Serialize>(
     names: &[String],
     arguments: &Arguments,
 ) -> Result<Exit> {
-    if !found.summary.converged {
-        say(&format!(
-            "warning: the contact changed by more than its tolerance until the last of its {} iterations \
-             (`converged` in summary.json); compare with a tighter --tolerance",
-            found.summary.iterations
-        ));
+    if let Some(warning) = found.summary.warning() {
+        say(&format!("warning: {warning}"));
     }
     if arguments.json {
         print_json(&found.summary)?;

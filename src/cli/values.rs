@@ -75,15 +75,23 @@ pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
     checked(tolerance, range, "a fraction of p0", "1e-3")
 }
 
-/// Says so where a case asks for more than the finest resolution of the engine along a line.
-pub fn say_if_too_fine(case: &Case) {
+/// What to know of a case that asks for more than the finest resolution of the engine along a line.
+pub fn too_fine(case: &Case) -> Option<String> {
     let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
-    if asked < finest {
-        say(&format!(
-            "note: the finest resolution is that of a tolerance of {}, which {} takes, too",
+    let note = || {
+        format!(
+            "the finest resolution is that of a tolerance of {}, which {} takes, too",
             stated(finest),
             stated(asked)
-        ));
+        )
+    };
+    (asked < finest).then(note)
+}
+
+/// Says so where a case is [`too_fine`].
+pub fn say_if_too_fine(case: &Case) {
+    if let Some(note) = too_fine(case) {
+        say(&format!("note: {note}"));
     }
 }
 

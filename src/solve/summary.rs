@@ -50,6 +50,18 @@ pub struct Summary<D = Details> {
 }
 
 impl<D> Summary<D> {
+    /// What to beware of, if anything.
+    pub fn warning(&self) -> Option<String> {
+        let warning = || {
+            format!(
+                "the contact changed by more than its tolerance until the last of its {} iterations (`converged` \
+                 in the summary); compare with a tighter tolerance",
+                self.iterations
+            )
+        };
+        (!self.converged).then(warning)
+    }
+
     /// The same with other details.
     pub fn map_details<E>(self, of: impl FnOnce(D) -> E) -> Summary<E> {
         Summary {
