@@ -1,4 +1,4 @@
-//! The pictures of one solution, and a page of one sheet about it for a report.
+//! The pictures of one solution, and a page about it for a report.
 
 use super::render::fill;
 use crate::base::number::{duration, significant, with_minus_signs};
