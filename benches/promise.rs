@@ -417,7 +417,9 @@ fn search(kind: Kind, tolerance: f64, steps: usize) {
     let count = if tolerance < 5e-4 { 10 } else { 24 };
     let scenes: Vec<Known> = (0..count).filter_map(|i| Known::new(kind, 10_000 + i)).collect();
     let end = scenes[0].scene.end(BodyKind::Block);
-    let mut best = Resolution::of(tolerance, &end, scenes[0].scene.corner_exponent());
+    // Straight and centred scenes have the same at both ends.
+    let [exponent, _] = scenes[0].scene.corner_exponents();
+    let mut best = Resolution::of(tolerance, &end, exponent);
     let first = price(&scenes, &best, tolerance, f64::INFINITY);
     println!("{kind:?} {tolerance:e}: at first {first:?}");
     let mut least = first.map_or(f64::INFINITY, cost);

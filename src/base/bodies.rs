@@ -32,6 +32,15 @@ impl BodyKind {
     }
 }
 
+/// Ends that differ by less than this part of a length are flush: the difference is rounding.
+const FLUSH: f64 = 1e-9;
+
+/// The length by which a body goes on `beyond` an end of the contact, none where it is rounding of
+/// a length of this `size`: flush ends have other axes, laws and points than the narrowest ledge.
+pub fn ledge(beyond: f64, size: f64) -> f64 {
+    if beyond > FLUSH * size { beyond } else { 0.0 }
+}
+
 /// A pair of values, one for each body.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub struct PerBody<T> {

@@ -15,7 +15,7 @@ pub mod stop;
 mod tensor;
 mod wavenumbers;
 
-pub use bodies::{BodyKind, PerBody};
+pub use bodies::{BodyKind, PerBody, ledge};
 pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::{Corner, Panels};

@@ -2,7 +2,7 @@
 
 use super::end::End;
 use super::part::Part;
-use crate::base::{Corner, Panels, Parity, Wavenumbers};
+use crate::base::{Corner, Panels, Parity, Wavenumbers, ledge};
 use serde::{Deserialize, Serialize};
 
 /// Wavenumber below which the contact's width has no effect.
@@ -103,9 +103,6 @@ pub struct Resolution {
 /// The tolerances that have levels of their own.
 const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
-/// Lengths that differ by less than this part of a body's are the same.
-const SAME: f64 = 1e-10;
-
 /// Largest distance between half-widths that follow a gap, in the length within which it turns, and
 /// the least one (C): nearer to each other than the shortest waves are long they would be noise.
 const TURN: f64 = 0.2;
@@ -180,7 +177,7 @@ const FINITE: [Resolution; 5] = [
         k_step: 6.0,
         k_min: 0.01,
         k_ratio: 3.2,
-        images: 1,
+        images: 2,
         face_reach: 15.0,
         reach: 15.0,
     },
@@ -196,7 +193,7 @@ const FINITE: [Resolution; 5] = [
         k_step: 3.0,
         k_min: 0.003,
         k_ratio: 2.0,
-        images: 2,
+        images: 4,
         face_reach: 19.0,
         reach: 20.0,
     },
@@ -265,7 +262,7 @@ const SINGULAR: [Resolution; 5] = [
         k_step: 5.5,
         k_min: 0.005,
         k_ratio: 2.8,
-        images: 1,
+        images: 2,
         face_reach: 17.0,
         reach: 14.0,
     },
@@ -281,7 +278,7 @@ const SINGULAR: [Resolution; 5] = [
         k_step: 4.0,
         k_min: 0.003,
         k_ratio: 2.2,
-        images: 2,
+        images: 4,
         face_reach: 18.0,
         reach: 16.0,
     },
@@ -320,7 +317,7 @@ const TIPS: [Resolution; 5] = [
         k_step: 4.0,
         k_min: 0.01,
         k_ratio: 3.2,
-        images: 1,
+        images: 2,
         face_reach: 14.0,
         reach: 14.0,
     },
@@ -336,7 +333,7 @@ const TIPS: [Resolution; 5] = [
         k_step: 3.0,
         k_min: 0.005,
         k_ratio: 2.2,
-        images: 2,
+        images: 4,
         face_reach: 18.0,
         reach: 18.0,
     },
@@ -426,13 +423,6 @@ const ENDLESS: [Resolution; 5] = [
         reach: 24.0,
     },
 ];
-
-/// The length of a body of this half-length beyond the `contact` on one side of its middle: none
-/// where it differs by rounding. Flush ends have other axes than the narrowest ledge.
-pub(super) fn ledge(contact: &Panels, half: f64) -> f64 {
-    let beyond = half - contact.end();
-    if beyond > SAME * half { beyond } else { 0.0 }
-}
 
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
@@ -608,13 +598,11 @@ impl Resolution {
     pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
-        // Less than that between a body's middle and the contact's end is rounding.
-        let rounding = SAME * half;
-        if near > rounding {
+        if ledge(near, half) > 0.0 {
             let inward = self.graded(self.corner.min(0.5 * near), near);
             breaks.splice(..0, inward[1..].iter().rev().map(|s| (near - s).max(0.0)));
         }
-        let ledge = ledge(contact, half);
+        let ledge = ledge(half - contact.end(), half);
         if ledge > 0.0 {
             // The effect of the end face on the surface is smooth at the contact's end: only the
             // face itself needs grading.

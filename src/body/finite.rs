@@ -6,11 +6,11 @@
 //! units of C. A layer's displacement is f p with u = (1 - nu^2)/(pi E) f p, so a half-space's f is
 //! 2 K0(k |y|).
 
-use super::axes::{PLATE_FADES, Resolution, ledge};
+use super::axes::{PLATE_FADES, Resolution};
 use super::end::End;
 use super::part::Part;
 use super::stencil::{Image, Peak, Sources, Stencil};
-use crate::base::{Panels, Parity, StressTensor, linear};
+use crate::base::{Panels, Parity, StressTensor, ledge, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
@@ -168,7 +168,7 @@ impl Body {
         let Part { parity, slides, .. } = part;
         let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
-        let ledge = ledge(contact, half);
+        let ledge = ledge(half - contact.end(), half);
         let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
         let exponent = corner.map(|c| c.exponent);
         let contact = first..first + contact.len();

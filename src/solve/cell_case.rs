@@ -3,7 +3,7 @@
 use super::cell_contact::CellContact;
 use super::cell_deep::DeepMotion;
 use super::cell_stress::Stressed;
-use super::cells::{PressureCell, contact_ends, largest, line_loads};
+use super::cells::{PressureCell, contact_ends, largest, line_loads, load_error};
 use super::options::Options;
 use super::scene::Scene;
 use super::shaping::Shaping;
@@ -368,8 +368,7 @@ impl Found<'_> {
             pressure: pressure_lines(self.scene, pressure),
             stress: stressed.curves,
         };
-        let critical = most_stressed(&curves.stress, &self.scene.span());
-        let critical = critical.map(|critical| CriticalSummary::new(&critical, &hertz));
+        let critical = most_stressed(&curves, &self.scene.span());
         let summary = self.summary(&cells, &line_loads, critical, seconds);
         Solution { summary, curves, cells, line_loads, points: stressed.points }
     }
@@ -385,7 +384,6 @@ impl Found<'_> {
         let hertz = case.hertz();
         let HertzScales { c_m, p0_pa, .. } = hertz;
         let slope = c_m / (2.0 * case.equivalent_radius_m());
-        let carried: f64 = cells.iter().map(|c| c.p * p0_pa * (c.dx * c_m) * (c.dy * c_m)).sum();
         let top = largest(cells);
         // Mirror images have the same pressure.
         let mirrored = |v: f64, even: bool| if even { v.abs() } else { v };
@@ -404,7 +402,7 @@ impl Found<'_> {
             contact_y_m: contact_ends(line_loads).map(|y| y * c_m),
             converged: true,
             iterations: pressure.iterations,
-            load_error_rel: (carried / case.load.force_n - 1.0).abs(),
+            load_error_rel: load_error(cells, case),
             seconds,
             critical,
             details: self.details(),
@@ -438,23 +436,15 @@ fn centre(cells: &[PressureCell]) -> [f64; 2] {
 
 /// The pressures of the cells that the two standard lines go through.
 fn pressure_lines(scene: &Scene, pressure: &CellPressure) -> Vec<PressureLine> {
-    let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
-        name: name.to_string(),
-        p: at.iter().map(|&[x, y]| pressure.at(x, scene.off_middle(y))).collect(),
-        at,
-        own_error: None,
-    };
     let (span, grid) = (scene.span(), &pressure.grid);
     // A rough contact has other pressures on every cell.
-    let (xs, ys): (Vec<f64>, Vec<f64>) = match scene.rough {
+    let (across, along): (Vec<f64>, Vec<f64>) = match scene.rough {
         true => (
             (0..grid.nx).map(|i| grid.x(i)).collect(),
             (0..grid.ny).map(|j| grid.y(j) + scene.middle).collect(),
         ),
         false => (across_contact(), span.contact_line()),
     };
-    vec![
-        line("along-y", ys.into_iter().map(|y| [0.0, y]).collect()),
-        line("along-x", xs.into_iter().map(|x| [x, span.centre()]).collect()),
-    ]
+    let p = |[x, y]: [f64; 2]| pressure.at(x, scene.off_middle(y));
+    PressureLine::standard(along, across, span.centre(), p)
 }

@@ -3,6 +3,7 @@
 use super::cell_deep::DeepMotion;
 use super::on_cells::Placed;
 use super::scene::{Scene, Tilt};
+use super::secants::Secants;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap, WIDER};
@@ -76,11 +77,12 @@ impl<'a> CellContact<'a> {
                 let mut few = self.problem.clone();
                 few.grid.nx = few.grid.nx.min(SEARCH);
                 few.grid.ny = few.grid.ny.min(SEARCH);
-                let mut search = Search { wanted, far: wanted, slope: 1.0 };
+                let (mut far, mut secants) = (wanted, Secants::new());
                 if few.grid != self.problem.grid {
-                    self.held(&few, &mut search)?;
+                    self.held(&few, wanted, &mut far, &mut secants)?;
+                    secants = secants.of_another();
                 }
-                self.held(&self.problem, &mut search)
+                self.held(&self.problem, wanted, &mut far, &mut secants)
             }
             _ => {
                 let pressure = self.pressed(&self.problem, None)?;
@@ -174,48 +176,34 @@ impl<'a> CellContact<'a> {
         near.iter().sum::<f64>() / near.len() as f64
     }
 
-    /// The contact on the cells of `problem` whose tilt at the depth is the one that is wanted, by
-    /// secants from where `search` stands.
+    /// The contact on the cells of `problem` whose tilt at the depth is the `wanted` one, by
+    /// `secants` over that of `far` points, from one to try first.
     fn held(
         &self,
         problem: &CellProblem,
-        search: &mut Search,
+        wanted: f64,
+        far: &mut f64,
+        secants: &mut Secants,
     ) -> Result<(CellPressure, DeepMotion)> {
         let mut problem = problem.clone();
         let mut pressed: Option<CellPressure> = None;
-        let mut last: Option<[f64; 2]> = None;
+        let mut off = f64::INFINITY;
         for _ in 0..MOST_TRIALS {
-            problem.tilt = CellTilt::Held(search.far);
+            problem.tilt = CellTilt::Held(*far);
             let mut found = self.pressed(&problem, pressed.as_ref())?;
             found.iterations += pressed.map_or(0, |last| last.iterations);
             let motion = self.motion(&problem, &found);
-            let off = motion.tilt - search.wanted;
+            off = motion.tilt - wanted;
             if off.abs() * self.scene.half_length <= TILT_ERROR {
                 return Ok((found, motion));
             }
-            if let Some([before, was]) = last
-                && was != off
-            {
-                search.slope = (off - was) / (search.far - before);
-            }
-            last = Some([search.far, off]);
-            search.far -= off / search.slope;
+            *far = secants.next(*far, off);
             pressed = Some(found);
         }
         Err(Error::NotConverged {
             iterations: MOST_TRIALS,
-            residual: last.map_or(f64::INFINITY, |[_, off]| off.abs()),
+            residual: off.abs(),
             remedy: "the held tilt was not reached: give the load's eccentricity_m instead".into(),
         })
     }
-}
-
-/// Where the search for a tilt of far points (C / (2 R)) stands.
-struct Search {
-    /// The tilt at the depth that is sought.
-    wanted: f64,
-    /// The tilt of far points to try next.
-    far: f64,
-    /// Change of the tilt at the depth with that of far points.
-    slope: f64,
 }

@@ -1,6 +1,8 @@
 //! The contact pressure in cells, whose sum is the load.
 
 use super::solved_scene::SolvedScene;
+use crate::base::HertzScales;
+use crate::case::Case;
 use crate::cells::CellPressure;
 use crate::kernels::strip;
 use crate::stress::{LineLoad, Load};
@@ -26,6 +28,13 @@ pub struct PressureCell {
 /// The cell of largest pressure; there is always one.
 pub(super) fn largest(cells: &[PressureCell]) -> &PressureCell {
     cells.iter().max_by(|a, b| a.p.total_cmp(&b.p)).expect("a contact has cells")
+}
+
+/// What the pressures of `cells` miss of the force of `case`, or exceed it by, as a part of it.
+pub(super) fn load_error(cells: &[PressureCell], case: &Case) -> f64 {
+    let HertzScales { c_m, p0_pa, .. } = case.hertz();
+    let carried_n: f64 = cells.iter().map(|c| c.p * p0_pa * (c.dx * c_m) * (c.dy * c_m)).sum();
+    (carried_n / case.load.force_n - 1.0).abs()
 }
 
 /// Mean pressures of cells that are `CELL` wide and as long as a node's quadrature weight, so that

@@ -8,6 +8,9 @@ use crate::contact::{Shaped, Slices};
 /// How far beyond a first guess the axis reaches, in half-lengths of the contact.
 pub(super) const MARGIN: f64 = 0.15;
 
+/// How near its guessed end is to that of the bodies (half-lengths) for a contact to reach it.
+const REACHES: f64 = 0.01;
+
 /// Half-length (own units) of a body with free ends below which a load beside its middle asks for
 /// the resolution of [`Resolution::COARSE`] at least. Under long waves the equations of a plate in
 /// bending are close to singular, and between its ends there are few panels: at coarser ones their
@@ -29,8 +32,7 @@ impl Scene {
         if slices.is_some_and(|slices| self.ends_inside(slices)) {
             return Resolution::for_tips(tolerance);
         }
-        let (end, corner) = (self.end(BodyKind::Block), self.corner_exponent());
-        let level = Resolution::of(tolerance, &end, corner);
+        let level = self.level(tolerance, slices.map_or(overlap, |slices| slices.ends));
         let Some(slices) = slices else { return level };
         let gap = self.gap();
         let turns = [0, 1].map(|side| {
@@ -39,6 +41,17 @@ impl Scene {
             gap.turns_within(end, -outward)
         });
         level.following(turns[0].min(turns[1]))
+    }
+
+    /// The resolution for a `tolerance` (p0) of a contact that has about these `ends`. The pressure
+    /// has the power of an end of the bodies only where it reaches that.
+    fn level(&self, tolerance: f64, ends: [f64; 2]) -> Resolution {
+        let (overlap, known) = (self.overlap(), self.corner_exponents());
+        let reaches =
+            |side: usize| (ends[side] - overlap[side]).abs() <= REACHES * self.half_length;
+        let exponents = [0, 1].map(|side| known[side].filter(|_| reaches(side)));
+        let largest = exponents.into_iter().flatten().reduce(f64::max);
+        Resolution::of(tolerance, &self.end(BodyKind::Block), largest)
     }
 
     /// Whether a load beside the middle of a short body with free ends bends it.

@@ -138,12 +138,9 @@ fn keep_candidates(samples: &mut Vec<Sample>, largest: f64, loaded: f64) {
 
 /// The largest von Mises stress of the samples.
 fn critical(samples: &[Sample], shaping: &Shaping) -> Critical {
-    let values = samples.iter().map(|(body, at, stress)| {
-        let value = shaping.stress(*body, stress).von_mises();
-        Critical { body: *body, value, at: *at }
-    });
-    let best = values.reduce(|best, next| if next.value > best.value { next } else { best });
-    best.expect("both bodies have samples")
+    let value =
+        |(body, at, stress): &Sample| (*body, *at, shaping.stress(*body, stress).von_mises());
+    Critical::largest(samples.iter().map(value)).expect("both bodies have samples")
 }
 
 /// Depths (C) of the search's first pass.

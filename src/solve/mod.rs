@@ -23,6 +23,7 @@ mod passage;
 #[cfg(feature = "cli")]
 mod peak;
 mod scene;
+mod secants;
 mod shaping;
 mod solved;
 mod solved_scene;

@@ -4,7 +4,7 @@
 use super::extent::Extent;
 use super::shaping::Shaping;
 use super::solved::SolvedCase;
-use crate::base::{BodyKind, HertzScales, StressTensor};
+use crate::base::{BodyKind, HertzScales, StressTensor, ledge};
 use crate::case::Fatigue;
 use crate::fatigue::{Extreme, Measures, Parameters};
 use crate::stress::{BodyField, EDGE, Load, away_from_edges};
@@ -153,12 +153,12 @@ fn along(overlap: [f64; 2], own: [f64; 2], symmetric: bool, reach: f64, count: u
         y[0] = overlap[0];
     }
     let more = count / 2;
-    for (side, ledge) in [(1.0, own[1] - overlap[1]), (-1.0, overlap[0] - own[0])] {
-        if ledge <= 1e-9 * half || (symmetric && side < 0.0) {
+    for (side, beyond) in [(1.0, own[1] - overlap[1]), (-1.0, overlap[0] - own[0])] {
+        if ledge(beyond, half) == 0.0 || (symmetric && side < 0.0) {
             continue;
         }
         let end = if side > 0.0 { overlap[1] } else { overlap[0] };
-        let reach = ledge.min(reach);
+        let reach = beyond.min(reach);
         y.extend((1..=more).map(|i| end + side * reach * (i as f64 / more as f64).powi(2)));
     }
     y.sort_by(f64::total_cmp);

@@ -1,6 +1,6 @@
 //! A contact in units of C and p0: a case without its scales.
 
-use crate::base::{Material, PerBody, Profile};
+use crate::base::{Material, PerBody, Profile, ledge};
 use crate::body::{EdgeModel, End, corner_exponent};
 use crate::case::{Accuracy, Block, Case, Load, Pose, Roller, Sliding};
 use crate::contact::Shaped;
@@ -8,8 +8,8 @@ use crate::stress::BodyKind;
 use crate::stress::curves::Span;
 use std::f64::consts::PI;
 
-/// Ends that differ by less than this part of a half-length are flush.
-const FLUSH: f64 = 1e-9;
+/// A number smaller than this part of a length or an angle beside it is rounding.
+const NOTHING: f64 = 1e-9;
 
 /// One of the two bodies of a [`Scene`].
 #[derive(Debug, Clone, PartialEq)]
@@ -310,18 +310,12 @@ impl Scene {
         [0, 1].map(|side| {
             let bodies = BodyKind::ALL.map(|kind| {
                 let body = &self.bodies[kind];
-                let ledge = (body.ends()[side] - overlap[side]).abs();
-                let flush = ledge <= FLUSH * self.half_length;
-                (body.share, if flush { self.end(kind) } else { End::ENDLESS })
+                let beyond = (body.ends()[side] - overlap[side]).abs();
+                let is_flush = ledge(beyond, self.half_length) == 0.0;
+                (body.share, if is_flush { self.end(kind) } else { End::ENDLESS })
             });
             corner_exponent(&bodies)
         })
-    }
-
-    /// The larger one of [`Scene::corner_exponents`].
-    pub fn corner_exponent(&self) -> Option<f64> {
-        let [first, second] = self.corner_exponents();
-        first.into_iter().chain(second).reduce(f64::max)
     }
 }
 
@@ -338,18 +332,17 @@ pub struct SceneKey {
 /// A number beside some `size`: what is nothing but for rounding is nothing, so that symmetric
 /// scenes are symmetric.
 fn unless_nothing(v: f64, size: f64) -> f64 {
-    if v.abs() < FLUSH * size { 0.0 } else { rounded(v) }
+    if v.abs() < NOTHING * size { 0.0 } else { rounded(v) }
 }
 
 /// The `own` ends of a body, at those of the other one where they are flush with them but for
 /// rounding, which must not leave a ledge.
 fn flush(own: [f64; 2], other: [f64; 2]) -> [f64; 2] {
     let shorter = 0.5 * (own[1] - own[0]).min(other[1] - other[0]);
-    let end = |side: usize| match (own[side] - other[side]).abs() < FLUSH * shorter {
-        true => other[side],
-        false => own[side],
-    };
-    [end(0), end(1)]
+    [0, 1].map(|side| match ledge((own[side] - other[side]).abs(), shorter) {
+        0.0 => other[side],
+        _ => own[side],
+    })
 }
 
 /// The number rounded to twelve digits, to remove differences by rounding.

@@ -2,7 +2,7 @@
 //! and stresses at any points.
 
 use super::approached::{approach_m, with_force};
-use super::cells::{PressureCell, largest, pressure_cells};
+use super::cells::{PressureCell, largest, load_error, pressure_cells};
 use super::edge::{Side, edge_strength};
 use super::extent::{Extent, check_points};
 use super::grid::check_grid;
@@ -191,7 +191,7 @@ impl SolvedCase {
         let points = self.options.points.iter().zip(&stresses.found.points);
         let points = points.map(|(point, s)| self.shaped(point.body, s)).collect();
         let cells = pressure_cells(&self.scene);
-        let critical = most_stressed(&curves.stress, &self.scene.scene.span());
+        let critical = most_stressed(&curves, &self.scene.scene.span());
         let summary = self.summary(stresses, critical, &cells);
         let line_loads = self.scene.pressure.whole_line();
         Solution { summary, curves, cells, line_loads, points }
@@ -209,17 +209,9 @@ impl SolvedCase {
 
     /// The pressure on the two standard lines.
     fn pressure_lines(&self) -> Vec<PressureLine> {
-        let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
-            name: name.to_string(),
-            p: at.iter().map(|&[x, y]| self.pressure(x, y)).collect(),
-            at,
-            own_error: None,
-        };
         let span = self.scene.scene.span();
-        vec![
-            line("along-y", span.contact_line().into_iter().map(|y| [0.0, y]).collect()),
-            line("along-x", across_contact().into_iter().map(|x| [x, span.centre()]).collect()),
-        ]
+        let (along, across) = (span.contact_line(), across_contact());
+        PressureLine::standard(along, across, span.centre(), |[x, y]| self.pressure(x, y))
     }
 
     fn stress_curves(&self, stresses: &SharedStresses) -> Vec<StressCurve> {
@@ -238,13 +230,11 @@ impl SolvedCase {
     fn summary(
         &self,
         stresses: &SharedStresses,
-        critical: Option<Critical>,
+        critical: Option<CriticalSummary>,
         cells: &[PressureCell],
     ) -> Summary {
         let HertzScales { c_m, p0_pa, .. } = self.hertz;
         let (case, solved) = (&self.case, &self.scene);
-        let carried: f64 =
-            cells.iter().map(|cell| cell.p * p0_pa * (cell.dx * c_m) * (cell.dy * c_m)).sum();
         let top = largest(cells);
         Summary {
             case: case.name.clone(),
@@ -260,13 +250,13 @@ impl SolvedCase {
             contact_y_m: solved.ends().map(|y| y * c_m),
             converged: solved.converged(),
             iterations: solved.contact.iterations,
-            load_error_rel: (carried / case.load.force_n - 1.0).abs(),
+            load_error_rel: load_error(cells, case),
             seconds: Seconds {
                 stress: stresses.seconds,
                 total: solved.seconds.total + stresses.seconds,
                 ..solved.seconds
             },
-            critical: critical.map(|critical| CriticalSummary::new(&critical, &self.hertz)),
+            critical,
             details: self.details(stresses),
         }
     }
@@ -322,10 +312,11 @@ pub(super) fn place_of(scene: &SolvedScene, cell: &PressureCell) -> [f64; 2] {
 }
 
 /// The most stressed point of the curves outside the surroundings of the overlap's edges.
-pub(super) fn most_stressed(curves: &[StressCurve], span: &Span) -> Option<Critical> {
-    let points = curves.iter().flat_map(|c| c.at.iter().zip(&c.stress).map(|p| (c.body, p)));
-    let away = points.filter(|(_, (at, _))| away_from_edges(**at, span.ends, EDGE));
-    let values =
-        away.map(|(body, (at, stress))| Critical { body, value: stress.von_mises(), at: *at });
-    values.reduce(|best, next| if next.value > best.value { next } else { best })
+pub(super) fn most_stressed(curves: &Curves, span: &Span) -> Option<CriticalSummary> {
+    let points = curves.stress.iter().flat_map(|curve| {
+        let values = curve.stress.iter().map(StressTensor::von_mises);
+        curve.at.iter().zip(values).map(|(at, value)| (curve.body, *at, value))
+    });
+    let away = points.filter(|(_, at, _)| away_from_edges(*at, span.ends, EDGE));
+    Critical::largest(away).map(|critical| CriticalSummary::new(&critical, &curves.hertz))
 }

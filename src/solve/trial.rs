@@ -4,6 +4,7 @@
 use super::deep::{self, Touch};
 use super::first_guess::MARGIN;
 use super::scene::{Scene, SceneBody, Tilt};
+use super::secants::Secants;
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Panels, Result, Wavenumbers};
 use crate::body::{LoadedLine, Placed, Resolution, Shape, Stack};
@@ -69,6 +70,19 @@ impl Line {
             ends: [0, 1].map(|side| if past[side] { overlap[side] } else { wanted[side] }),
             open: past.map(|past| !past),
         }
+    }
+
+    /// The line to try after two, each with the one that was found on it: where the contact ends
+    /// alternates between them, the end at which secants say that it will stay.
+    fn between([before, had]: [Self; 2], [line, found]: [Self; 2]) -> Self {
+        let end = |side: usize| {
+            let [moved, followed] =
+                [[line, before], [found, had]].map(|[to, from]| to.ends[side] - from.ends[side]);
+            let alternates = found.open[side] && line.open[side] && moved * followed < 0.0;
+            let slope = if alternates { followed / moved } else { 0.0 };
+            line.ends[side] + (found.ends[side] - line.ends[side]) / (1.0 - slope)
+        };
+        Self { ends: [0, 1].map(end), ..found }
     }
 
     /// Half of the line's length.
@@ -144,6 +158,7 @@ impl Trial<'_> {
     /// The contact from a first guess of its `line`, and from what else is known of it.
     pub fn settled(&self, mut line: Line, mut known: Known) -> Result<Settled> {
         let mut setup = 0.0;
+        let mut last: Option<[Line; 2]> = None;
         for trial in 1.. {
             go_on()?;
             let start = Instant::now();
@@ -156,7 +171,9 @@ impl Trial<'_> {
             if same || trial == MOST_TRIALS {
                 return Ok(Settled { line, parts, contact, known, is_settled: same, setup });
             }
-            line = found;
+            let next = last.map_or(found, |last| Line::between(last, [line, found]));
+            last = Some([line, found]);
+            line = next;
         }
         unreachable!("the trials end")
     }
@@ -262,7 +279,7 @@ impl Trial<'_> {
         settings: ContactSettings,
     ) -> Result<ContactSolution> {
         let scene = self.scene;
-        let mut secants = Secants::default();
+        let mut secants = Secants::new();
         let mut off = f64::INFINITY;
         // A pressure within the tolerance does not follow a change of the tilt below it.
         let settings = ContactSettings { tolerance: FOLLOWS * settings.tolerance, ..settings };
@@ -375,46 +392,3 @@ pub(super) fn problem<'a>(
         guess: None,
     }
 }
-
-/// The search for the zero of a function whose slope is about 1, or at least of one sign: by
-/// secants, and within two arguments whose values are of different signs as soon as both are known.
-#[derive(Debug, Default)]
-struct Secants {
-    /// The argument and the value before.
-    last: Option<[f64; 2]>,
-    /// The last arguments with a value below zero, and above.
-    below: Option<f64>,
-    above: Option<f64>,
-}
-
-impl Secants {
-    /// Distance of two arguments with values of different signs; infinite as long as one is
-    /// unknown.
-    fn width(&self) -> f64 {
-        match (self.below, self.above) {
-            (Some(one), Some(other)) => (other - one).abs(),
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// The next argument to try, after the value at one.
-    fn next(&mut self, at: f64, value: f64) -> f64 {
-        let side = if value < 0.0 { &mut self.below } else { &mut self.above };
-        *side = Some(at);
-        let step = match self.last.replace([at, value]) {
-            Some([before, was]) if value != was => {
-                let longest = LONGEST_STEP * (at - before).abs();
-                (-value * (at - before) / (value - was)).clamp(-longest, longest)
-            }
-            _ => -value,
-        };
-        let wanted = at + step;
-        match (self.below, self.above) {
-            (Some(a), Some(b)) if !(a.min(b)..a.max(b)).contains(&wanted) => 0.5 * (a + b),
-            _ => wanted,
-        }
-    }
-}
-
-/// Most of a step of [`Secants`] in steps before it.
-const LONGEST_STEP: f64 = 8.0;

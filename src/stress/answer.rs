@@ -17,6 +17,28 @@ pub struct PressureLine {
     pub own_error: Option<Vec<f64>>,
 }
 
+impl PressureLine {
+    /// The two standard lines, x = 0 at the places `along` and y = `centre` at the places `across`
+    /// (C), with the pressure `p` (p0) at their points x, y.
+    pub fn standard(
+        along: Vec<f64>,
+        across: Vec<f64>,
+        centre: f64,
+        p: impl Fn([f64; 2]) -> f64,
+    ) -> Vec<Self> {
+        let line = |name: &str, at: Vec<[f64; 2]>| Self {
+            name: name.to_string(),
+            p: at.iter().map(|at| p(*at)).collect(),
+            at,
+            own_error: None,
+        };
+        vec![
+            line("along-y", along.into_iter().map(|y| [0.0, y]).collect()),
+            line("along-x", across.into_iter().map(|x| [x, centre]).collect()),
+        ]
+    }
+}
+
 /// Stresses along a standard curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StressCurve {

@@ -14,6 +14,14 @@ pub struct Critical {
     pub at: [f64; 3],
 }
 
+impl Critical {
+    /// The first of the largest values among those of bodies at points; none if there are none.
+    pub fn largest(values: impl Iterator<Item = (BodyKind, [f64; 3], f64)>) -> Option<Self> {
+        let all = values.map(|(body, at, value)| Self { body, value, at });
+        all.reduce(|best, next| if next.value > best.value { next } else { best })
+    }
+}
+
 /// Distance from an edge (C) within which the stress at a sharp corner is a property of
 /// the sampling, not of the contact.
 pub const EDGE: f64 = 0.1;

@@ -3,7 +3,7 @@
 //! All coordinates here are in units of C; `half_length` is half the length of the bodies' overlap,
 //! which is S_l = L / (2 C) where the shorter body, of length L, lies within the other.
 
-use crate::base::BodyKind;
+use crate::base::{BodyKind, ledge};
 
 /// A named list of points of one body.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,10 +113,10 @@ impl Span {
     /// y of the points on the contact line and, beyond its ends, on the `ledges` of a body.
     fn both_sides(&self, ledges: [f64; 2]) -> Vec<f64> {
         let half_length = self.half_length();
-        let side = |ledge: f64| {
+        let side = |beyond: f64| {
             let mut y = contact_line(half_length);
-            if ledge > SAME * half_length {
-                let reach = ledge.min(OUTWARD);
+            if ledge(beyond, half_length) > 0.0 {
+                let reach = beyond.min(OUTWARD);
                 let outward =
                     SAMPLED_DISTANCES.iter().filter(|&&s| s > 0.0 && s < reach * (1.0 - SAME));
                 y.extend(outward.map(|s| half_length + s));

@@ -13,7 +13,7 @@ use super::round::{LocalContact, RoundStress, STEP, rounded};
 use super::target::{KeptPlates, Loaded, ON_FACE, Target};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
-use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
+use crate::base::{Panels, Parity, StressTensor, Wavenumbers, ledge};
 use crate::body::Stack;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -83,9 +83,8 @@ const FAR_BELOW: f64 = 5.0;
 /// ends after a panel.
 const FADED: usize = 8;
 
-/// The ends of a body that goes on, and the part of a half-length by which it does not.
+/// The ends of a body that goes on.
 const LONG: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
-const SAME: f64 = 1e-9;
 
 impl<'a> Field<'a> {
     /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure`
@@ -146,7 +145,7 @@ impl<'a> Field<'a> {
         let (half, middle) = (self.stack.body().half, self.stack.middle);
         // A load that vanishes before its body ends has no image to speak of.
         let body = [middle - half, middle + half];
-        let vanishes = |i: usize| self.open[i] && (ends[i] - body[i]).abs() > SAME * half;
+        let vanishes = |i: usize| self.open[i] && ledge((ends[i] - body[i]).abs(), half) > 0.0;
         contact.on_line(y, ends, [0, 1].map(|i| if vanishes(i) { LONG[i] } else { body[i] }))
     }
 

@@ -64,16 +64,8 @@ fn solution(case: &Case, method: EdgeModel, share: f64, shift: f64) -> Solution 
             own_error: None,
         })
         .collect();
-    let line = |name: &str, at: Vec<[f64; 2]>| PressureLine {
-        name: name.to_string(),
-        p: at.iter().map(|a| pressure(a[0], a[1])).collect(),
-        at,
-        own_error: None,
-    };
-    let lines = vec![
-        line("along-y", curves::contact_line(half).into_iter().map(|y| [0.0, y]).collect()),
-        line("along-x", curves::across_contact().into_iter().map(|x| [x, 0.0]).collect()),
-    ];
+    let (along, across) = (curves::contact_line(half), curves::across_contact());
+    let lines = PressureLine::standard(along, across, 0.0, |[x, y]| pressure(x, y));
     let (p_centre, p_end) = (pressure(0.0, 0.0), pressure(0.0, half));
     let p_max_y = if p_end > p_centre { half } else { 0.0 };
     Solution {

@@ -265,3 +265,64 @@ fn steep_profiles_off_the_middle_end_in_sound_answers() {
         assert!(from < arm_m && arm_m < to, "{from} {arm_m} {to}");
     }
 }
+
+/// No curves.
+fn contact_alone() -> Options {
+    Options { curves: Vec::new(), ..Options::new(EdgeModel::QuarterSpace) }
+}
+
+/// The bodies' images carry the pressure's shape, not its mean alone: a crown's varies along the
+/// whole line.
+#[test]
+fn crowned_contacts_keep_their_tolerance_on_short_bodies() {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    for (slenderness, radius_m) in [(2.0, 0.1), (1.5, 0.05), (5.0, 0.1)] {
+        let factors = Factors { load: 3e-4, slenderness, length_ratio: 1.0 };
+        let mut case = Case::from_factors("crowned", 0.01, steel, steel, factors);
+        let mut crown = ProfileSpec::new(ProfileKind::Crown);
+        crown.radius_m = Some(radius_m);
+        case.roller.profile = Some(crown);
+        let half = slenderness;
+        let points = [
+            [0.5, 0.9, 0.8],
+            [-0.5, -0.7, 0.8],
+            [2.0, 0.5, 2.0],
+            [0.3, 0.2, 0.4],
+            [0.4, 0.85, 0.3],
+        ]
+        .map(|[x, y, z]| [x, y * half, z]);
+        let at = |tolerance: f64| {
+            let case = case.clone().with_tolerance(tolerance);
+            let solved = SolvedCase::new(&case, &contact_alone()).unwrap();
+            let stresses = solved.stress(BodyKind::Block, &points).unwrap();
+            (solved.solution().summary.approach_m, stresses)
+        };
+        let (fine, limit) = (at(1e-3), at(1e-4));
+        let off = (fine.0 / limit.0 - 1.0).abs();
+        assert!(off < 5e-4, "S_l {slenderness}: approach {off:e}");
+        for ((own, limit), place) in fine.1.iter().zip(&limit.1).zip(points) {
+            let own = own.components().into_iter().zip(limit.components());
+            let off = own.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 3e-4, "S_l {slenderness}, {place:?}: {off:e} p0");
+        }
+    }
+}
+
+/// Where the contact was found to end alternated here, and the search did not come to an end.
+#[test]
+fn ends_that_alternate_are_found() {
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load: 5e-4, slenderness: 5.0, length_ratio: 0.5 };
+    let mut case = Case::from_factors("alternates", 0.01, steel, steel, factors);
+    (case.roller.length_m, case.block.length_m) = (2.5e-3, 5e-3);
+    (case.load.force_n, case.load.eccentricity_m) = (1500.0, Some(0.2e-3));
+    let mut profile = ProfileSpec::new(ProfileKind::Logarithmic);
+    (profile.amplitude_m, profile.k) = (Some(2e-6), Some(0.95));
+    case.roller.profile = Some(profile);
+    for tolerance in [1e-2, 2e-3, 1e-3] {
+        let case = case.clone().with_tolerance(tolerance);
+        let found = SolvedCase::new(&case, &contact_alone()).unwrap().solution().summary;
+        assert!(found.converged, "{tolerance}");
+        assert!((found.tilt_rad / 3.284e-3 - 1.0).abs() < 0.02, "{}", found.tilt_rad);
+    }
+}

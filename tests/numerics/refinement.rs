@@ -178,7 +178,7 @@ fn a_curve_alone_is_what_it_is_among_all() {
 
 /// The resolution of a scene at 1e-3.
 fn usual(scene: &Scene) -> Resolution {
-    Resolution::of(1e-3, &scene.end(BodyKind::Block), scene.corner_exponent())
+    Resolution::of(1e-3, &scene.end(BodyKind::Block), scene.corner_exponents()[1])
 }
 
 /// Every panel halved and every extent doubled.
