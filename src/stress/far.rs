@@ -32,8 +32,9 @@ const FAR: f64 = 10.0;
 
 /// Distance along the surface of a short body (C) up to which the waves still count: what the
 /// plate's layer leaves out falls with the distance, and with the half-length below one and at 10
-/// half-lengths it is up to 0.005 p0 under loads beside the middle.
-const BESIDE: f64 = 25.0;
+/// half-lengths it is up to 0.005 p0 under loads beside the middle. Of sigma_zz it leaves out all,
+/// which is Kirchhoff's up to the edge, and 0.001 p0 off near it at any distance.
+const BESIDE: f64 = 20.0;
 
 /// Depth of the edge's layer, in half-lengths of the body, and terms of its series.
 const LAYER: f64 = 8.0;
