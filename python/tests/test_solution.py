@@ -191,7 +191,7 @@ def test_plots_show_pressure_and_curves(solution: edgeline.Solution) -> None:
 
 def test_what_the_program_warns_of_is_a_warning() -> None:
     case = edgeline.Case.from_toml("flush-short")
-    with pytest.warns(UserWarning, match="is that of a tolerance of 1e-4, which 5e-5 takes, too"):
+    with pytest.warns(UserWarning, match="is that of a tolerance of 0.0001, which 5e-5 takes, too"):
         edgeline.solve(case, "half-space", tolerance=5e-5)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
