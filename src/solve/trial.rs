@@ -26,6 +26,10 @@ pub(super) const CONTACT_TOLERANCE: f64 = 1e-2;
 /// Most contacts that are solved until the ends are found, or the tilt that is held.
 const MOST_TRIALS: usize = 10;
 
+/// Trials after which ends that still alternate are sought by secants. They mostly stay before, and
+/// secants over what differs little more than by its error would take longer.
+const ALTERNATE: usize = 4;
+
 /// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser
 /// tolerances. Below, it falls with the tolerance, as the pressure is steep beside an end, to the
 /// part `CLOSEST` of this.
@@ -171,7 +175,10 @@ impl Trial<'_> {
             if same || trial == MOST_TRIALS {
                 return Ok(Settled { line, parts, contact, known, is_settled: same, setup });
             }
-            let next = last.map_or(found, |last| Line::between(last, [line, found]));
+            let next = match last {
+                Some(last) if trial >= ALTERNATE => Line::between(last, [line, found]),
+                _ => found,
+            };
             last = Some([line, found]);
             line = next;
         }
