@@ -37,7 +37,7 @@ pub const BUILTIN_STUDIES: [(&str, &str); 3] = [
 
 /// Whether there is a file, or a pipe, at `path`; a folder does not hide what is built in under its
 /// name.
-pub fn is_given(path: &Path) -> bool {
+pub(crate) fn is_given(path: &Path) -> bool {
     path.exists() && !path.is_dir()
 }
 

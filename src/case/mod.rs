@@ -36,7 +36,9 @@ mod tests;
 #[cfg(feature = "cli")]
 pub mod two_level;
 
-pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case, is_given};
+#[cfg(feature = "cli")]
+pub(crate) use builtin::is_given;
+pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};

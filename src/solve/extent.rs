@@ -1,7 +1,7 @@
 //! The extent of a body, within which stresses can be computed.
 
-use crate::base::Error;
 use crate::base::number::stated;
+use crate::base::{Error, PerBody};
 use crate::case::Case;
 use crate::stress::BodyKind;
 
@@ -26,8 +26,10 @@ pub fn check_points(
     case: &Case,
     points_m: impl IntoIterator<Item = (BodyKind, [f64; 3])>,
 ) -> Result<(), Error> {
+    let [block, roller] = BodyKind::ALL.map(|body| Extent::of(case, body));
+    let extents = PerBody { block, roller };
     let check = |(i, (body, at_m)): (usize, (BodyKind, [f64; 3]))| {
-        Extent::of(case, body).check(at_m).map_err(|outside| outside.of_point(i, body))
+        extents[body].check(at_m).map_err(|outside| outside.of_point(i, body))
     };
     points_m.into_iter().enumerate().try_for_each(check)
 }
