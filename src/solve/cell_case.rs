@@ -399,7 +399,7 @@ impl Found<'_> {
             p_max_pa: top.p * p0_pa,
             p_max_at_m: [mirrored(top.x, !scene.rough), mirrored(top.y, even)].map(|v| v * c_m),
             centre_of_pressure_m: if even { [0.0; 2] } else { centre(cells).map(|v| v * c_m) },
-            contact_y_m: contact_ends(line_loads).map(|y| y * c_m),
+            contact_y_m: contact_ends(line_loads).at.map(|y| y * c_m),
             converged: true,
             iterations: pressure.iterations,
             load_error_rel: load_error(cells, case),

@@ -23,7 +23,7 @@ impl DeepMotion {
     /// That at `depth` (C) of the contact of `scene` with the `pressure` that solves the `problem`.
     pub fn new(scene: &Scene, problem: &CellProblem, pressure: &CellPressure, depth: f64) -> Self {
         let lines = line_loads(pressure, scene.middle);
-        let places = Places::new(contact_ends(&lines));
+        let places = Places::new(contact_ends(&lines).at);
         let nearest = places.nearest();
         let tilts = !scene.span().symmetric;
         let mut at = vec![nearest];

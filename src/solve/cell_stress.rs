@@ -9,7 +9,7 @@ use super::solved::wanted_curves;
 use crate::base::{HertzScales, PerBody, StressTensor};
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
-use crate::stress::round::{LocalContact, rounded};
+use crate::stress::round::{ContactEnds, LocalContact, rounded};
 use crate::stress::{
     BodyField, BodyKind, CurveSpec, FlatStress, LineLoad, RoundStress, StressCurve, Work,
 };
@@ -98,9 +98,10 @@ fn by_nodes(
 ) -> lines::Stresses {
     let columns = free.columns(pressure);
     let moments = free.moments(&columns);
+    let contact = scene.may_end().then(|| contact_ends(&line_loads(pressure, 0.0)));
     let field = |kind: BodyKind| {
         let [field, _] = free.fields(scene.free_body(kind), &columns, &moments, scene.tolerance);
-        BodyField::new(field.following_contact(scene.may_end(), [false; 2]), 1.0)
+        BodyField::new(field.following_contact(contact), 1.0)
     };
     lines::stresses(free.shared(), field, curves, points)
 }
@@ -141,10 +142,7 @@ fn sums(
     };
     let fields = PerBody { block: field(BodyKind::Block), roller: field(BodyKind::Roller) };
     let lines = line_loads(pressure, 0.0);
-    let contact = |kind: BodyKind, y: f64| {
-        let overlap = [-scene.half_length, scene.half_length];
-        local_contact(scene, &lines, y).on_line(y, overlap, fields[kind].faces)
-    };
+    let contact = |kind: BodyKind, y: f64| local_contact(scene, &lines, y, fields[kind].faces);
     let curve = |spec: &CurveSpec| -> Vec<RoundStress> {
         let rows: Vec<&[[f64; 3]]> =
             spec.points.chunk_by(|a, b| a[1] == b[1] && a[2] == b[2]).collect();
@@ -187,12 +185,15 @@ impl Summed<'_> {
     }
 }
 
-/// The plane contact under the load per length at `y`, where that varies.
-fn local_contact(scene: &Scene, lines: &[LineLoad], y: f64) -> LocalContact {
+/// The plane contact that the surface of a body between the `faces` has at `y`: under the load per
+/// length there, where that varies.
+fn local_contact(scene: &Scene, lines: &[LineLoad], y: f64, faces: [f64; 2]) -> LocalContact {
     if !scene.may_end() {
-        return LocalContact::HERTZ;
+        let at = [-scene.half_length, scene.half_length];
+        return LocalContact::HERTZ.on_line(y, ContactEnds { at, open: [false; 2] }, faces);
     }
-    let y = LocalContact::place(y, contact_ends(lines));
-    let nearest = lines.iter().min_by(|a, b| (a.y - y).abs().total_cmp(&(b.y - y).abs()));
-    LocalContact::carrying(nearest.map_or(0.0, |line| line.load))
+    let ends = contact_ends(lines);
+    let place = LocalContact::place(y, ends.at);
+    let nearest = lines.iter().min_by(|a, b| (a.y - place).abs().total_cmp(&(b.y - place).abs()));
+    LocalContact::carrying(nearest.map_or(0.0, |line| line.load)).on_line(y, ends, faces)
 }

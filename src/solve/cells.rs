@@ -5,6 +5,7 @@ use crate::base::HertzScales;
 use crate::case::Case;
 use crate::cells::CellPressure;
 use crate::kernels::strip;
+use crate::stress::round::ContactEnds;
 use crate::stress::{LineLoad, Load};
 
 /// Cells of the written pressure across the contact (C).
@@ -79,9 +80,14 @@ pub(super) fn line_loads(pressure: &CellPressure, middle: f64) -> Vec<LineLoad> 
 }
 
 /// The ends along y of the rows that carry a load.
-pub(super) fn contact_ends(lines: &[LineLoad]) -> [f64; 2] {
-    let loaded = || lines.iter().filter(|line| line.load > 0.0);
-    let end =
+pub(super) fn contact_ends(lines: &[LineLoad]) -> ContactEnds {
+    let loaded = |line: &&LineLoad| line.load > 0.0;
+    let ends = [lines.iter().find(loaded), lines.iter().rfind(loaded)];
+    let edge =
         |line: Option<&LineLoad>, side: f64| line.map_or(0.0, |l| l.y + side * 0.5 * l.weight);
-    [end(loaded().next(), -1.0), end(loaded().next_back(), 1.0)]
+    let idle = |line: Option<&LineLoad>| line.is_some_and(|line| line.load <= 0.0);
+    ContactEnds {
+        at: [edge(ends[0], -1.0), edge(ends[1], 1.0)],
+        open: [idle(lines.first()), idle(lines.last())],
+    }
 }

@@ -9,6 +9,7 @@ use super::trial::{
 use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Resolution, Stack};
 use crate::contact::{self, Compliance, ContactSolution};
+use crate::stress::round::ContactEnds;
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
 use nalgebra::DMatrix;
 use std::time::Instant;
@@ -227,7 +228,9 @@ impl SolvedScene {
         let field = self.own_field(kind, gamma, tolerance);
         let [left, right] = self.open;
         let open = [if self.scene.is_symmetric() { right } else { left }, right];
-        BodyField::new(field.following_contact(self.scene.may_end(), open), self.unit)
+        let contact = ContactEnds { at: self.own.pressure.ends(), open };
+        let contact = self.scene.may_end().then_some(contact);
+        BodyField::new(field.following_contact(contact), self.unit)
     }
 
     /// The field of a body in the solution's own unit.

@@ -9,11 +9,11 @@
 
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
-use super::round::{LocalContact, RoundStress, STEP, rounded};
+use super::round::{ContactEnds, LocalContact, RoundStress, STEP, rounded};
 use super::target::{KeptPlates, Loaded, ON_FACE, Target};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
-use crate::base::{Panels, Parity, StressTensor, Wavenumbers, ledge};
+use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
 use crate::body::Stack;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -61,10 +61,8 @@ pub struct Field<'a> {
     /// Negligible contribution of one wavenumber to a stress (p0).
     negligible: f64,
     counters: Counters,
-    /// Whether what a round surface adds follows the local contact.
-    follows_contact: bool,
-    /// Whether the contact ends before its bodies do, at either end.
-    open: [bool; 2],
+    /// The contact that what a round surface adds follows, if any.
+    contact: Option<ContactEnds>,
     /// The plate's kernels of the waves of `central`.
     plates: KeptPlates,
 }
@@ -82,9 +80,6 @@ const FAR_BELOW: f64 = 5.0;
 /// of the oscillation of the amplitudes with the contact's width. The sum over coarse wavenumbers
 /// ends after a panel.
 const FADED: usize = 8;
-
-/// The ends of a body that goes on.
-const LONG: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
 impl<'a> Field<'a> {
     /// The field of the body whose `stack` of layers belongs to `wavenumbers`, under `pressure`
@@ -115,8 +110,7 @@ impl<'a> Field<'a> {
             tolerance,
             negligible,
             counters,
-            follows_contact: false,
-            open: [false; 2],
+            contact: None,
             plates,
         }
     }
@@ -128,25 +122,23 @@ impl<'a> Field<'a> {
         Self { traction: Some(traction), ..self }
     }
 
-    /// The same field, where what a round surface adds follows the local contact, not that of the
-    /// mean load all along the line; ends where the contact ends before its bodies do are `open`.
+    /// The same field, where what a round surface adds follows the local contact between these
+    /// ends, not that of the mean load all along the line.
     #[must_use]
-    pub fn following_contact(self, follows_contact: bool, open: [bool; 2]) -> Self {
-        Self { follows_contact, open, ..self }
+    pub fn following_contact(self, contact: Option<ContactEnds>) -> Self {
+        Self { contact, ..self }
     }
 
     /// The plane contact that a round surface at `y` has.
     fn local_contact(&self, y: f64) -> LocalContact {
-        let ends = self.pressure.ends();
-        let contact = match self.follows_contact {
-            true => self.pressure.local_contact(LocalContact::place(y, ends)),
-            false => LocalContact::HERTZ,
-        };
         let (half, middle) = (self.stack.body().half, self.stack.middle);
-        // A load that vanishes before its body ends has no image to speak of.
         let body = [middle - half, middle + half];
-        let vanishes = |i: usize| self.open[i] && ledge((ends[i] - body[i]).abs(), half) > 0.0;
-        contact.on_line(y, ends, [0, 1].map(|i| if vanishes(i) { LONG[i] } else { body[i] }))
+        let Some(contact) = self.contact else {
+            let all = ContactEnds { at: self.pressure.ends(), open: [false; 2] };
+            return LocalContact::HERTZ.on_line(y, all, body);
+        };
+        let local = self.pressure.local_contact(LocalContact::place(y, contact.at));
+        local.on_line(y, contact, body)
     }
 
     /// Whether the contact is symmetric about y = 0.
@@ -309,7 +301,7 @@ impl<'a> Field<'a> {
     /// variation. Each side of the contact is sampled by itself. Between shaped bodies the field
     /// varies along the contact as their profiles do, and nothing is interpolated.
     pub fn along(&self, x: f64, z: f64, ys: &[f64]) -> Vec<FlatStress> {
-        if self.follows_contact || self.is_far(x, z) {
+        if self.contact.is_some() || self.is_far(x, z) {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         }
         let mut stresses = vec![FlatStress::default(); ys.len()];

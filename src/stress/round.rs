@@ -36,7 +36,7 @@
 //! so that the fixed axes have shears there.
 
 use super::flat::FlatStress;
-use crate::base::StressTensor;
+use crate::base::{StressTensor, ledge};
 use multiversion::multiversion;
 use std::f64::consts::PI;
 use std::sync::LazyLock;
@@ -68,6 +68,15 @@ static RULE: LazyLock<Rule> = LazyLock::new(|| {
 /// one on all of it.
 pub const DIAMETRAL_TENSION: f64 = 0.5;
 
+/// Ends of a contact along y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactEnds {
+    /// Their places (C).
+    pub at: [f64; 2],
+    /// Whether the contact ends there before its bodies do, as its load vanishes.
+    pub open: [bool; 2],
+}
+
 /// The plane contact near a place of the line.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LocalContact {
@@ -90,12 +99,14 @@ impl LocalContact {
         Self { half_width, peak, inside: [f64::INFINITY; 2], ledges: [0.0; 2] }
     }
 
-    /// The same below `y`, of a line that has these `ends`, on a body with ends of its own.
+    /// The same below `y`, of a line that has these `ends`, on a body with ends of its own. A load
+    /// that vanishes before its body ends has no image there to speak of.
     #[must_use]
-    pub fn on_line(self, y: f64, ends: [f64; 2], body: [f64; 2]) -> Self {
-        let inside = [y - ends[0], ends[1] - y];
-        let ledges = [ends[0] - body[0], body[1] - ends[1]].map(|ledge| ledge.max(0.0));
-        Self { inside, ledges, ..self }
+    pub fn on_line(self, y: f64, ContactEnds { at, open }: ContactEnds, body: [f64; 2]) -> Self {
+        let beyond = [at[0] - body[0], body[1] - at[1]];
+        let goes_on = |i: usize| open[i] && ledge(beyond[i], 0.5 * (body[1] - body[0])) > 0.0;
+        let ledges = [0, 1].map(|i| if goes_on(i) { f64::INFINITY } else { beyond[i].max(0.0) });
+        Self { inside: [y - at[0], at[1] - y], ledges, ..self }
     }
 
     /// The part of what an endless line does at (`x`, `z`): of the vertical stress below a line of
@@ -368,7 +379,8 @@ mod tests {
     fn terms_fade_with_the_ledge() {
         let share = |ledge: f64, s: f64, z: f64| {
             let [from, to] = [-40.0, 40.0];
-            let line = LocalContact::HERTZ.on_line(to - s, [from, to], [from, to + ledge]);
+            let ends = ContactEnds { at: [from, to], open: [false; 2] };
+            let line = LocalContact::HERTZ.on_line(to - s, ends, [from, to + ledge]);
             line.share(0.3, z)
         };
         for (s, z) in [(0.1, 0.1), (0.5, 0.3), (3.0, 1.0)] {

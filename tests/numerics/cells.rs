@@ -271,6 +271,26 @@ fn corners_are_the_line_engines_on_a_small_grid() {
     }
 }
 
+/// What a round surface adds follows the contact's own ends, where the contact ends before its
+/// bodies do: 0.0048 p0 beyond the end, where it followed the overlap's.
+#[test]
+fn round_shape_ends_with_the_contact_on_both_engines() {
+    let case = Case::from_toml(
+        "name = \"inside\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
+         [block]\nyoung_pa = 210e9\npoisson = 0.3\n[dimensionless]\nW = 1e-3\nS_l = 5.0\nL_r = 0.5\n\
+         [roller.profile]\nkind = \"crown\"\nradius_m = 0.07",
+    );
+    let case = case.unwrap();
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.bodies = vec![BodyKind::Roller];
+    options.curves = ["depth-end", "along-y-0.5C"].map(String::from).to_vec();
+    let line = on_line(&case, &options);
+    let [_, stress, ..] = apart_from_line(&case, &options, &line, [96, 160]);
+    let found = line.solution().summary.contact_y_m;
+    assert!(found[1] < 0.9 * case.overlap_m()[1], "{found:?}");
+    small("root mean square", stress, 8e-4);
+}
+
 /// The tables of docs/performance.md, "Contacts on cells".
 #[test]
 #[ignore = "some minutes"]
