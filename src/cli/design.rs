@@ -16,15 +16,15 @@ use std::time::Instant;
 
 /// Finds the profile whose largest stress over several loads is smallest.
 ///
-/// Varies the parameters of a profile within bounds (a TOML file, see cases/README.md) and solves
-/// every load for each trial: first a sample of the bounds, then descents by Nelder and Mead's
-/// simplex from its best points. The stress is the largest one of both bodies, more than exclude_c
-/// half-widths from the surface's edges at the ends of their overlap. Writes case.toml (the case
-/// with the profile, ready for `edgeline solve`), loads.csv (what each load sees, at the case's own
-/// tolerance), history.csv (all trials), scans.csv (lines through the optimum along each
-/// parameter), plot-parameters and plot-loads (.svg and .png) and summary.json into the output
-/// folder. Takes some seconds to half a minute: a few hundredths of a second for each load of each
-/// trial.
+/// Varies the parameters of a profile within bounds (a TOML file, see cases/README.md): first a
+/// sample of the bounds, then descents by Nelder and Mead's simplex from its best points. Trials
+/// look at the loads that stress good profiles most; the best one is the best under all. The stress
+/// is the largest one of both bodies, more than exclude_c half-widths from the surface's edges at
+/// the ends of their overlap. Writes case.toml (the case with the profile, ready for `edgeline
+/// solve`), loads.csv (what each load sees, at the case's own tolerance), history.csv (all trials,
+/// with how many loads they looked at), scans.csv (lines through the optimum along each parameter),
+/// plot-parameters and plot-loads (.svg and .png) and summary.json into the output folder. Takes
+/// some seconds to half a minute: less than a tenth of a second for each contact.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A design file (TOML)

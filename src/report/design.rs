@@ -157,6 +157,7 @@ fn history(design: &Design, found: &Optimum) -> Columns {
         ];
         let values = design.parameters.iter().zip(&trial.values);
         row.extend(values.map(|(p, v)| (p.name.to_string(), Value::Number(*v))));
+        row.push(("loads".into(), Value::Number(trial.loads as f64)));
         row.push(("objective_pa".into(), Value::Number(trial.objective_pa.unwrap_or(f64::NAN))));
         row.push(("best_pa".into(), Value::Number(if best.is_finite() { best } else { f64::NAN })));
         row
