@@ -30,9 +30,20 @@ const STEEPER: f64 = 1.3;
 /// Amplitude of the edge singularity (p0) from which on tensile nodes are released.
 const NEAR: f64 = 1e-3;
 
+/// From the node next to an end of the line half-widths are continued up to that end. Its singular
+/// mode then reacts to its half-width by up to more than twice what Newton's step expects, and
+/// changes sign from one iteration to the next. From this ratio of the two amplitudes on, such a
+/// node takes the part of the step that secants tell, and this one at least.
+const ALTERNATES: f64 = 0.3;
+const LEAST_PART: f64 = 0.2;
+
 /// Smallest half-width in the iteration (C), and that of a contact that ends at a tip.
 const NARROWEST: f64 = 0.05;
 const TIP: f64 = 1e-3;
+
+/// Modes of the second attempt. Beside an end where half-widths rise steeply, as under an eccentric
+/// load, free nodes with many modes react to each other's half-widths more than to their own.
+const FEWER_MODES: usize = 5;
 
 /// Modes of the last attempt behind the last free node: there the half-widths follow those of the
 /// free nodes, and with many modes the pressures of a contact that hardly reaches its end turn
@@ -70,14 +81,17 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
         check(&operator, problem, &solution, settings.soundness)?;
         Ok(solution)
     };
-    for _ in 0..3 {
-        let answer = checked(&attempt, settings.modes);
+    let fewer = (settings.modes > FEWER_MODES).then_some((1.0, FEWER_MODES));
+    let wider = [2.0, 4.0].map(|times| (times, settings.modes));
+    for (times, modes) in [(1.0, settings.modes)].into_iter().chain(fewer).chain(wider) {
+        let own = ContactSettings { spacing: times * settings.spacing, modes, ..attempt };
+        let answer = checked(&own, modes);
         if answer.is_ok() {
             return answer;
         }
         go_on()?;
-        attempt.spacing *= 2.0;
     }
+    attempt.spacing *= 8.0;
     attempt.max_iterations = settings.max_iterations;
     checked(&attempt, FEW_TAIL_MODES)
 }
@@ -119,6 +133,7 @@ fn solve_once(
     let n = problem.axis.len();
     let mut contact = 0..n;
     let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
+    let mut damping = Damping::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
@@ -158,13 +173,14 @@ fn solve_once(
         let wanted = |(&j, singular): (&usize, &f64)| {
             // Beyond a factor of two the linearisation does not hold.
             let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
-            half_widths[j] * grow.clamp(0.25, 4.0).sqrt()
+            half_widths[j] * grow.clamp(0.25, 4.0).sqrt().powf(damping.part(j, *singular))
         };
         let wanted: Vec<f64> = layout.free.iter().zip(&singular).map(wanted).collect();
         half_widths = between(&layout, &wanted);
         if !settled {
             contact = shrunk;
             layout = Layout::new(problem, settings, tail_modes, contact.clone());
+            damping = Damping::new(n);
         }
     }
     Err(not_converged(settings.max_iterations, last))
@@ -174,6 +190,32 @@ fn not_converged(iterations: usize, residual: f64) -> Error {
     let remedy =
         "ask for a coarser [accuracy] tolerance if it is below 0.1, or check the case's lengths";
     Error::NotConverged { iterations, residual, remedy: remedy.into() }
+}
+
+/// The parts of Newton's steps that the nodes take, see [`ALTERNATES`].
+struct Damping {
+    /// The last amplitude of each node's singular mode, and the part of its last step.
+    last: Vec<(f64, f64)>,
+}
+
+impl Damping {
+    fn new(nodes: usize) -> Self {
+        Self { last: vec![(0.0, 1.0); nodes] }
+    }
+
+    /// The part of the next step of node `j`, whose singular mode has now this amplitude.
+    fn part(&mut self, j: usize, amplitude: f64) -> f64 {
+        let (had, part) = &mut self.last[j];
+        let alternates = *had * amplitude < 0.0 && amplitude.abs() > ALTERNATES * had.abs();
+        if alternates || *part < 1.0 {
+            let secant = *part * *had / (*had - amplitude);
+            if secant > 0.0 {
+                *part = secant.clamp(LEAST_PART, 1.0);
+            }
+        }
+        *had = amplitude;
+        *part
+    }
 }
 
 /// The half-widths at all nodes from those at the free ones.

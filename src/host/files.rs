@@ -1,5 +1,6 @@
 //! Files that are written completely or not at all, in folders that are checked before a long run.
 
+use super::given::is_given;
 use crate::base::{Error, Result};
 use std::fs::File;
 use std::io::Write;
@@ -44,8 +45,8 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 /// until all files have been written elsewhere.
 ///
 /// # Errors
-/// [`Error::Io`] when one cannot be written; the previous files then remain, unless the move itself
-/// failed.
+/// [`Error::File`] when one would take the place of a file that was given to this run; [`Error::Io`]
+/// when one cannot be written; the previous files then remain, unless the move itself failed.
 ///
 /// # Panics
 /// When there are no files.
@@ -66,7 +67,8 @@ pub fn replace_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Res
     let list = list_of(folder, names.last().expect("a set has files"));
     move_into_place(folder, files, &|| {
         let earlier = listed(&list).into_iter().filter(|name| !names.contains(&name.as_path()));
-        for path in earlier.map(|name| folder.join(name)).filter(|path| path.is_file()) {
+        let own = |path: &PathBuf| path.is_file() && !is_given(path);
+        for path in earlier.map(|name| folder.join(name)).filter(own) {
             remove_if_there(&path)?;
         }
         let text: String = names.iter().map(|name| format!("{}\n", name.display())).collect();
@@ -83,6 +85,15 @@ fn move_into_place<N: AsRef<Path>>(
 ) -> Result<()> {
     let (last, _) = files.last().expect("a set has files");
     let last = folder.join(last);
+    if let Some(path) = files.iter().map(|(name, _)| folder.join(name)).find(|path| is_given(path))
+    {
+        return Err(Error::File {
+            path,
+            line: None,
+            message: "was given to this run, and a result has its name".into(),
+            remedy: "give another --out, or rename it".into(),
+        });
+    }
     let parts = folder.join(PARTS);
     let write = || {
         remove(&parts)
@@ -210,6 +221,23 @@ mod tests {
         assert!(write_whole(&file.join("below"), "").is_err());
         assert!(write_whole(folder.path(), "").is_err());
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_was_given_is_neither_replaced_nor_removed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (folder, mine) = (folder.path(), folder.path().join("mine"));
+        let set = |names: &[&str]| names.iter().map(|n| (n.to_string(), Vec::new())).collect();
+        let replace = |files: Vec<(String, Vec<u8>)>| replace_set(folder, &files);
+        replace(set(&["mine", "done"])).unwrap();
+        std::fs::write(&mine, "own").unwrap();
+        crate::host::remember_given(&folder.join("./mine"));
+        let said = replace(set(&["mine", "done"])).unwrap_err().to_string();
+        assert!(said.contains("mine: was given to this run"), "{said}");
+        assert!(folder.join("done").is_file());
+        // A list of an earlier set has its name.
+        replace(set(&["other", "done"])).unwrap();
+        assert_eq!(std::fs::read_to_string(&mine).unwrap(), "own");
     }
 
     #[test]

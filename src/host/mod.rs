@@ -1,7 +1,8 @@
-//! The machine: complete files, locked folders, limits of memory, child processes and signals.
+//! The machine: complete files, files that were given, locked folders, limits of memory, child processes and signals.
 
 #[cfg(feature = "cli")]
 mod files;
+mod given;
 #[cfg(feature = "cli")]
 mod lock;
 mod memory;
@@ -25,5 +26,6 @@ pub(crate) use {
     text::csv_fault,
 };
 
+pub(crate) use given::remember_given;
 pub(crate) use memory::check_memory;
 pub(crate) use text::{MARK, read_text};

@@ -204,7 +204,8 @@ impl SolvedScene {
     /// Whether the contact iteration reached its tolerance, and the search for the contact's ends
     /// its own.
     pub fn converged(&self) -> bool {
-        self.is_settled && self.contact.residual <= CONTACT_TOLERANCE * self.scene.tolerance
+        let own = &self.own;
+        self.is_settled && own.contact.residual <= CONTACT_TOLERANCE * own.scene.tolerance
     }
 
     /// Whether both bodies share one computation.

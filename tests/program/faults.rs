@@ -473,6 +473,21 @@ fn names_of_cases_cannot_leave_their_folder() {
     assert_eq!(fs::read_to_string(folder.path().join("sweep.csv")).unwrap(), rows);
 }
 
+/// Results have fixed names, and so may what they come from.
+#[test]
+fn results_do_not_take_the_place_of_what_was_given() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let points = "body,x_m,y_m,z_m\nblock,0,0,1e-5\n";
+    fs::write(path.join("points.csv"), points).unwrap();
+    let solve = ["solve", "flush-short", "--points", "points.csv", "--out", "."];
+    let said = refused(&mut edgeline(path, &solve));
+    assert!(said.contains("points.csv") && said.contains("give another --out"), "{said}");
+    assert_eq!(fs::read_to_string(path.join("points.csv")).unwrap(), points);
+    assert!(!path.join("summary.json").exists());
+    succeeded(&mut edgeline(path, &["solve", "flush-short", "--points", "points.csv"]));
+}
+
 #[test]
 fn a_folder_in_the_place_of_a_file_is_somebody_elses() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,7 +5,7 @@ use super::statements::{Axes, KEYS, Statements, System, Unit, body_of};
 use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result, StressTensor};
 use crate::case::Case;
-use crate::host::{check_memory, read_text};
+use crate::host::{check_memory, read_text, remember_given};
 use crate::solve::{Extent, Outside};
 use crate::stress::{Curves, PressureLine, StressCurve};
 use crate::study::errors::POINTS;
@@ -72,6 +72,7 @@ impl BroughtFile {
         let size = std::fs::metadata(path).map_or(0, |m| m.len());
         let what = format!("comparing {}", path.display());
         check_memory(&what, size as f64 * BYTES_PER_BYTE, "split the file")?;
+        remember_given(path);
         Self::parse(&read_text(path, MAX_BYTES, "split the file")?, path, case, options)
     }
 
@@ -342,10 +343,9 @@ impl<'a> Table<'a> {
             let number = || match text.parse::<f64>() {
                 Ok(value) if value.is_finite() => Ok(value * column.si),
                 // Some programs write the decimals of some languages.
-                _ if text.replace(',', ".").parse::<f64>().is_ok() => Err(at(
-                    column,
-                    format!("'{text}' has a comma: write its decimals after a point"),
-                )),
+                _ if text.contains(',') && text.replace(',', ".").parse::<f64>().is_ok() => Err(
+                    at(column, format!("'{text}' has a comma: write its decimals after a point")),
+                ),
                 _ => Err(at(column, format!("'{text}' is not a finite number"))),
             };
             match column.meaning {
