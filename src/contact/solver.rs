@@ -71,29 +71,49 @@ const FIRST_ITERATIONS: usize = 10;
 pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSolution> {
     let negligible = NEGLIGIBLE * settings.tolerance;
     let operator = LineOperator::new(problem.compliance, problem.axis, negligible);
-    // A pressure that is singular at the end, as a half-space's, may need fewer unknown
-    // half-widths.
-    let mut attempt =
-        ContactSettings { max_iterations: ATTEMPT.min(settings.max_iterations), ..*settings };
     let guess = first_guess(&operator, problem, settings)?;
-    let checked = |attempt: &ContactSettings, tail_modes: usize| {
-        let solution = solve_once(&operator, problem, attempt, tail_modes, guess.clone())?;
-        check(&operator, problem, &solution, settings.soundness)?;
-        Ok(solution)
-    };
-    let fewer = (settings.modes > FEWER_MODES).then_some((1.0, FEWER_MODES));
-    let wider = [2.0, 4.0].map(|times| (times, settings.modes));
-    for (times, modes) in [(1.0, settings.modes)].into_iter().chain(fewer).chain(wider) {
-        let own = ContactSettings { spacing: times * settings.spacing, modes, ..attempt };
-        let answer = checked(&own, modes);
+    let mut answer = Err(not_converged(0, f64::INFINITY));
+    for attempt in attempts(settings) {
+        answer = solve_once(&operator, problem, &attempt, guess.clone()).and_then(|solution| {
+            check(&operator, problem, &solution, settings.soundness)?;
+            Ok(solution)
+        });
         if answer.is_ok() {
             return answer;
         }
         go_on()?;
     }
-    attempt.spacing *= 8.0;
-    attempt.max_iterations = settings.max_iterations;
-    checked(&attempt, FEW_TAIL_MODES)
+    answer
+}
+
+/// How a contact is tried to be solved.
+struct Attempt {
+    settings: ContactSettings,
+    /// Most modes behind the last free node.
+    tail_modes: usize,
+    /// Whether nodes take parts of Newton's steps, see [`ALTERNATES`].
+    damped: bool,
+}
+
+/// The attempts, one after the other until one succeeds: a pressure that is singular at the end, as
+/// a half-space's, may need fewer unknown half-widths, and few of those whole steps.
+fn attempts(settings: &ContactSettings) -> Vec<Attempt> {
+    let all = settings.modes;
+    let short = ATTEMPT.min(settings.max_iterations);
+    let one = |damped: bool, times: f64, modes: usize, tail_modes: usize, max_iterations: usize| {
+        let spacing = times * settings.spacing;
+        let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
+        Attempt { settings, tail_modes, damped }
+    };
+    let mut list = vec![one(true, 1.0, all, all, short)];
+    if all > FEWER_MODES {
+        list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, short));
+    }
+    for damped in [true, false] {
+        list.extend([2.0, 4.0].map(|times| one(damped, times, all, all, short)));
+        list.push(one(damped, 8.0, all, FEW_TAIL_MODES, settings.max_iterations));
+    }
+    list
 }
 
 /// The half-widths that an iteration begins with: those of the problem's guess, else 1. Where free
@@ -115,21 +135,21 @@ fn first_guess(
         max_iterations: FIRST_ITERATIONS,
         ..*settings
     };
-    match solve_once(operator, problem, &fewer, FEW_TAIL_MODES, known.clone()) {
+    let fewer = Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, damped: true };
+    match solve_once(operator, problem, &fewer, known.clone()) {
         Err(Error::Stopped) => Err(Error::Stopped),
         found => Ok(found.map_or(known, |first| first.half_widths)),
     }
 }
 
-/// [`solve`] with the given spacing, and at most `tail_modes` behind the last free node, from these
-/// half-widths.
+/// One attempt of [`solve`], from these half-widths.
 fn solve_once(
     operator: &LineOperator,
     problem: &Problem,
-    settings: &ContactSettings,
-    tail_modes: usize,
+    attempt: &Attempt,
     mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
+    let Attempt { ref settings, tail_modes, damped } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
     let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
@@ -173,7 +193,8 @@ fn solve_once(
         let wanted = |(&j, singular): (&usize, &f64)| {
             // Beyond a factor of two the linearisation does not hold.
             let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
-            half_widths[j] * grow.clamp(0.25, 4.0).sqrt().powf(damping.part(j, *singular))
+            let part = if damped { damping.part(j, *singular) } else { 1.0 };
+            half_widths[j] * grow.clamp(0.25, 4.0).sqrt().powf(part)
         };
         let wanted: Vec<f64> = layout.free.iter().zip(&singular).map(wanted).collect();
         half_widths = between(&layout, &wanted);

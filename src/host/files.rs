@@ -45,8 +45,9 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 /// until all files have been written elsewhere.
 ///
 /// # Errors
-/// [`Error::File`] when one would take the place of a file that was given to this run; [`Error::Io`]
-/// when one cannot be written; the previous files then remain, unless the move itself failed.
+/// [`Error::File`] when one would take the place of a file that was given to this run;
+/// [`Error::Io`] when one cannot be written; the previous files then remain, unless the move itself
+/// failed.
 ///
 /// # Panics
 /// When there are no files.

@@ -1,4 +1,5 @@
-//! The machine: complete files, files that were given, locked folders, limits of memory, child processes and signals.
+//! The machine: complete files, files that were given, locked folders, limits of memory, child
+//! processes and signals.
 
 #[cfg(feature = "cli")]
 mod files;

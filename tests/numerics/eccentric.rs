@@ -152,7 +152,8 @@ fn singular_ends_under_an_eccentric_load_keep_the_tolerance() {
 }
 
 /// Beside a flush end under an eccentric load half-widths rise steeply up to the end. At 1e-3 the
-/// iteration lost up to 0.3 C of the loaded end in such scenes, and the contact passed as converged.
+/// iteration lost up to 0.3 C of the loaded end in such scenes, and the contact passed as
+/// converged.
 #[test]
 fn a_loaded_flush_end_stays_in_contact() {
     for (slenderness, nu, arm, most) in
