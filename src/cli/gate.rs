@@ -21,7 +21,7 @@ use std::path::{Path, PathBuf};
 /// Without a study, and without thresholds of one's own, runs all built-in studies, each with its
 /// gates. Prints a table of all gates with value, limit and margin; writes gates.json, gates.md and
 /// junit.xml into the output folder, and the Markdown also to the file that $GITHUB_STEP_SUMMARY
-/// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes some seconds with recorded
+/// names. Exit code 0: all hold; 1: one failed; 2: could not run. Takes half a minute with recorded
 /// finite-element curves; with --fem live minutes per case, so name a study.
 #[derive(Args)]
 pub(super) struct Arguments {
