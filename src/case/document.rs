@@ -16,8 +16,7 @@ use toml::de::{DeTable, DeValue};
 /// # Errors
 /// [`Error::Io`] when it cannot be read, [`Error::File`] when it is too large or not UTF-8.
 pub(super) fn read_text(path: &Path) -> Result<String> {
-    host::remember_given(path);
-    host::read_text(path, Case::MAX_BYTES, "give a case or study file in TOML")
+    host::read_input(path, Case::MAX_BYTES, "give a case or study file in TOML")
 }
 
 /// The known name that is most like `name`.

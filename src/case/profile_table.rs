@@ -18,9 +18,8 @@ const HEADER: &str = "y_m,drop_m";
 /// # Errors
 /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line that is wrong.
 pub(super) fn read_profile_table(path: &Path) -> Result<Table> {
-    host::remember_given(path);
     let text =
-        host::read_text(path, MAX_BYTES, "give a profile as CSV with the columns y_m,drop_m")?;
+        host::read_input(path, MAX_BYTES, "give a profile as CSV with the columns y_m,drop_m")?;
     let refuse = |line: usize, message: String, remedy: &str| Error::File {
         path: path.to_path_buf(),
         line: Some(line),

@@ -44,7 +44,7 @@ impl Heights {
             message: format!("has {has} bytes; at most {MOST_BYTES} are read"),
             remedy: "cut out the part within the contact, or keep every second sample".into(),
         };
-        crate::host::remember_given(path);
+        crate::host::remember_input(path);
         let file = File::open(path).map_err(io)?;
         let bytes = file.metadata().map_err(io)?.len();
         if bytes > MOST_BYTES {

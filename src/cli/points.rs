@@ -3,7 +3,7 @@
 use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::host::{check_memory, csv_fault, read_text, remember_given};
+use crate::host::{check_memory, csv_fault, read_input};
 use crate::solve::{Extent, Outside, Point};
 use crate::stress::BodyKind;
 use serde::Deserialize;
@@ -39,8 +39,7 @@ pub(super) fn read(path: &Path, case: &Case) -> Result<Vec<Point>> {
         size as f64 * (1.0 + POINT_BYTES / ROW_BYTES),
         "split the file",
     )?;
-    remember_given(path);
-    parse(&read_text(path, MAX_BYTES, "split the file")?, path, case)
+    parse(&read_input(path, MAX_BYTES, "split the file")?, path, case)
 }
 
 /// Parses the text of a file of points; `path` is only named in errors.

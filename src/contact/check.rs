@@ -45,11 +45,15 @@ pub(super) fn check(
     if tolerance.is_finite() && (solution.load_error > CARRIED || solution.load_error.is_nan()) {
         return unsound("the part of the load that is not carried", solution.load_error, CARRIED);
     }
-    let mut broken: [(f64, &'static str); 3] = [
-        (0.0, "the deepest penetration (C^2 / 2 R)"),
-        (0.0, "the widest gap under a pressure (C^2 / 2 R)"),
-        (0.0, "the largest tensile traction between the bodies (p0)"),
+    // Values, their limits and the laws.
+    let mut broken: [(f64, f64, &'static str); 4] = [
+        (0.0, tolerance, "the deepest penetration (C^2 / 2 R)"),
+        (0.0, tolerance, "the widest gap under a pressure (C^2 / 2 R)"),
+        (0.0, tolerance, "the largest tensile traction between the bodies (p0)"),
+        (0.0, tolerance.max(LOST), "the deepest penetration where no pressure is (C^2 / 2 R)"),
     ];
+    // NaN must not pass as small.
+    let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
     let nodes = problem.axis.nodes().iter().enumerate();
     let counted: Vec<usize> = nodes
         .filter(|(j, y)| *j == 0 && !problem.both_ends || !near_end(problem, solution, **y))
@@ -57,12 +61,9 @@ pub(super) fn check(
         .collect();
     let idle: Vec<usize> =
         (0..problem.axis.len()).filter(|j| solution.coefficients[*j].is_empty()).collect();
-    let mut lost: f64 = 0.0;
     for (t, gaps) in PLACES.iter().zip(gaps_of(operator, problem, solution, &PLACES)) {
-        lost = idle.iter().fold(lost, |deepest, j| deepest.max(-gaps[*j]));
+        broken[3].0 = idle.iter().fold(broken[3].0, |deepest, j| worse(deepest, -gaps[*j]));
         for (gap, coefficients) in counted.iter().map(|&j| (&gaps[j], &solution.coefficients[j])) {
-            // NaN must not pass as small.
-            let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
             broken[0].0 = worse(broken[0].0, -gap);
             if *t < 1.0 && !coefficients.is_empty() {
                 broken[1].0 = worse(broken[1].0, *gap);
@@ -70,15 +71,10 @@ pub(super) fn check(
             }
         }
     }
-    let most = tolerance.max(LOST);
-    if lost > most {
-        return unsound("the deepest penetration where no pressure is (C^2 / 2 R)", lost, most);
-    }
-    let worst = broken.into_iter().max_by(|a, b| a.0.total_cmp(&b.0)).expect("three laws");
-    if worst.0 <= tolerance {
-        return Ok(());
-    }
-    unsound(worst.1, worst.0, tolerance)
+    let excess = |(value, limit, _): &(f64, f64, &str)| value / limit;
+    let worst = broken.into_iter().max_by(|a, b| excess(a).total_cmp(&excess(b)));
+    let (value, limit, law) = worst.expect("four laws");
+    if value <= limit { Ok(()) } else { unsound(law, value, limit) }
 }
 
 /// Whether `y` lies so close to an end of the contact that its gap says nothing about the rest.

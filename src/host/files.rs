@@ -1,6 +1,6 @@
 //! Files that are written completely or not at all, in folders that are checked before a long run.
 
-use super::given::is_given;
+use super::inputs::is_input;
 use crate::base::{Error, Result};
 use std::fs::File;
 use std::io::Write;
@@ -68,7 +68,7 @@ pub fn replace_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Res
     let list = list_of(folder, names.last().expect("a set has files"));
     move_into_place(folder, files, &|| {
         let earlier = listed(&list).into_iter().filter(|name| !names.contains(&name.as_path()));
-        let own = |path: &PathBuf| path.is_file() && !is_given(path);
+        let own = |path: &PathBuf| path.is_file() && !is_input(path);
         for path in earlier.map(|name| folder.join(name)).filter(own) {
             remove_if_there(&path)?;
         }
@@ -86,7 +86,7 @@ fn move_into_place<N: AsRef<Path>>(
 ) -> Result<()> {
     let (last, _) = files.last().expect("a set has files");
     let last = folder.join(last);
-    if let Some(path) = files.iter().map(|(name, _)| folder.join(name)).find(|path| is_given(path))
+    if let Some(path) = files.iter().map(|(name, _)| folder.join(name)).find(|path| is_input(path))
     {
         return Err(Error::File {
             path,
@@ -232,7 +232,7 @@ mod tests {
         let replace = |files: Vec<(String, Vec<u8>)>| replace_set(folder, &files);
         replace(set(&["mine", "done"])).unwrap();
         std::fs::write(&mine, "own").unwrap();
-        crate::host::remember_given(&folder.join("./mine"));
+        crate::host::remember_input(&folder.join("./mine"));
         let said = replace(set(&["mine", "done"])).unwrap_err().to_string();
         assert!(said.contains("mine: was given to this run"), "{said}");
         assert!(folder.join("done").is_file());

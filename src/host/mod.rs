@@ -3,7 +3,7 @@
 
 #[cfg(feature = "cli")]
 mod files;
-mod given;
+mod inputs;
 #[cfg(feature = "cli")]
 mod lock;
 mod memory;
@@ -24,9 +24,9 @@ pub(crate) use {
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,
     signals::check_interrupt,
-    text::csv_fault,
+    text::{csv_fault, read_text},
 };
 
-pub(crate) use given::remember_given;
+pub(crate) use inputs::{read_input, remember_input};
 pub(crate) use memory::check_memory;
-pub(crate) use text::{MARK, read_text};
+pub(crate) use text::MARK;

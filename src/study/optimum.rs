@@ -31,8 +31,8 @@ const SAMPLES: usize = 6;
 /// Size of a search's first simplex, a part of the bounds.
 const SIMPLEX: f64 = 0.15;
 
-/// Spread of the objective in a simplex, relative to the first sample's best, at which a search has
-/// ended, and its most steps.
+/// Spread of the objective in a simplex, relative to the best when its search began, at which that
+/// has ended, and its most steps.
 const SPREAD: f64 = 3e-4;
 const STEPS: u64 = 30;
 
@@ -116,13 +116,13 @@ pub fn seek(
 ) -> Result<Optimum> {
     let desk = Desk { design, settings, progress, solves: AtomicUsize::new(0) };
     let mut found = desk.sample()?;
-    let starts: Vec<usize> = found.least(settings.starts);
-    let starts: Vec<Vec<f64>> = starts.iter().map(|i| found.all[*i].place.clone()).collect();
+    let starts = found.least(settings.starts).into_iter();
+    let starts: Vec<Vec<f64>> = starts.map(|i| found.all[i].place.clone()).collect();
     for (search, mut start) in (1..).zip(starts) {
         loop {
             let known = found.counting.len();
             found = desk.simplex(search, &start, found)?;
-            let best = desk.settle(&mut found, 1)?[0];
+            let best = desk.settle(&mut found, 1)?;
             if found.counting.len() == known {
                 break;
             }
@@ -206,6 +206,10 @@ impl Desk<'_> {
         parameters.map(|(parameter, part)| parameter.at(*part)).collect()
     }
 
+    fn all_loads(&self) -> Vec<usize> {
+        (0..self.design.loads.len()).collect()
+    }
+
     /// What `load` makes of a profile with these parameters (Pa), at the search's tolerance.
     fn peak_pa(&self, values: &[f64], load: usize) -> Result<f64> {
         crate::base::stop::go_on()?;
@@ -255,13 +259,12 @@ impl Desk<'_> {
     /// The first sample: the first profile of it that can be solved under all loads says which one
     /// counts, and the `starts` best ones are looked at under all.
     fn sample(&self) -> Result<Found> {
-        let all: Vec<usize> = (0..self.design.loads.len()).collect();
         let inputs = self.design.parameters.len();
         let mut places = unit_hypercube(inputs, SAMPLES * inputs, self.settings.seed).into_iter();
         let mut found = Found { all: Vec::new(), counting: Vec::new() };
         let mut first_error = None;
         for place in places.by_ref() {
-            let (tried, outcome) = self.tried(0, &place, &all);
+            let (tried, outcome) = self.tried(0, &place, &self.all_loads());
             self.record(&mut found, tried);
             match outcome {
                 Ok(()) => break,
@@ -277,7 +280,7 @@ impl Desk<'_> {
             self.record(&mut found, tried);
         }
         crate::base::stop::go_on()?;
-        let best = self.settle(&mut found, self.settings.starts)?[0];
+        let best = self.settle(&mut found, self.settings.starts)?;
         match found.all[best].trial.objective_pa {
             Some(_) => Ok(found),
             None => Err(first_error.expect("the first profile could not be solved")),
@@ -302,18 +305,17 @@ impl Desk<'_> {
     }
 
     /// Looks at the trials with the least bounds under all loads, until the `count` least ones are
-    /// those of all loads. What they find the worst counts from there on.
-    fn settle(&self, found: &mut Found, count: usize) -> Result<Vec<usize>> {
-        let all: Vec<usize> = (0..self.design.loads.len()).collect();
+    /// those of all loads; returns the best one. What they find the worst counts from there on.
+    fn settle(&self, found: &mut Found, count: usize) -> Result<usize> {
         loop {
             let least = found.least(count);
-            let Some(open) = least.iter().find(|i| !found.all[**i].is_complete()) else {
-                return Ok(least);
+            let Some(&open) = least.iter().find(|i| !found.all[**i].is_complete()) else {
+                return Ok(least[0]);
             };
-            if let Err(Error::Stopped) = self.look(&mut found.all[*open], &all) {
+            if let Err(Error::Stopped) = self.look(&mut found.all[open], &self.all_loads()) {
                 return Err(Error::Stopped);
             }
-            self.count_worst(found, *open);
+            self.count_worst(found, open);
         }
     }
 
@@ -386,8 +388,8 @@ impl Desk<'_> {
     }
 }
 
-/// The objective of one search as argmin takes it: relative to `unit`, places beyond the bounds
-/// with a penalty.
+/// The objective of one search as argmin takes it: relative to `unit`, the best when it began, and
+/// with a penalty at places beyond the bounds.
 struct Cost<'a> {
     desk: &'a Desk<'a>,
     search: usize,
@@ -395,7 +397,7 @@ struct Cost<'a> {
     found: &'a Mutex<Found>,
 }
 
-/// The objective, relative to the best of the first sample, of a profile that cannot be solved.
+/// The objective of a profile that cannot be solved, relative to the best when its search began.
 const UNSOLVED: f64 = 10.0;
 
 impl CostFunction for Cost<'_> {

@@ -5,7 +5,7 @@ use super::statements::{Axes, KEYS, Statements, System, Unit, body_of};
 use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result, StressTensor};
 use crate::case::Case;
-use crate::host::{check_memory, read_text, remember_given};
+use crate::host::{check_memory, read_input};
 use crate::solve::{Extent, Outside};
 use crate::stress::{Curves, PressureLine, StressCurve};
 use crate::study::errors::POINTS;
@@ -72,8 +72,7 @@ impl BroughtFile {
         let size = std::fs::metadata(path).map_or(0, |m| m.len());
         let what = format!("comparing {}", path.display());
         check_memory(&what, size as f64 * BYTES_PER_BYTE, "split the file")?;
-        remember_given(path);
-        Self::parse(&read_text(path, MAX_BYTES, "split the file")?, path, case, options)
+        Self::parse(&read_input(path, MAX_BYTES, "split the file")?, path, case, options)
     }
 
     /// Reads the text of a file; `path` names the curves that have no name.
