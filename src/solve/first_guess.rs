@@ -29,18 +29,19 @@ impl Scene {
             false => tolerance,
         };
         let overlap = self.overlap();
-        if slices.is_some_and(|slices| self.ends_inside(slices)) {
-            return Resolution::for_tips(tolerance);
-        }
-        let level = self.level(tolerance, slices.map_or(overlap, |slices| slices.ends));
-        let Some(slices) = slices else { return level };
-        let gap = self.gap();
-        let turns = [0, 1].map(|side| {
-            let outward = 2.0 * side as f64 - 1.0;
-            let end = slices.ends[side].clamp(overlap[0], overlap[1]);
-            gap.turns_within(end, -outward)
-        });
-        level.following(turns[0].min(turns[1]))
+        let Some(slices) = slices else { return self.level(tolerance, overlap) };
+        let level = if self.ends_inside(slices) {
+            Resolution::for_tips(tolerance)
+        } else {
+            let gap = self.gap();
+            let turns = [0, 1].map(|side| {
+                let outward = 2.0 * side as f64 - 1.0;
+                let end = slices.ends[side].clamp(overlap[0], overlap[1]);
+                gap.turns_within(end, -outward)
+            });
+            self.level(tolerance, slices.ends).following(turns[0].min(turns[1]))
+        };
+        level.across(slices.widest())
     }
 
     /// The resolution for a `tolerance` (p0) of a contact that has about these `ends`. The pressure
