@@ -88,8 +88,8 @@ impl Fold {
 
     /// Adds `factor` times the response of one part to `total`, a matrix over the nodes of the
     /// line: `response` is the same over the nodes of the axis.
-    pub fn add(
-        &self,
+    pub fn add<'a>(
+        &'a self,
         parity: Parity,
         response: &DMatrix<f64>,
         factor: f64,
@@ -107,11 +107,17 @@ impl Fold {
                 column.axpy(w, &response.column(node), 1.0);
             }
         }
-        for (i, (beyond, weights)) in self.places.iter().enumerate() {
-            let sign = if *beyond { parity.sign() } else { 1.0 };
-            for (node, w) in weights {
-                let mut row = total.row_mut(i);
-                row += spread.row(*node) * (factor * sign * w);
+        // And back.
+        let signed = |(i, (beyond, weights)): (usize, &'a (bool, Vec<(usize, f64)>))| {
+            let sign = if *beyond { factor * parity.sign() } else { factor };
+            weights.iter().map(move |(node, w)| (i, *node, sign * w))
+        };
+        let back: Vec<(usize, usize, f64)> =
+            self.places.iter().enumerate().flat_map(signed).collect();
+        let columns = total.as_mut_slice().chunks_exact_mut(self.places.len());
+        for (column, spread) in columns.zip(spread.as_slice().chunks_exact(response.nrows())) {
+            for (i, node, weight) in &back {
+                column[*i] += weight * spread[*node];
             }
         }
     }

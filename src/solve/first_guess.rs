@@ -17,6 +17,10 @@ const REACHES: f64 = 0.01;
 /// errors decide, and stresses are wrong by a multiple of p0.
 const BENDS: f64 = 2.0;
 
+/// Half-width at the ends of the bodies, as a part of the largest one, from which on a first guess
+/// is sure that the contact reaches them.
+const SURE: f64 = 0.8;
+
 /// A half-width (C) from which a contact has a unit of its own.
 const WIDER: f64 = 1.4;
 
@@ -65,6 +69,13 @@ impl Scene {
     pub(super) fn ends_inside(&self, slices: &Slices) -> bool {
         let (overlap, least) = (self.overlap(), MARGIN * self.half_length);
         slices.ends[0] - overlap[0] > least && overlap[1] - slices.ends[1] > least
+    }
+
+    /// Whether the ends of a contact, or a tilt that is held at a depth, have to be sought beyond
+    /// the first guess, its `slices`.
+    pub(super) fn needs_search(&self, slices: &Slices) -> bool {
+        let reached = |end: &f64| slices.half_width(*end) >= SURE * slices.widest();
+        matches!(self.tilt, Tilt::Held(_)) || !self.overlap().iter().all(reached)
     }
 
     /// The unit of length, in C, in which the contact has a half-width of about 1, or a half-length

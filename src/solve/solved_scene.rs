@@ -148,7 +148,7 @@ impl SolvedScene {
         let slices = scene.may_end().then(|| scene.slices(&gap));
         let mut line = Line::first(scene, slices.as_ref());
         let mut known = Known { slices, spring: None };
-        if scene.may_end() {
+        if known.slices.as_ref().is_some_and(|slices| scene.needs_search(slices)) {
             // The ends are found at low cost; on the way there no solution has to be sound.
             let coarse = scene.resolution(SEARCH, known.slices.as_ref());
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
