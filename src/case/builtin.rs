@@ -1,6 +1,6 @@
 //! The case files that are built into the binary, so that it runs from any folder.
 
-use super::document::nearest;
+use super::document::did_you_mean;
 use super::draft::Draft;
 use super::model::Case;
 use crate::base::{Error, Result};
@@ -86,8 +86,7 @@ fn not_found(path: &Path) -> Error {
     let meant = match word {
         "-" => "for a case from standard input give /dev/stdin, or ".to_string(),
         _ if is_study => format!("run `edgeline study {word}`, or "),
-        "" => String::new(),
-        _ => format!("did you mean {}? ", nearest(word, &names)),
+        _ => did_you_mean(word, &names),
     };
     Error::File {
         path: path.to_path_buf(),

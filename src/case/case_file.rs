@@ -1,6 +1,6 @@
 //! The case file: one contact problem.
 
-use super::document::{Document, Entry, Table, nearest, read_text};
+use super::document::{Document, Entry, Table, did_you_mean, read_text};
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key, only_keys};
 use super::model::Case;
@@ -44,15 +44,16 @@ impl Case {
         if !path.is_file() {
             return error;
         }
+        let of_file = |error| Error::Case { path: path.to_path_buf(), source: Box::new(error) };
         match &error {
             Error::Value { key, .. } if key.contains('.') => {
                 let Ok(text) = read_text(path) else { return error };
                 let Ok(document) = Document::parse(path, &text) else { return error };
                 let root = document.root();
-                if root.find(key).is_some() { root.place(error) } else { error }
+                if root.find(key).is_some() { root.place(error) } else { of_file(error) }
             }
             Error::NotConverged { .. } | Error::Unsound { .. } | Error::Uncovered { .. } => {
-                Error::Case { path: path.to_path_buf(), source: Box::new(error) }
+                of_file(error)
             }
             _ => error,
         }
@@ -192,8 +193,8 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
         let name = entry.string()?;
         let Some(kind) = ProfileKind::ALL.into_iter().find(|kind| kind.name() == name) else {
             let known = ProfileKind::ALL.map(ProfileKind::name);
-            let remedy =
-                format!("did you mean {}? There are {}", nearest(name, &known), known.join(", "));
+            let meant = did_you_mean(name, &known);
+            let remedy = format!("{meant}There are {}", known.join(", "));
             return Err(entry.refuse("there is no such profile", remedy));
         };
         let mut spec = ProfileSpec::new(kind);
@@ -203,7 +204,7 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
                 return Err(file.refuse(reason, "remove it, or write kind = \"table\""));
             }
             let place = file.beside(path)?;
-            spec.table = Some(Arc::new(read_profile_table(&place)?));
+            spec.table = Some(Arc::new(file.opened(read_profile_table(&place))?));
             spec.file = Some(place);
         }
         *draft.case.profile_mut(body) = Some(spec);

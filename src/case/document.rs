@@ -19,10 +19,20 @@ pub(super) fn read_text(path: &Path) -> Result<String> {
     host::read_input(path, Case::MAX_BYTES, "give a case or study file in TOML")
 }
 
-/// The known name that is most like `name`.
-pub(super) fn nearest<'k>(name: &str, known: &[&'k str]) -> &'k str {
-    let distance = |k: &&&str| strsim::levenshtein(k, name);
-    known.iter().min_by_key(distance).expect("there are known names")
+/// The question whether the known name most like `name` is meant, with a blank behind it; nothing
+/// if none is like it: none begins with it, and none differs by few letters.
+pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
+    let name = name.to_lowercase();
+    let distance = |known: &str| match known.to_lowercase() {
+        known if known.starts_with(&name) => 0,
+        known => strsim::damerau_levenshtein(&known, &name),
+    };
+    let few = (name.len() / 3).max(1).min(name.len().saturating_sub(1));
+    let nearest = known.iter().map(|known| (distance(known), known)).min();
+    match nearest.filter(|(distance, _)| !name.is_empty() && *distance <= few) {
+        Some((_, known)) => format!("did you mean {known}? "),
+        None => String::new(),
+    }
 }
 
 /// A parsed file that knows the places of its values.
@@ -89,12 +99,12 @@ impl<'d> Table<'d> {
             .filter(|k| !known.contains(&k.get_ref().as_ref()))
             .min_by_key(|k| k.span().start);
         let Some(key) = unknown else { return Ok(()) };
-        let nearest = nearest(key.get_ref(), known);
+        let meant = did_you_mean(key.get_ref(), known);
         let place = match self.name.as_str() {
             "" => "the top level".to_string(),
             name => format!("[{name}]"),
         };
-        let takes = format!("did you mean {nearest}? {place} takes {}", known.join(", "));
+        let takes = format!("{meant}{place} takes {}", known.join(", "));
         Err(self.unknown(key.get_ref(), takes))
     }
 
@@ -237,6 +247,18 @@ impl<'d> Entry<'d> {
             Some(v) if f64::is_finite(v) => Ok(v),
             _ => Err(self.refuse("a finite number belongs here", "write for example 1.5 or 2e-4")),
         }
+    }
+
+    /// What was read of the file that this value names; that it cannot be read is an error about
+    /// this value.
+    pub fn opened<T>(&self, read: Result<T>) -> Result<T> {
+        read.map_err(|e| match e {
+            Error::Io { path, source, .. } => {
+                let reason = format!("cannot read {}: {source}", path.display());
+                self.refuse(reason, "correct the path, which is relative to this file")
+            }
+            other => other,
+        })
     }
 
     /// The file whose path this is, beside the file at `path`: its whole path, so that what is

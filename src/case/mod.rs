@@ -36,8 +36,6 @@ mod tests;
 #[cfg(feature = "cli")]
 pub mod two_level;
 
-#[cfg(feature = "cli")]
-pub(crate) use builtin::is_given;
 pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case};
 pub use draft::{Draft, Form};
 pub use keys::{KEYS, Key, Presence};
@@ -46,10 +44,12 @@ pub use objective::Objective;
 pub use profile::{ProfileKind, ProfileSpec};
 pub use surface::Surface;
 #[cfg(feature = "cli")]
+pub(crate) use {builtin::is_given, document::did_you_mean};
+#[cfg(feature = "cli")]
 pub use {
     design_file::{Design, DesignLoad, Parameter},
     factor::FactorKey,
     schema::case_schema,
-    study_file::{DEFAULT_STUDY, Study, Varied},
+    study_file::{DEFAULT_STUDY, Study, Varied, find_case},
     sweep::Sweep,
 };

@@ -3,7 +3,7 @@
 use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given, nothing_at};
 use super::case_file::{entries, keys_of, name, only_tables, read_profiles};
 use super::check::{MAX_NAME, check_name};
-use super::document::{Document, Entry, Table, nearest, read_text};
+use super::document::{Document, Entry, Table, did_you_mean, read_text};
 use super::draft::{Draft, Form};
 use super::factor::FactorKey;
 use super::keys::Key;
@@ -82,17 +82,24 @@ impl Study {
         if is_given(path) {
             return Study::read(path);
         }
-        Study::all_built_in().find(|study| path.as_os_str() == study.name.as_str()).ok_or_else(
-            || {
-                let names = BUILTIN_STUDIES.map(|(name, _)| name);
-                Error::File {
-                    path: path.to_path_buf(),
-                    line: None,
-                    message: nothing_at(path).into(),
-                    remedy: format!("give a study file, or a built-in study: {}", names.join(", ")),
-                }
-            },
-        )
+        let name = path.to_str().unwrap_or_default();
+        Study::all_built_in().find(|study| study.name == name).ok_or_else(|| {
+            let names = BUILTIN_STUDIES.map(|(name, _)| name);
+            let is_case = builtin_case(name).is_some() || case_of_study(name).is_some();
+            let meant = match is_case {
+                true => format!("run `edgeline solve {name}`, or "),
+                false => did_you_mean(name, &names),
+            };
+            Error::File {
+                path: path.to_path_buf(),
+                line: None,
+                message: if is_case { "is a case, not a study" } else { nothing_at(path) }.into(),
+                remedy: format!(
+                    "{meant}give a study file, or a built-in study: {}",
+                    names.join(", ")
+                ),
+            }
+        })
     }
 
     /// Reads a study file. Its case files are relative to its folder; a name without such a file is
@@ -203,6 +210,29 @@ impl Study {
     }
 }
 
+/// As [`Case::find`], and takes the cases of the built-in studies, too: `w1e-3_sl5_lr1`, or
+/// `profiled/centre` where several studies have a case of that name, of which the name alone is the
+/// first.
+///
+/// # Errors
+/// As [`Case::find`].
+pub fn find_case(path: &Path) -> Result<Case> {
+    Case::find(path).or_else(|error| match path.to_str().and_then(case_of_study) {
+        Some(case) if !is_given(path) => Ok(case),
+        _ => Err(error),
+    })
+}
+
+/// The case called `name` of a built-in study, see [`find_case`].
+fn case_of_study(name: &str) -> Option<Case> {
+    let (of, name) = match name.split_once('/') {
+        Some((study, name)) => (Some(study), name),
+        None => (None, name),
+    };
+    let mut studies = Study::all_built_in().filter(|study| of.is_none_or(|of| study.name == of));
+    studies.find_map(|study| study.cases().find(|case| case.name == name).cloned())
+}
+
 /// A factor, and the entry with its levels.
 type Factor<'d> = (FactorKey, Entry<'d>);
 
@@ -234,9 +264,9 @@ fn collect_factors<'d>(table: &Table<'d>, path: &str, into: &mut Vec<Factor<'d>>
         } else {
             let names: Vec<&str> = FactorKey::all().map(FactorKey::name).collect();
             let remedy = format!(
-                "did you mean {}? [factors] takes W, S_l, L_r, roller.end_drop, block.end_drop, \
+                "{}[factors] takes W, S_l, L_r, roller.end_drop, block.end_drop, \
                  eccentricity, and the numbers of a case by their paths, such as sliding.friction",
-                nearest(&own, &names)
+                did_you_mean(&own, &names)
             );
             return Err(table.unknown(key, remedy));
         }

@@ -1,6 +1,6 @@
 //! The table `[surface]` of a case file.
 
-use super::document::{Table, nearest};
+use super::document::{Table, did_you_mean};
 use super::draft::Draft;
 use super::keys::{KEYS, only_keys};
 use super::surface::Surface;
@@ -23,8 +23,8 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
         if detrend.is_none() {
             let known = Detrend::ALL.map(Detrend::name);
             let remedy = format!(
-                "did you mean {}? There are {}; without the key nothing is taken off",
-                nearest(name, &known),
+                "{}There are {}; without the key nothing is taken off",
+                did_you_mean(name, &known),
                 known.join(" and ")
             );
             return Err(entry.refuse("there is no such trend", remedy));
@@ -32,7 +32,7 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
     }
     let heights = file.beside(path)?;
     // The distances are numbers of the case: whatever they are, the samples are the same.
-    let samples = Heights::read(&heights, [1.0; 2])?;
+    let samples = file.opened(Heights::read(&heights, [1.0; 2]))?;
     let has_steps = Heights::has_steps(&heights);
     if !has_steps {
         for key in ["dx_m", "dy_m"] {

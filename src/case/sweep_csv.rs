@@ -1,6 +1,6 @@
 //! A sweep as a CSV table: one row per case, and a column for each number that varies.
 
-use super::document::nearest;
+use super::document::did_you_mean;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::sweep::{Column, Rows, Sweep};
@@ -91,8 +91,7 @@ fn column(name: &str) -> Finding<Column> {
     let mut known = vec!["name"];
     known.extend(BOTH);
     known.extend(KEYS.iter().map(|key| key.column));
-    let remedy =
-        format!("did you mean {}? The columns are {}", nearest(name, &known), known.join(", "));
+    let remedy = format!("{}The columns are {}", did_you_mean(name, &known), known.join(", "));
     Err((format!("unknown column {name}"), remedy))
 }
 

@@ -7,10 +7,10 @@ use super::progress::{progress_bar, show};
 use super::provenance::{command_line, now, processor};
 use super::published;
 use super::records::Records;
-use super::values::{checked_tolerance, chosen_models, source};
+use super::values::{MOST_REPEATS, checked_tolerance, chosen_models, count, source};
 use crate::base::number::{duration, duration_with_spread, rounded};
 use crate::base::{Error, Result};
-use crate::case::{Case, Study, is_given};
+use crate::case::{Case, Study, find_case, is_given};
 use crate::fem::{Code, Driver};
 use crate::host::{self, Lock, read_text};
 use crate::report::bench as files;
@@ -56,8 +56,8 @@ pub(super) struct Arguments {
     #[arg(long, value_delimiter = ',', value_name = "E,E", default_value = "0.02,0.01,0.005", value_parser = level)]
     levels: Vec<f64>,
     /// Repetitions of each timing of a model
-    #[arg(long, default_value_t = 9, value_name = "N", value_parser = clap::value_parser!(u16).range(1..))]
-    repeats: u16,
+    #[arg(long, default_value_t = 9, value_name = "N", value_parser = count("repetitions", 1..=MOST_REPEATS))]
+    repeats: usize,
     /// Source of the finite-element times; the finest mesh is the reference
     #[arg(long, value_enum, default_value = "recorded")]
     fem: FemSource,
@@ -81,12 +81,11 @@ struct LiveOptions {
         value_delimiter = ',',
         value_name = "S,S",
         default_value = "2,1.4",
-        value_parser = mesh_of,
-        allow_hyphen_values = true
+        value_parser = mesh_of
     )]
     sizes: Vec<(Option<Code>, f64)>,
     /// Runs of each mesh with --fem live
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = count("runs", 1..=MOST_REPEATS))]
     fem_repeats: usize,
     #[command(flatten)]
     options: FemOptions,
@@ -126,17 +125,15 @@ fn find_cases(named: &[PathBuf]) -> Result<Vec<Case>> {
     let mut all: Vec<Case> = Vec::new();
     for path in named {
         let is = |name: &str| path.as_os_str() == name && !is_given(path);
-        let of_studies = || built_in.iter().flat_map(Study::cases);
         let found: Vec<Case> = if let Some(study) = built_in.iter().find(|s| is(&s.name)) {
             study.cases().cloned().collect()
-        } else if let Some(case) = of_studies().find(|c| is(&c.name)) {
-            vec![case.clone()]
         } else if read_text(path, Case::MAX_BYTES, "").is_ok_and(|text| is_study(&text)) {
             Study::read(path)?.cases().cloned().collect()
         } else {
-            let case = Case::find(path)?;
-            case.check_force("every model would find another force")?;
-            case.check_smooth("the models of a bench are those of smooth bodies")?;
+            let case = find_case(path)?;
+            let checked = case.check_force("every model would find another force");
+            let smooth = "the models of a bench are those of smooth bodies";
+            checked.and_then(|()| case.check_smooth(smooth)).map_err(|e| Case::place(path, e))?;
             vec![case]
         };
         all.extend(found);
@@ -233,7 +230,7 @@ fn measure(
         &BenchSetup {
             models: Models {
                 methods: chosen_models(&arguments.methods),
-                repeats: usize::from(arguments.repeats),
+                repeats: arguments.repeats,
                 solver: &|cases, method| solve_group(cases, &Options::new(method)),
                 cold: &|case, method, threads| cold.seconds(case, method, threads),
                 published: published::is_chosen(&arguments.methods).then_some(&on_cells),

@@ -2,7 +2,7 @@
 
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
-use crate::case::{Case, Study};
+use crate::case::{Case, Study, did_you_mean};
 use crate::study::StudyRun;
 use crate::study::brought::{Beside, BroughtFile, FileRun, Statements};
 use crate::study::verification::refined_tolerance;
@@ -87,13 +87,11 @@ impl Brought {
 }
 
 fn unknown_case(name: &str, cases: &[&Case]) -> Error {
-    let distance = |case: &&&Case| strsim::damerau_levenshtein(&case.name, name);
-    let nearest = cases.iter().min_by_key(distance).expect("a study has cases");
     let names: Vec<&str> = cases.iter().map(|case| case.name.as_str()).collect();
     Error::Value {
         key: "--curves".to_string(),
         value: name.to_string(),
         reason: "the study has no case of this name".to_string(),
-        remedy: format!("did you mean {}? Its cases are {}", nearest.name, names.join(", ")),
+        remedy: format!("{}Its cases are {}", did_you_mean(name, &names), names.join(", ")),
     }
 }

@@ -6,7 +6,7 @@ use super::records::Records;
 use super::study_options::RangeOptions;
 use super::values::unsuited;
 use crate::base::{Error, Result};
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::host::{Lock, prepare_folder, replace_set};
 use crate::report::comparison::{Context, Summary, files};
 use crate::report::gates;
@@ -27,7 +27,7 @@ use std::path::PathBuf;
 /// code 0: all gates hold; 1: one failed; 2: could not run. Takes about a second.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// Files of curves (CSV)
@@ -50,6 +50,9 @@ pub(super) struct Arguments {
     #[arg(long)]
     json: bool,
 }
+
+/// Why a curve is left out.
+const TOO_FEW: &str = "too few points away from the edges, of which a curve takes two in a row";
 
 /// What options state in place of the files' headers.
 #[derive(Args)]
@@ -102,7 +105,11 @@ impl StatedOptions {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    let case = Case::find(&arguments.case)?;
+    compare(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn compare(arguments: &Arguments) -> Result<Exit> {
+    let case = find_case(&arguments.case)?;
     case.check_force("every model would find another force")?;
     let stated = arguments.stated.statements()?;
     let thresholds = match &arguments.gates {
@@ -121,12 +128,8 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         brought.push(file);
     }
     let pressures = |file: &BroughtFile| file.curves.stress.is_empty();
-    if arguments.stated.body.is_some() && brought.iter().all(pressures) {
-        return Err(unsuited(
-            ("body", "given"),
-            "a pressure is that of both bodies",
-            "leave it out",
-        ));
+    if let Some(body) = arguments.stated.body.as_deref().filter(|_| brought.iter().all(pressures)) {
+        return Err(unsuited(("body", body), "a pressure is that of both bodies", "leave it out"));
     }
     let records = Records::read(arguments.reference.as_deref())?;
     let first = records.find(&case)?.map(|record| (Engine::fenicsx(), Ok(record)));
@@ -135,6 +138,14 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let fem: Vec<(Engine, Reference)> = fem.collect::<Result<_>>()?;
     let fem: Vec<_> = fem.iter().map(|(engine, reference)| (engine.clone(), reference)).collect();
     let compared = Comparison::new(&case, brought, &fem, &limits, &arguments.range.range())?;
+    if let Some(file) = compared.files.iter().find(|file| file.errors.is_empty()) {
+        return Err(Error::File {
+            path: file.file.path.clone(),
+            line: None,
+            message: format!("nothing can be compared: {TOO_FEW}: {}", file.left_out.join(", ")),
+            remedy: "give more points, or a smaller --exclude or --exclude-pressure".into(),
+        });
+    }
     let (date, command) = (now(), command_line());
     let own_limits = arguments.gates.is_some();
     let summary = Summary::of(&compared, &Context { date: &date, command: &command, own_limits });
@@ -146,16 +157,13 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     for file in &summary.files {
         if !file.left_out.is_empty() {
             let left_out = file.left_out.join(", ");
-            say(&format!(
-                "note: {}: too few points away from the edges, of which a curve takes two in a row: {left_out}",
-                file.name
-            ));
+            say(&format!("note: {}: {TOO_FEW}: {left_out}", file.name));
         }
     }
     if arguments.json {
         print_json(&summary)?;
     } else {
-        print(&text(&summary, &arguments))?;
+        print(&text(&summary, arguments))?;
     }
     Ok(if summary.gates_hold { Exit::Done } else { Exit::GateFailed })
 }

@@ -4,7 +4,7 @@ use super::fem_options::Size;
 use super::output::{Exit, print};
 use super::progress::Progress;
 use crate::base::Result;
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::fem::{Code, DECK_FILES, Driver, FemSettings};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -17,7 +17,7 @@ use std::path::PathBuf;
 /// --engine calculix` runs the same deck, but for large displacements. Takes a few seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// Folder for the deck; created if it does not exist
@@ -37,14 +37,18 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    let case = Case::find(&arguments.case)?;
+    write(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn write(arguments: &Arguments) -> Result<Exit> {
+    let case = find_case(&arguments.case)?;
     Code::Calculix.check(&case)?;
     let driver = Driver::without_solver(FemSettings {
         code: Code::Calculix,
         size: arguments.size.size,
         large_displacements: arguments.large_displacements,
-        python: arguments.python,
-        gmsh: arguments.gmsh,
+        python: arguments.python.clone(),
+        gmsh: arguments.gmsh.clone(),
         ..FemSettings::default()
     })?;
     let progress = Progress::new();

@@ -2,7 +2,7 @@
 
 use super::output::{Exit, print, print_json, say};
 use super::progress::progress_bar;
-use super::values::{checked_tolerance, edge_model};
+use super::values::{checked_tolerance, count, edge_model};
 use crate::base::number::{significant, stated};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -37,14 +37,14 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "design", value_hint = ValueHint::DirPath)]
     out: PathBuf,
     /// Accuracy of the search as a fraction of p0; the optimum is solved with the case's own
-    #[arg(long, default_value_t = 3e-2, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 3e-2)]
     tolerance: f64,
     /// Seed of the first sample
     #[arg(long, default_value_t = 1, value_name = "N")]
     seed: u64,
     /// Descents, from the best points of the first sample
-    #[arg(long, default_value_t = 2, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=20))]
-    starts: u16,
+    #[arg(long, default_value_t = 2, value_name = "N", value_parser = count("descents", 1..=20))]
+    starts: usize,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
     json: bool,
@@ -57,7 +57,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
         method: arguments.method,
         tolerance: checked_tolerance(arguments.tolerance)?,
         seed: arguments.seed,
-        starts: usize::from(arguments.starts),
+        starts: arguments.starts,
     };
     let _lock = Lock::claim(&arguments.out)?;
     let bar = progress_bar();

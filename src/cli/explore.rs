@@ -2,7 +2,7 @@
 
 use super::output::{Exit, print, say};
 use crate::base::Result;
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::explore::serve;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -15,7 +15,7 @@ use std::path::PathBuf;
 /// second for each change.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(default_value = "flush-short", value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// Port of 127.0.0.1; any free one by default
@@ -24,7 +24,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    let case = Case::find(&arguments.case)?;
+    explore(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn explore(arguments: &Arguments) -> Result<Exit> {
+    let case = find_case(&arguments.case)?;
     case.check_force("the page changes forces")?;
     case.check_smooth("the page solves along a line, where bodies are smooth")?;
     let explorer = serve(case, arguments.port)?;

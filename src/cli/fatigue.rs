@@ -1,11 +1,12 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
 use super::output::{Exit, print, print_json, wrote};
+use super::progress::Progress;
 use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::host::{Lock, replace_set};
 use crate::report::fatigue::{CriticalPlace, Passages, Summary, contents, summary};
 use crate::report::study_files::pretty;
@@ -25,7 +26,7 @@ use std::path::PathBuf;
 /// off. Takes some seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// How the free ends of the bodies are modelled
@@ -39,7 +40,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "NY,NZ", value_delimiter = ',', default_value = "33,31", num_args = 1, value_parser = count("places", 2..=500))]
     places: Vec<usize>,
     /// Accuracy as a fraction of p0, that of the case by default
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long)]
     tolerance: Option<f64>,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]
@@ -51,7 +52,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 }
 
 fn find(arguments: &Arguments) -> Result<Exit> {
-    let mut case = Case::find(&arguments.case)?;
+    let mut case = find_case(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
@@ -63,15 +64,26 @@ fn find(arguments: &Arguments) -> Result<Exit> {
     let case = solved.case();
     let passages =
         |method: EdgeModel, bodies: Vec<Passage>| Passages { method: method.name().into(), bodies };
-    let bodies = BodyKind::ALL.map(|body| Passage::new(&solved, body, counts));
+    let progress = Progress::new();
+    let report = |body: BodyKind, method: EdgeModel| {
+        progress.say(&case.name, &format!("{} by {method}", body.name()));
+    };
+    let bodies = BodyKind::ALL.map(|body| {
+        report(body, arguments.method);
+        Passage::new(&solved, body, counts)
+    });
     let half_space = match arguments.method {
         EdgeModel::HalfSpace => None,
         _ => {
             let other = SolvedCase::new(case, &Options::new(EdgeModel::HalfSpace))?;
-            let beside = bodies.iter().map(|passage| passage.by(&other)).collect();
-            Some(passages(EdgeModel::HalfSpace, beside))
+            let beside = bodies.iter().map(|passage| {
+                report(passage.body, EdgeModel::HalfSpace);
+                passage.by(&other)
+            });
+            Some(passages(EdgeModel::HalfSpace, beside.collect()))
         }
     };
+    progress.finish();
     let own = passages(arguments.method, bodies.to_vec());
     let hertz = case.hertz();
     let found = summary(case, &hertz, &own, half_space.as_ref());

@@ -4,7 +4,7 @@ use super::fem_options::{FemOptions, Size};
 use super::output::{Exit, print, print_json, say};
 use super::progress::Progress;
 use crate::base::Result;
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::fem::{Driver, MeshResult};
 use clap::{Args, ValueHint};
 use serde_json::json;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 /// next run continues a run that was stopped; a finished run is not repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// Folder for the results; created if it does not exist
@@ -35,7 +35,11 @@ pub(super) struct Arguments {
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    let case = Case::find(&arguments.case)?;
+    solve(&arguments).map_err(|e| Case::place(&arguments.case, e))
+}
+
+fn solve(arguments: &Arguments) -> Result<Exit> {
+    let case = find_case(&arguments.case)?;
     let code = arguments.fem.engine();
     code.check(&case)?;
     let driver = Driver::new(arguments.fem.settings(arguments.size.size))?;
@@ -60,7 +64,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             "summary": result.summary,
         }))?;
     } else {
-        print(&text(&case, &result, &arguments))?;
+        print(&text(&case, &result, arguments))?;
     }
     Ok(Exit::Done)
 }

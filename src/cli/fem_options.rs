@@ -1,6 +1,6 @@
 //! Options of the subcommands that run finite elements.
 
-use super::values::{one_of, unsuited};
+use super::values::{count, one_of, unsuited};
 use crate::base::Result;
 use crate::fem::{Code, FemSettings, LinearSolver};
 use clap::parser::ValueSource;
@@ -32,8 +32,10 @@ impl<T> OfLive<T> {
     pub fn check(&self, source: FemSource) -> Result<()> {
         match &self.given {
             Some(option) if source == FemSource::Recorded => {
-                let reason = "it has no effect on recorded finite elements";
-                Err(unsuited((option, "given"), reason, "add --fem live, or leave it out"))
+                let reason =
+                    format!("--{option} is given, and has no effect on recorded finite elements");
+                let remedy = format!("add --fem live, or leave out --{option}");
+                Err(unsuited(("fem", "recorded"), &reason, &remedy))
             }
             _ => Ok(()),
         }
@@ -84,7 +86,7 @@ impl<T: Args> FromArgMatches for OfLive<T> {
 #[derive(Args)]
 pub(super) struct Size {
     /// Relative element size of the mesh: 1 is the production mesh, 2 is coarse
-    #[arg(long, default_value_t = 1.0, allow_hyphen_values = true)]
+    #[arg(long, default_value_t = 1.0)]
     pub size: f64,
 }
 
@@ -98,7 +100,7 @@ pub(super) struct FemOptions {
     #[arg(long, default_value = "direct", value_parser = one_of(&LinearSolver::ALL, LinearSolver::name))]
     linear: LinearSolver,
     /// MPI processes per finite-element run, at most as many as there are processors
-    #[arg(long, default_value_t = 1, value_name = "N")]
+    #[arg(long, default_value_t = 1, value_name = "N", value_parser = count("processes", 1..=65536))]
     ranks: usize,
     /// Interpreter that imports dolfinx (for CalculiX: numpy) [default: $EDGELINE_PYTHON,
     /// /usr/bin/python3, python3]
@@ -111,14 +113,14 @@ pub(super) struct FemOptions {
     #[arg(long, value_name = "FILE", default_value = "ccx", value_hint = ValueHint::ExecutablePath)]
     ccx: PathBuf,
     /// Time limit for meshing one case, in seconds
-    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", default_value_t = 300.0, value_parser = seconds)]
     mesh_timeout: f64,
     /// Time limit for solving one case, in seconds
-    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds, allow_hyphen_values = true)]
+    #[arg(long, value_name = "S", default_value_t = 3600.0, value_parser = seconds)]
     solve_timeout: f64,
     /// Limit for the files of one run, in GiB
-    #[arg(long, value_name = "GIB", default_value_t = 10)]
-    max_disk: u16,
+    #[arg(long, value_name = "GIB", default_value_t = 10, value_parser = count("GiB", 1..=65536))]
+    max_disk: usize,
     /// Keep meshes and requests after a successful run
     #[arg(long)]
     keep: bool,
@@ -147,7 +149,7 @@ impl FemOptions {
             gmsh: self.gmsh.clone(),
             mesh_timeout: Duration::from_secs_f64(self.mesh_timeout),
             solve_timeout: Duration::from_secs_f64(self.solve_timeout),
-            max_bytes: u64::from(self.max_disk) << 30,
+            max_bytes: (self.max_disk as u64) << 30,
             keep: self.keep,
             large_displacements: false,
         }

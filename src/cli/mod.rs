@@ -2,6 +2,7 @@
 
 mod bench;
 mod brought;
+mod cases;
 mod cold;
 mod compare;
 mod deck;

@@ -26,6 +26,9 @@ struct Row {
     z_m: f64,
 }
 
+/// The columns, which may stand in any order.
+const COLUMNS: [&str; 4] = ["body", "x_m", "y_m", "z_m"];
+
 /// Reads points from a CSV file with the columns `body,x_m,y_m,z_m`, all within the bodies of
 /// `case`. Lines that begin with `#` are comments.
 ///
@@ -68,6 +71,12 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
     };
     let of_csv = |e: csv::Error| refuse(e.position().map(line_of), csv_fault(&e));
     let header = reader.headers().map_err(of_csv)?.clone();
+    let mut sorted: Vec<&str> = header.iter().collect();
+    sorted.sort_unstable();
+    if sorted != COLUMNS {
+        let names = header.iter().collect::<Vec<_>>().join(",");
+        return Err(refuse(header.position().map(line_of), format!("has the columns {names}")));
+    }
     let mut points = Vec::new();
     for record in reader.records() {
         let record = record.map_err(of_csv)?;
@@ -128,7 +137,11 @@ mod tests {
         let late =
             read_text("# mine\nbody,x_m,y_m,z_m\n\n# a\nblock,0,0,-1\n").unwrap_err().to_string();
         assert!(late.contains(":5: z_m = "), "{late}");
-        assert!(read_text("body,x_m,y_m\nblock,0,0\n").unwrap_err().to_string().contains("z_m"));
+        for header in ["body,x_m,y_m", "body,x,y,z", "body,x_m,y_m,z_m,z_m"] {
+            let said =
+                read_text(&format!("# mine\n{header}\nblock,0,0\n")).unwrap_err().to_string();
+            assert!(said.contains(&format!(":2: has the columns {header}; give the")), "{said}");
+        }
         assert!(
             read_text(head.lines().next().unwrap()).unwrap_err().to_string().contains("no points")
         );

@@ -2,10 +2,10 @@
 
 use super::output::{Exit, say};
 use super::{
-    bench, compare, deck, design, doctor, explore, extras, fatigue, fem, gate, report, solve,
-    study, sweep,
+    bench, cases, compare, deck, design, doctor, explore, extras, fatigue, fem, gate, report,
+    solve, study, sweep,
 };
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -39,13 +39,27 @@ enum Command {
     Gate(gate::Arguments),
     Bench(bench::Arguments),
     Report(report::Arguments),
+    Cases(cases::Arguments),
     Doctor(doctor::Arguments),
     Extras(extras::Arguments),
 }
 
+/// The command line. A negative number is the value of the option before it, which says what is
+/// wrong with it, and no option itself.
+fn command() -> clap::Command {
+    Arguments::command().mut_subcommands(|command| {
+        command.mut_args(|option| match option.get_value_delimiter() {
+            Some(_) => option.allow_hyphen_values(true),
+            None => option.allow_negative_numbers(true),
+        })
+    })
+}
+
 /// Runs the program with `arguments`, the program's name first, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let parsed = command().try_get_matches_from(arguments);
+    let parsed = parsed.and_then(|mut matches| Arguments::from_arg_matches_mut(&mut matches));
+    let arguments = match parsed {
         Ok(arguments) => arguments,
         Err(e) => {
             // Help and version are not errors and go to standard output.
@@ -66,8 +80,9 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Gate(arguments) => gate::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Report(arguments) => report::run(arguments),
+        Command::Cases(arguments) => cases::run(arguments),
         Command::Doctor(arguments) => doctor::run(arguments),
-        Command::Extras(arguments) => extras::run(arguments, Arguments::command()),
+        Command::Extras(arguments) => extras::run(arguments, command()),
     };
     match outcome {
         Ok(Exit::Done) => ExitCode::SUCCESS,

@@ -10,7 +10,7 @@ use super::values::{
 use crate::base::number::{duration, significant, stated};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
-use crate::case::Case;
+use crate::case::{Case, find_case};
 use crate::host::{Lock, check_memory};
 use crate::report::plots::PROGRAM;
 use crate::report::{cells, field, page, solution};
@@ -42,7 +42,7 @@ use std::path::PathBuf;
 /// layer-BODY-NUMBER.npy (numbers of cells, then xx, yy, zz, xy, xz, yz in Pa) and layers.json.
 #[derive(Args)]
 pub(super) struct Arguments {
-    /// A case file, or the name of a built-in case
+    /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
     case: PathBuf,
     /// How the free ends of the bodies are modelled
@@ -57,10 +57,10 @@ pub(super) struct Arguments {
     cells: Vec<usize>,
     /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact
     /// area
-    #[arg(long, value_name = "F,F,...", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "F,F,...", value_delimiter = ',')]
     loads: Vec<f64>,
     /// Also all stresses under every cell at these depths (m), on cells
-    #[arg(long, value_name = "Z,Z,...", value_delimiter = ',', allow_hyphen_values = true)]
+    #[arg(long, value_name = "Z,Z,...", value_delimiter = ',')]
     layers: Vec<f64>,
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
@@ -86,15 +86,15 @@ pub(super) struct Arguments {
     curve: Vec<String>,
     /// Accuracy as a fraction of p0, that of the case by default; with --engine cells the relative
     /// residual, 1e-8 by default
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long)]
     tolerance: Option<f64>,
     /// Adds the stiffnesses, force by approach and moment by tilt, to summary.json: four more
     /// solutions
     #[arg(long)]
     stiffness: bool,
     /// Writes laminae.csv: the loads of N equal slices of the contact beside those of ISO/TS 16281
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(30..=2000))]
-    laminae: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = count("slices", 30..=2000))]
+    laminae: Option<usize>,
     #[command(flatten)]
     uncertain: UncertainOptions,
     /// Print the summary as one JSON object and nothing else
@@ -113,6 +113,9 @@ enum Engine {
 
 impl Arguments {
     /// The engine that is asked for; without, the one that takes the case.
+/// Why stiffnesses and laminae are refused on cells.
+const NOT_ON_CELLS: &str = "the engine on cells does not compute them";
+
     fn engine(&self, case: &Case) -> Engine {
         let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
         self.engine.unwrap_or(own)
@@ -137,11 +140,18 @@ impl Arguments {
     fn check_cells_alone(&self) -> Result<()> {
         let remedy = "leave it out, or take --engine line";
         let laminae = self.laminae.map_or_else(String::new, |count| count.to_string());
-        let flag = |given: bool| if given { "given".to_string() } else { String::new() };
+        for (flag, is_given, reason) in [
+            ("field", self.field, "the engine on cells writes no fields"),
+            ("stiffness", self.stiffness, NOT_ON_CELLS),
+        ] {
+            if is_given {
+                let reason = format!("--{flag} is given, and {reason}");
+                let remedy = format!("leave out --{flag}, or take --engine line");
+                return Err(unsuited(("engine", "cells"), &reason, &remedy));
+            }
+        }
         for (option, given, reason) in [
-            ("field", flag(self.field), "the engine on cells writes no fields"),
-            ("stiffness", flag(self.stiffness), "the engine on cells does not compute them"),
-            ("laminae", laminae, "the engine on cells does not compute them"),
+            ("laminae", laminae, NOT_ON_CELLS),
             (
                 "uncertain",
                 self.uncertain.given(),
@@ -161,7 +171,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 }
 
 fn solve(arguments: &Arguments) -> Result<Exit> {
-    let mut case = Case::find(&arguments.case)?;
+    let mut case = find_case(&arguments.case)?;
     let mut options = Options::new(arguments.method);
     if !arguments.body.is_empty() {
         options.bodies.retain(|body| arguments.body.contains(body));
@@ -198,7 +208,7 @@ fn solve(arguments: &Arguments) -> Result<Exit> {
         found.summary.details.stiffness = Some(stiffness(&solved, &options)?);
     }
     if let Some(count) = arguments.laminae {
-        let laminae = laminae(&solved, usize::from(count));
+        let laminae = laminae(&solved, count);
         say(&what_laminae_miss(case, &laminae));
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));

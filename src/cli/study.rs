@@ -5,6 +5,7 @@ use super::fem_options::FemSource;
 use super::output::{Exit, print, print_json, say};
 use super::provenance::{command_line, now, processor};
 use super::study_options::StudyOptions;
+use super::values::{MOST_REPEATS, count};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study, builtin_case};
@@ -47,7 +48,7 @@ pub(super) struct Arguments {
     #[arg(long, value_name = "CASE=FILE", value_parser = curves_of, value_hint = ValueHint::FilePath)]
     curves: Vec<CurvesOf>,
     /// Warm repetitions of each timing of a model; 0 for no timing
-    #[arg(long, default_value_t = 7, value_name = "N")]
+    #[arg(long, default_value_t = 7, value_name = "N", value_parser = count("repetitions", 0..=MOST_REPEATS))]
     repeats: usize,
     /// Print the summary as one JSON object and nothing else
     #[arg(long)]

@@ -6,7 +6,7 @@ use super::output::say;
 use super::progress::{progress_bar, show};
 use super::published;
 use super::records::Records;
-use super::values::{chosen_models, source, unsuited};
+use super::values::{MOST_REPEATS, chosen_models, count, source, unsuited};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{BUILTIN_STUDIES, Case, Study, is_given};
@@ -54,7 +54,7 @@ pub(super) struct StudyOptions {
 #[derive(Args)]
 struct LiveOptions {
     /// Finite-element runs of each case with --fem live; the median time is reported
-    #[arg(long, value_name = "N", default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = count("runs", 1..=MOST_REPEATS))]
     fem_repeats: usize,
     #[command(flatten)]
     size: Size,
@@ -119,10 +119,10 @@ impl StudyOptions {
     /// [`crate::base::Error::Value`] that names the option.
     pub(super) fn check(&self, usual: &[EdgeModel], with_cells: bool) -> Result<()> {
         self.live.check(self.fem)?;
-        if self.fem == FemSource::Live && self.reference.is_some() {
+        if let (FemSource::Live, Some(folder)) = (self.fem, &self.reference) {
             let reason = "recorded curves have no effect on live finite elements";
             return Err(unsuited(
-                ("reference", "given"),
+                ("reference", &folder.display().to_string()),
                 reason,
                 "leave it out, or leave out --fem live",
             ));
@@ -137,10 +137,10 @@ impl StudyOptions {
         }
         let has_images = self.methods_of(usual).contains(&EdgeModel::Guilbault)
             || with_cells && published::is_chosen(&self.methods);
-        if self.psi.is_some() && !has_images {
+        if let Some(psi) = self.psi.filter(|_| !has_images) {
             let reason = "only guilbault has images with such a weight";
             return Err(unsuited(
-                ("psi", "given"),
+                ("psi", &psi.to_string()),
                 reason,
                 "leave it out, or add guilbault to --methods",
             ));

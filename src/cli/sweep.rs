@@ -2,7 +2,7 @@
 
 use super::output::{Exit, print, print_json};
 use super::progress::progress_bar;
-use super::values::{checked_tolerance, edge_model};
+use super::values::{checked_tolerance, count, edge_model};
 use crate::base::Result;
 use crate::body::EdgeModel;
 use crate::case::{Draft, Sweep};
@@ -40,11 +40,11 @@ pub(super) struct Arguments {
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
     /// Accuracy of all cases as a fraction of p0, instead of their own
-    #[arg(long, allow_hyphen_values = true)]
+    #[arg(long)]
     tolerance: Option<f64>,
     /// Cases solved at the same time; one per processor by default
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    jobs: Option<u16>,
+    #[arg(long, value_name = "N", value_parser = count("cases", 1..=1024))]
+    jobs: Option<usize>,
     /// Solve only the i-th of n parts, for job arrays; each part needs its own --out
     #[arg(long, value_name = "I/N")]
     shard: Option<Shard>,
@@ -122,7 +122,12 @@ impl Rows<Vec<String>> for Shown {
 /// Number of cases solved at the same time.
 fn jobs(arguments: &Arguments) -> usize {
     let all = || std::thread::available_parallelism().map_or(1, usize::from);
-    arguments.jobs.map_or_else(all, usize::from)
+    arguments.jobs.unwrap_or_else(all)
+}
+
+/// The ending of the name of `count` things.
+fn plural(count: usize) -> &'static str {
+    if count == 1 { "" } else { "s" }
 }
 
 /// The results in numbers.
@@ -169,8 +174,10 @@ impl SweepSummary {
         let before = if *kept > 0 { format!(", {kept} of them before") } else { String::new() };
         let failures = if *failed > 0 { format!(", {failed} with an err") } else { String::new() };
         format!(
-            "{rows} rows{before}{failures}; {problems} problems solved by {} in {solving:.1} s, {:.0} \
+            "{rows} row{}{before}{failures}; {problems} problem{} solved by {} in {solving:.1} s, {:.0} \
              rows a second\nwrote {}\n",
+            plural(*rows),
+            plural(*problems),
             arguments.method,
             self.rate(),
             arguments.out.display()

@@ -1,11 +1,12 @@
 //! Options of uncertain inputs.
 
+use super::values::count;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::Case;
 use crate::report::uncertainty;
 use crate::stress::Curves;
-use crate::study::uncertain::{Input, propagate};
+use crate::study::uncertain::{Input, MOST_SAMPLES, propagate};
 use clap::Args;
 
 /// Uncertain numbers of a case, and how they are sampled.
@@ -16,7 +17,7 @@ pub(super) struct UncertainOptions {
     #[arg(long, value_name = "KEY=DEVIATION")]
     uncertain: Vec<String>,
     /// Samples of the Latin hypercube
-    #[arg(long, default_value_t = 64, value_name = "N", requires = "uncertain")]
+    #[arg(long, default_value_t = 64, value_name = "N", requires = "uncertain", value_parser = count("samples", 2..=MOST_SAMPLES))]
     samples: usize,
     /// Seed of the samples
     #[arg(long, default_value_t = 1, value_name = "N", requires = "uncertain")]

@@ -52,6 +52,9 @@ pub(super) fn chosen_models(named: &[Source]) -> Vec<EdgeModel> {
     EdgeModel::ALL.into_iter().filter(wanted).collect()
 }
 
+/// Most repetitions of a timing.
+pub(super) const MOST_REPEATS: usize = 10_000;
+
 /// Parses a number of `what` within the range.
 pub(super) fn count(
     what: &'static str,

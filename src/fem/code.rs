@@ -92,7 +92,7 @@ impl Code {
         if !Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric() {
             let (key, value) = uneven(case);
             let reason = "the deck models a quarter of the bodies, which takes a scene that is symmetric along y";
-            return refuse(key, value, reason, remedy);
+            return refuse(&key, value, reason, remedy);
         }
         if case.sliding != Sliding::default() {
             let (value, reason) =
@@ -111,7 +111,7 @@ impl Code {
 }
 
 /// The key, with its value, that makes a scene differ on both sides of y = 0.
-fn uneven(case: &Case) -> (&'static str, String) {
+fn uneven(case: &Case) -> (String, String) {
     let keys = [
         ("load.eccentricity_m", case.load.eccentricity_m),
         ("pose.tilt_rad", case.pose.tilt_rad),
@@ -119,9 +119,14 @@ fn uneven(case: &Case) -> (&'static str, String) {
     ];
     let mut given = keys.into_iter().filter_map(|(key, value)| Some((key, value?)));
     match given.find(|(_, value)| *value != 0.0) {
-        Some((key, value)) => (key, stated(value)),
+        Some((key, value)) => (key.into(), stated(value)),
         // Only a table has other drops on its other side.
-        None => ("profile", "a table that is not even".into()),
+        None => {
+            let is_uneven =
+                |body: &BodyKind| case.profile(*body).is_some_and(|profile| !profile.is_even());
+            let body = BodyKind::ALL.into_iter().find(is_uneven).expect("nothing else is left");
+            (format!("{}.profile.kind", body.name()), "table".into())
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::study::effects;
 use crate::study::verification::VerificationRow;
 use crate::study::{ErrorRow, Source, StudyRun};
 use serde::Serialize;
+use serde_json::Value;
 use std::path::Path;
 
 /// A finished run, as its files hold it.
@@ -93,12 +94,24 @@ impl StudyFiles {
     /// [`super::page::write_run`] writes.
     pub fn read(folder: &Path) -> Result<Self> {
         let path = folder.join("summary.json");
-        let text = table::read(&path)?;
-        let summary: StudySummary = serde_json::from_str(&text).map_err(|e| Error::File {
-            path,
-            line: Some(e.line()),
-            message: format!("is not the summary of a study: {e}"),
+        let refuse = |path: &Path, line: Option<usize>, message: String| Error::File {
+            path: path.to_path_buf(),
+            line,
+            message,
             remedy: "give the folder that `edgeline study --out` wrote".to_string(),
+        };
+        if !path.is_file() {
+            let there = if folder.is_dir() { "has no summary.json" } else { "is no folder" };
+            return Err(refuse(folder, None, there.into()));
+        }
+        let text = table::read(&path)?;
+        let of_study = |value: &Value| value.get("study").is_some();
+        if serde_json::from_str(&text).is_ok_and(|value: Value| !of_study(&value)) {
+            let message = "is the summary of another command, not of a study";
+            return Err(refuse(&path, None, message.into()));
+        }
+        let summary: StudySummary = serde_json::from_str(&text).map_err(|e| {
+            refuse(&path, Some(e.line()), format!("is not the summary of a study: {e}"))
         })?;
         let layout = summary.layout();
         Ok(Self {

@@ -45,12 +45,64 @@ fn wrong_usage_exits_with_two() {
     assert!(said.contains("quarter-space"), "{said}");
     let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "2"]);
     assert!(said.contains("--tolerance") && said.contains("0.1"), "{said}");
-    let said = refused(folder.path(), &["solve", "flush-short", "--tolerance", "-1"]);
-    assert!(said.contains("--tolerance = -1 is not valid"), "{said}");
+    // A negative number is the value of its option.
+    for (arguments, wanted) in [
+        (&["solve", "flush-short", "--tolerance", "-1"][..], "--tolerance = -1 is not valid"),
+        (&["study", "--exclude", "-1"], "'-1' for '--exclude <C>': give a distance between 0 and"),
+        (&["study", "--exclude-pressure", "-1,2"], "'-1' for '--exclude-pressure <C,C>': give a"),
+        (&["study", "--repeats", "-1"], "give a number of repetitions between 0 and 10000"),
+        (&["compare", "flush-short", "c.csv", "--error-p0", "-1"], "--error-p0 = -1 is not valid"),
+        (&["fatigue", "flush-short", "--places", "-1,5"], "give a number of places between"),
+    ] {
+        let said = refused(folder.path(), arguments);
+        assert!(said.contains(wanted), "{said}");
+    }
     // Refused for its memory or, if that suffices, for the number of points.
     let field = ["solve", "half-short", "--field", "--field-points", "2000,100,70"];
     assert!(refused(folder.path(), &field).contains("--field-points"));
     assert_eq!(files(folder.path()), [""; 0]);
+}
+
+#[test]
+fn what_is_built_in_is_listed_printed_and_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let printed = |arguments: &[&str]| {
+        let output = succeeded(&mut edgeline(path, &[&["cases"], arguments].concat()));
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let list = printed(&[]);
+    for line in ["long-contact", "factorial ", "factorial/w1e-3_sl5_lr0.5", "profiled/centre"] {
+        assert!(list.lines().any(|own| own.starts_with(line)), "{line}: {list}");
+    }
+    assert!(
+        list.contains("half-short  ") && list.contains(": the roller's edge digs in."),
+        "{list}"
+    );
+    for line in list.lines() {
+        printed(&[line.split(' ').next().unwrap()]);
+    }
+    assert_eq!(printed(&["flush-short"]), include_str!("../../cases/flush-short.toml"));
+    // What is printed is a case file, and the name of a study's case is as good.
+    std::fs::write(path.join("own.toml"), printed(&["profiled/centre"])).unwrap();
+    let solve = |case: &str| {
+        let arguments = ["solve", case, "--method", "half-space", "--tolerance", "0.1", "--json"];
+        let output = succeeded(&mut edgeline(path, &arguments));
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()["p_max_pa"].clone()
+    };
+    assert_eq!(solve("own.toml"), solve("profiled/centre"));
+    assert_ne!(solve("centre"), solve("profiled/centre"));
+    for (arguments, wanted) in [
+        (["study", "flush-short"], "is a case, not a study; run `edgeline solve flush-short`"),
+        (["study", "w1e-3_sl5_lr1"], "is a case, not a study"),
+        (["study", "profield"], "did you mean profiled?"),
+        (["solve", "flush-shrt"], "did you mean flush-short?"),
+        (["solve", "zzz"], "zzz: no such file; give a case file"),
+        (["cases", "zzz"], "zzz: no such file; give a case file"),
+    ] {
+        let said = refused(path, &arguments);
+        assert!(said.contains(wanted), "{said}");
+    }
 }
 
 #[test]
@@ -162,7 +214,10 @@ fn stiffness_and_laminae_are_there_on_demand() {
         let said = refused(path, &arguments);
         assert!(said.contains("the engine on cells does not compute them"), "{said}");
     }
-    assert!(refused(path, &["solve", "flush-short", "--laminae", "29"]).contains("30..=2000"));
+    assert!(
+        refused(path, &["solve", "flush-short", "--laminae", "29"])
+            .contains("a number of slices between 30 and 2000")
+    );
 }
 
 #[test]
@@ -185,7 +240,11 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
         ("[load]", "[pose]\ntilt_rad = 1e-3\n[load]", "a load with eccentricity_m finds its own"),
         ("[load]", "[pose]\ntilt = 1e-3\n[load]", "unknown key pose.tilt; did you mean tilt_rad?"),
         (logarithmic, &table(""), "roller.profile.file = \"\" is not valid: the path of a file"),
-        (logarithmic, &table("none.csv"), "none.csv"),
+        (
+            logarithmic,
+            &table("none.csv"),
+            "roller.profile.file = \"none.csv\" is not valid: cannot read",
+        ),
         (logarithmic, &table("back.csv"), "back.csv:4: y = 0.005 m does not lie beyond"),
         (logarithmic, &table("short.csv"), "its points lie from y = -0.004 to 0.004 m"),
         (
@@ -206,8 +265,12 @@ fn bad_profiles_and_positions_exit_with_two_and_leave_nothing() {
     }
     let raceway = good.replacen("length_m = 12e-3", "length_m = 12e-3\nradius_m = -0.05", 1);
     std::fs::write(path.join("bad.toml"), raceway).unwrap();
-    let said = refused(path, &["fem", "bad.toml", "--out", "o"]);
-    assert!(said.contains("finite elements take a flat block only"), "{said}");
+    let line = 1 + good.lines().position(|l| l == "length_m = 12e-3").unwrap();
+    let place = format!("bad.toml:{}: block.radius_m = -0.05 is not valid: finite", line + 1);
+    for command in ["fem", "deck"] {
+        let said = refused(path, &[command, "bad.toml", "--out", "o"]);
+        assert!(said.contains(&place), "{said}");
+    }
     assert_eq!(files(path), ["back.csv", "bad.toml", "short.csv"]);
 }
 
@@ -540,7 +603,11 @@ fn a_measured_surface_is_pressed_on_cells() {
         ("heights = \"holes.npy\"", steps, "holes.npy: heights = NaN at [3, 7]"),
         ("heights = \"huge.npy\"", steps, "10737418240 bytes"),
         ("heights = \"\"", steps, "surface.heights = \"\" is not valid: the path"),
-        ("heights = \"none.npy\"", steps, "none.npy"),
+        (
+            "heights = \"none.npy\"",
+            steps,
+            "surface.heights = \"none.npy\" is not valid: cannot read",
+        ),
         ("heights = \"metres.npy\"", steps, "the heights range over 2 m, more than a tenth"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5", "surface.dy_m is missing"),
         ("heights = \"waves.npy\"", "dx_m = 1e-5\ndy_m = 1e-5", "along y"),

@@ -158,7 +158,7 @@ const LOADED_MISTAKES: &[Mistake] = &[
     (
         "force_n = 1000",
         "force_n = 1000\nunit = 1",
-        "f.toml:13: unknown key load.unit; did you mean force_n?",
+        "f.toml:13: unknown key load.unit; [load] takes force_n",
     ),
     (
         "force_n = 1000",

@@ -105,7 +105,7 @@ impl Baseline {
         serde_json::from_str(text).map_err(|e| Error::File {
             path: path.to_path_buf(),
             line: Some(e.line()),
-            message: e.to_string(),
+            message: format!("is no JSON file of accepted numbers: {e}"),
             remedy: "write it with `edgeline gate --accept --baseline FILE`".to_string(),
         })
     }
