@@ -111,13 +111,13 @@ enum Engine {
     Cells,
 }
 
-impl Arguments {
-    /// The engine that is asked for; without, the one that takes the case.
 /// Why stiffnesses and laminae are refused on cells.
 const NOT_ON_CELLS: &str = "the engine on cells does not compute them";
 
     fn engine(&self, case: &Case) -> Engine {
         let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
+impl Arguments {
+    /// The engine that is asked for; without, the one that takes the case.
         self.engine.unwrap_or(own)
     }
 
@@ -390,13 +390,14 @@ fn text<D>(case: &Case, found: &Summary<D>) -> String {
             significant(p0 * 1e-6, 5)
         ),
         format!(
-            "  pressure {:.4} p0 at the centre; largest mean of a cell {:.4} p0 at x = {:.3} C, y = {:.3} C",
+            "  pressure {:.4} p0 at the centre; largest mean of a cell {:.4} p0 at x = {:.3} C, y = {:.3} C{}",
             found.p_centre_pa / p0,
             found.p_max_pa / p0,
             found.p_max_at_m[0] / hertz.c_m,
             found.p_max_at_m[1] / hertz.c_m,
         ),
     ];
+            solution::unbounded(case, found).map_or(String::new(), |note| format!(" ({note})")),
     if let Some(critical) = &found.critical {
         let [x, y, z] = critical.at_m.map(|v| v / hertz.c_m);
         lines.push(format!(

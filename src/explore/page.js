@@ -439,6 +439,9 @@ byId("map").addEventListener("pointermove", (e) => {
 byId("map").addEventListener("pointerleave", () => { byId("map-readout").textContent = ""; });
 
 function tiles(data, u) {
+// What to know of a largest pressure that a singular end leaves without a bound.
+const unbounded = (s) => ([s.details.edge, s.details.edge_neg].some((end) => end && end.kind === "singular") ? "a singular end: grows with the resolution" : "");
+
   const s = data.summary;
   const before = pinned && pinned.answer.data.summary;
   const than = (value, old) => (before && old ? `, ${value >= old ? "+" : "\u2212"}${significant(Math.abs(value / old - 1) * 100, 3)} % against the pinned` : "");
@@ -446,7 +449,7 @@ function tiles(data, u) {
   const p0 = (v) => (si() ? `${significant(v / u.p0_pa, 4)} p0` : `${significant(v * 1e-6, 4)} MPa`);
   const all = [
     ["p-centre", "Pressure in the middle", s.p_centre_pa * u.stress, u.s, `${p0(s.p_centre_pa)}` + than(s.p_centre_pa, before && before.p_centre_pa)],
-    ["p-max", "Largest pressure", s.p_max_pa * u.stress, u.s, `mean of the cell at x, y = ${place(s.p_max_at_m)} ${u.l}${than(s.p_max_pa, before && before.p_max_pa)}`],
+    ["p-max", "Largest pressure", s.p_max_pa * u.stress, u.s, `mean of the cell at x, y = ${place(s.p_max_at_m)} ${u.l}${unbounded(s) && `, ${unbounded(s)}`}${than(s.p_max_pa, before && before.p_max_pa)}`],
     ["critical", "Largest von Mises stress", s.critical ? s.critical.value_pa * u.stress : null, u.s, s.critical ? `${s.critical.body}, x, y, z = ${place(s.critical.at_m)} ${u.l}${than(s.critical.value_pa, before && before.critical && before.critical.value_pa)}` : ""],
     ["hertz", "Hertz: C and p0", null, "", ""],
     ["load", "Load", s.load_n, "N", `W ${significant(data.case.factors["dimensionless.W"], 4)}, S_l ${significant(data.case.factors["dimensionless.S_l"], 4)}, L_r ${significant(data.case.factors["dimensionless.L_r"], 4)}`],
@@ -507,7 +510,7 @@ function modelsTable(u) {
     const s = answers[name].data.summary;
     const c = s.critical;
     const [dp, ds] = name === MAIN ? [null, null] : differences(name);
-    const cells = [significant(s.p_centre_pa * u.stress, 4), significant(s.p_max_pa * u.stress, 4), c ? significant(c.value_pa * u.stress, 4) : "\u2013",
+    const cells = [significant(s.p_centre_pa * u.stress, 4), `<span title="${unbounded(s)}">${significant(s.p_max_pa * u.stress, 4)}${unbounded(s) && " (grows)"}</span>`, c ? significant(c.value_pa * u.stress, 4) : "\u2013",
       c ? `${c.body} ${significant(c.at_m[1] * u.length, 3)}, ${significant(c.at_m[2] * u.length, 3)}` : "\u2013", dp === null ? "" : significant(dp, 2), ds === null ? "" : significant(ds, 2), significant(s.seconds.total * 1e3, 3)];
     return `<tr data-model="${name}"${name === MAIN ? ' class="main"' : ""}>${head}${cells.map((t) => `<td>${t}</td>`).join("")}</tr>`;
   }).join("");

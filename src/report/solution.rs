@@ -4,14 +4,19 @@
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
 use crate::base::{HertzScales, Result, StressTensor};
+use crate::case::Case;
 use crate::host::{Lock, remove_marker, replace_set};
-use crate::solve::{Lamina, Options, Solution};
+use crate::solve::{Lamina, Options, Scene, Solution, Summary};
 use serde::Serialize;
 use std::path::Path;
 
 /// Most cells that are written as text: more of them have a file of their own, see
 /// [`super::cells`].
 const MOST_CELLS: usize = 100_000;
+
+/// A contact's end that differs from that of the overlap by less than this part of its length
+/// reaches it.
+const ROUNDING: f64 = 1e-9;
 
 /// Writes the files of `solution` into `folder`: `more` by their names, each of its [`tables`] as
 /// CSV but for pressures on very many cells, and `summary.json` last, so that its presence means
@@ -56,6 +61,18 @@ pub fn write_locked<D: Serialize>(
 ) -> Result<()> {
     let _lock = Lock::claim(folder)?;
     write(solution, options, more, folder).map(|_| ())
+}
+
+/// What to know of the largest pressure of a contact that reaches a singular end, where the
+/// pressure has no bound; nothing elsewhere.
+pub fn unbounded<D>(case: &Case, found: &Summary<D>) -> Option<&'static str> {
+    let ends = case.overlap_m();
+    let exponents = Scene::new(case, found.method, None).corner_exponents();
+    let reaches =
+        |side: usize| (found.contact_y_m[side] - ends[side]).abs() < ROUNDING * (ends[1] - ends[0]);
+    (0..2)
+        .any(|side| exponents[side].is_some() && reaches(side))
+        .then_some("a singular end: it grows with the resolution")
 }
 
 /// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points,

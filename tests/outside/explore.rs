@@ -123,6 +123,10 @@ impl Explored {
                 "{what}, {value}: {got}, not {wanted}"
             );
         }
+        let singular = |end: &str| summary["details"][end]["kind"] == "singular";
+        let tile = self.page.text("document.querySelector('[data-tile=p-max]').innerText");
+        let says_so = tile.contains("grows with the resolution");
+        assert_eq!(says_so, singular("edge") || singular("edge_neg"), "{what}: {tile}");
     }
 }
 

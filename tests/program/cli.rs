@@ -657,6 +657,26 @@ fn a_measured_surface_is_pressed_on_cells() {
 }
 
 /// Small bodies have digits, too.
+/// A singular end is one that the contact reaches, and no flush one by quarter-space.
+#[test]
+fn a_largest_pressure_without_a_bound_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let note = "a singular end: it grows with the resolution";
+    for (case, method, is_singular) in [
+        ("half-short", "quarter-space", true),
+        ("flush-short", "quarter-space", false),
+        ("flush-short", "half-space", true),
+        ("crown-inside", "quarter-space", false),
+    ] {
+        let solve = ["solve", case, "--method", method, "--tolerance", "0.1", "--plots"];
+        let output = succeeded(&mut edgeline(folder.path(), &solve));
+        let text = String::from_utf8(output.stdout).unwrap();
+        let page = std::fs::read_to_string(folder.path().join("out/summary.html")).unwrap();
+        assert_eq!(text.contains(&format!("({note})")), is_singular, "{text}");
+        assert_eq!(page.contains(note), is_singular, "{case}");
+    }
+}
+
 #[test]
 fn the_summary_of_a_small_case_has_no_zeros() {
     let folder = tempfile::tempdir().unwrap();

@@ -5,6 +5,7 @@ use crate::base::number::{duration, significant, with_minus_signs};
 use crate::base::{BodyKind, Result};
 use crate::case::{Case, Draft, Form, KEYS, Key};
 use crate::report::plots;
+use crate::report::solution::unbounded;
 use crate::solve::{CellDetails, Solution, Summary};
 use minijinja::context;
 
@@ -144,6 +145,9 @@ fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]
         rows.push(("Tilt", with_unit(1e3 * found.tilt_rad, "mrad")));
     }
     if found.centre_of_pressure_m[1] != 0.0 {
+    if let Some(note) = unbounded(case, found) {
+        rows.push(("… at", note.to_string()));
+    }
         rows.push(("Line of action at y", mm(found.centre_of_pressure_m[1])));
     }
     if let Some(cells) = label.cells.as_ref().filter(|_| case.surface.is_some()) {
