@@ -13,7 +13,8 @@ use clap::Args;
 #[derive(Args)]
 pub(super) struct UncertainOptions {
     /// A number of the case and its standard deviation, as load_n=5% or roller.radius_m=1e-5; may
-    /// be given several times. Writes uncertainty.csv and .json and plot-uncertainty.svg
+    /// be given several times. Writes uncertainty.csv and .json and plot-uncertainty (.svg and
+    /// .png)
     #[arg(long, value_name = "KEY=DEVIATION")]
     uncertain: Vec<String>,
     /// Samples of the Latin hypercube
@@ -71,6 +72,6 @@ impl UncertainOptions {
         }
         let sampling = (self.samples, self.seed);
         let found = propagate(case, method, curves, self.inputs(case)?, sampling)?;
-        Ok(uncertainty::contents(&case.name, &found, method))
+        Ok(uncertainty::contents(case, &found, method))
     }
 }

@@ -54,7 +54,8 @@ const unitOf = (key) => {
 };
 function labelOf(key) {
   const text = key.what.replace(/ in (metres|pascals|newtons|radians)/, "").replace(/, a fraction of p0$/, "").replace(/^(the|a) /, "").replace(/^(roller|block)'s /, "");
-  return text[0].toUpperCase() + text.slice(1);
+  // A letter alone is a quantity.
+  return text[1] === " " ? text : text[0].toUpperCase() + text.slice(1);
 }
 const TITLES = { load: "Load", dimensionless: "Load and lengths", pose: "How the bodies stand", accuracy: "Accuracy" };
 // Tables without part in what is shown; a surface needs its file, which a page does not have.
@@ -438,10 +439,10 @@ byId("map").addEventListener("pointermove", (e) => {
 });
 byId("map").addEventListener("pointerleave", () => { byId("map-readout").textContent = ""; });
 
-function tiles(data, u) {
 // What to know of a largest pressure that a singular end leaves without a bound.
 const unbounded = (s) => ([s.details.edge, s.details.edge_neg].some((end) => end && end.kind === "singular") ? "a singular end: grows with the resolution" : "");
 
+function tiles(data, u) {
   const s = data.summary;
   const before = pinned && pinned.answer.data.summary;
   const than = (value, old) => (before && old ? `, ${value >= old ? "+" : "\u2212"}${significant(Math.abs(value / old - 1) * 100, 3)} % against the pinned` : "");

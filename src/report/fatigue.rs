@@ -42,25 +42,25 @@ fn at(extreme: Extreme) -> (f64, Option<usize>) {
 const MEASURES: [Measure; 5] = [
     Measure {
         name: "tau_xz_range",
-        label: "range of tau_xz / p0",
+        label: "range of tau_xz (MPa)",
         stress: true,
         of: |m| Some((m.shear_range, None)),
     },
     Measure {
         name: "tau_max",
-        label: "largest shear stress / p0",
+        label: "largest shear stress (MPa)",
         stress: true,
         of: |m| Some(at(m.tau_max)),
     },
     Measure {
         name: "von_mises",
-        label: "largest von Mises stress / p0",
+        label: "largest von Mises stress (MPa)",
         stress: true,
         of: |m| Some(at(m.von_mises)),
     },
     Measure {
         name: "dang_van",
-        label: "Dang Van's measure / p0",
+        label: "Dang Van's measure (MPa)",
         stress: true,
         of: |m| m.dang_van.map(at),
     },
@@ -212,7 +212,7 @@ pub fn contents(
         let name = passage.body.name();
         files.push((format!("fatigue-{name}.vtr"), grid(passage, hertz).to_vtr()));
         for measure in MEASURES.iter().filter(|m| m.value(&passage.measures[0]).is_some()) {
-            let picture = figure(&origin(&case.name, &own.method), measure, passage).draw();
+            let picture = figure(&origin(&case.name, &own.method), hertz, measure, passage).draw();
             let file = format!("fatigue-{name}-{}", measure.name.replace('_', "-"));
             files.push((format!("{file}.svg"), picture.to_svg().into_bytes()));
             files.push((format!("{file}.png"), picture.to_png()));
@@ -280,11 +280,14 @@ fn grid(passage: &Passage, hertz: &HertzScales) -> VtkGrid {
 
 /// A map of a measure, whose largest value is marked. Near an edge it shows no more than the
 /// largest value outside.
-fn figure(origin: &str, measure: &Measure, passage: &Passage) -> Figure {
+fn figure(origin: &str, hertz: &HertzScales, measure: &Measure, passage: &Passage) -> Figure {
+    let scale = if measure.stress { 1e-6 * hertz.p0_pa } else { 1.0 };
     let most = passage.critical(|m| measure.value(m)).map_or(f64::INFINITY, |m| m.value);
-    let values = passage.measures.iter().map(|m| measure.value(m).unwrap_or(f64::NAN)).collect();
+    let values = passage.measures.iter().map(|m| scale * measure.value(m).unwrap_or(f64::NAN));
     let title = format!("{origin}: {}", passage.body.name());
-    let axes = [passage.y.clone(), passage.z.clone()];
-    let map = Map { label: measure.label.to_string(), axes, down: true, values, limit: most };
-    Figure::of_map(title, ["y / C", "z / C"], map).of_what(measure.label)
+    let axes =
+        [&passage.y, &passage.z].map(|axis| axis.iter().map(|v| 1e3 * hertz.c_m * v).collect());
+    let (label, limit) = (measure.label.to_string(), scale * most);
+    let map = Map { label, axes, down: true, values: values.collect(), limit };
+    Figure::of_map(title, ["y (mm)", "z (mm)"], map).of_what(measure.label)
 }

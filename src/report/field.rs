@@ -8,6 +8,7 @@
 use super::draw::{Figure, Map};
 use super::plots::origin;
 use super::vtk::VtkGrid;
+use crate::base::number::significant;
 use crate::base::{Result, StressTensor};
 use crate::body::EdgeModel;
 use crate::case::Case;
@@ -199,6 +200,8 @@ impl<'a> Quarter<'a> {
         let end = (0..y.len()).min_by(|i, j| far(&y[*i]).total_cmp(&far(&y[*j]))).expect("places");
         let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
         let (limit, critical) = self.critical();
+        let hertz = self.case.hertz();
+        let (mm, mpa) = (1e3 * hertz.c_m, 1e-6 * hertz.p0_pa);
         let figure = |place: &str,
                       labels,
                       axes: [&Vec<f64>; 2],
@@ -206,28 +209,29 @@ impl<'a> Quarter<'a> {
                       value: &dyn Fn(usize, usize) -> f64| {
             let n = axes[0].len();
             let title = format!("{}: {}", origin(&self.case.name, self.method), self.body.name());
-            let values = (0..n * axes[1].len()).map(|i| value(i % n, i / n)).collect();
-            let (label, axes) = ("von Mises / p0".to_string(), axes.map(Clone::clone));
+            let values = (0..n * axes[1].len()).map(|i| mpa * value(i % n, i / n)).collect();
+            let axes = axes.map(|axis| axis.iter().map(|v| mm * v).collect());
+            let (label, limit) = ("von Mises (MPa)".to_string(), mpa * limit);
             let figure = Figure::of_map(title, labels, Map { label, axes, down, values, limit });
             figure.of_what(&format!("von Mises stress at {place}"))
         };
-        let depth = format!("z = {:.2} C (critical depth)", z[critical]);
+        let depth = format!("z = {} mm (critical depth)", significant(mm * z[critical], 3));
         [
             (
                 "x0",
-                figure("x = 0", ["y / C", "z / C"], [y, z], true, &|j, k| {
+                figure("x = 0", ["y (mm)", "z (mm)"], [y, z], true, &|j, k| {
                     self.von_mises(middle, j, k)
                 }),
             ),
             (
                 "end",
-                figure("the +y end of the contact", ["x / C", "z / C"], [x, z], true, &|i, k| {
+                figure("the +y end of the contact", ["x (mm)", "z (mm)"], [x, z], true, &|i, k| {
                     self.von_mises(i, end, k)
                 }),
             ),
             (
                 "critical-depth",
-                figure(&depth, ["y / C", "x / C"], [y, x], false, &|j, i| {
+                figure(&depth, ["y (mm)", "x (mm)"], [y, x], false, &|j, i| {
                     self.von_mises(i, j, critical)
                 }),
             ),

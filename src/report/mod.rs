@@ -10,6 +10,7 @@ pub mod draw;
 pub mod effects_text;
 pub mod fatigue;
 pub mod field;
+pub mod fraction;
 pub mod gates;
 pub mod page;
 pub mod plots;

@@ -1,10 +1,12 @@
 //! What a study's run leaves behind, made from synthetic solutions.
 
+use super::fraction::fraction;
 use super::study_files::StudyFiles;
 use super::study_rows::EffectRow;
 use super::study_summary::{CaseMethod, FemOrigin, StudySummary};
 use super::summarise::Context;
 use super::*;
+use crate::base::number::with_minus_signs;
 use crate::body::EdgeModel;
 use crate::case::Study;
 use crate::solve::{Avoided, WorkSummary};
@@ -366,7 +368,7 @@ fn numbers_of_the_page_are_those_of_the_files() {
             .unwrap_or_else(|| panic!("no line of {pair} in {}", &row[at("case")]));
         for column in ["difference", "u_reference", "u_source"] {
             let value: f64 = row[at(column)].parse().unwrap();
-            let shown = format!("<td>{}</td>", crate::base::number::fixed(value, 4));
+            let shown = format!("<td>{}</td>", with_minus_signs(&fraction(value)));
             assert!(line.contains(&shown), "{column} {shown}: {line}");
             seen += 1;
         }

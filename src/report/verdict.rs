@@ -1,10 +1,11 @@
 //! The verdict of a study in words, from its summary.
 
 use super::brought::FileSummary;
+use super::fraction::fraction;
 use super::study_summary::{
     CaseSummary, FemError, FemOrigin, PublishedSummary, Span, StudySummary,
 };
-use crate::base::number::{duration, fixed, rounded, significant};
+use crate::base::number::{duration, rounded};
 use crate::body::EdgeModel;
 use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
@@ -66,11 +67,6 @@ fn accuracy(summary: &StudySummary) -> Vec<String> {
     let missed: Vec<String> = missed.collect();
     let others = format!("The simpler models miss: {}.", missed.join("; "));
     std::iter::once(first).chain((!missed.is_empty()).then_some(others)).collect()
-}
-
-/// Four digits after the point; one significant digit for smaller numbers.
-fn fraction(v: f64) -> String {
-    if v != 0.0 && v.abs() < 5e-5 { significant(v, 1) } else { fixed(v, 4) }
 }
 
 fn gates(gates: &[GateOutcome]) -> String {

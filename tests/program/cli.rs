@@ -422,10 +422,11 @@ fn plots_name_case_version_and_units() {
         version.to_string(),
         mpa(&summary["p_centre_pa"]),
         mpa(&summary["critical"]["value_pa"]),
-        "2.1e11".to_string(),
+        "<td>210 GPa</td>".to_string(),
     ] {
         assert!(page.contains(&part), "{part}");
     }
+    assert!(!page.contains("in metres") && !page.contains("in pascals"), "a second unit");
     assert_eq!(page.matches("<svg").count(), 6);
     assert!(!page.replace("http://www.w3.org/2000/svg", "").contains("://"), "nothing is fetched");
     // What is not solved is not drawn.
@@ -656,7 +657,6 @@ fn a_measured_surface_is_pressed_on_cells() {
     assert!(!folder.path().join("no").exists());
 }
 
-/// Small bodies have digits, too.
 /// A singular end is one that the contact reaches, and no flush one by quarter-space.
 #[test]
 fn a_largest_pressure_without_a_bound_says_so() {
@@ -677,6 +677,7 @@ fn a_largest_pressure_without_a_bound_says_so() {
     }
 }
 
+/// Small bodies have digits, too.
 #[test]
 fn the_summary_of_a_small_case_has_no_zeros() {
     let folder = tempfile::tempdir().unwrap();
@@ -762,7 +763,9 @@ fn uncertain_inputs_leave_bands() {
         table.iter().any(|r| r["body"] == "contact") && table.iter().any(|r| r["body"] == "roller")
     );
     assert!(table.iter().all(|r| number(r, "low_pa") <= number(r, "high_pa")));
+    assert!(files(&folder.path().join("a")).contains(&"plot-uncertainty.png".into()));
     let plot = text("a", "plot-uncertainty.svg");
+    assert!(plot.contains("p (MPa)") && plot.contains("von Mises (MPa)"), "{plot}");
     let origin = concat!("flush-short, quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
     assert!(plot.contains("95 % of the samples") && plot.contains(origin), "{origin}");
     let said =

@@ -30,9 +30,13 @@ fn a_passage_is_written_with_its_critical_places() {
                 let name = format!("fatigue-{body}-{measure}.{form}");
                 assert!(names.contains(&name), "{name} is not in {names:?}");
             }
-            let svg = fs::read_to_string(out.join(format!("fatigue-{body}-{measure}.svg")));
+            let svg =
+                fs::read_to_string(out.join(format!("fatigue-{body}-{measure}.svg"))).unwrap();
             let origin = concat!(", quarter-space, edgeline ", env!("CARGO_PKG_VERSION"));
-            assert!(svg.unwrap().contains(&format!("{origin}: {body}<")), "{measure}");
+            assert!(svg.contains(&format!("{origin}: {body}<")), "{measure}");
+            // Fatemi and Socie's measure has no unit.
+            assert_eq!(svg.contains("(MPa)"), measure != "fatemi-socie", "{measure}");
+            assert!(svg.contains("y (mm)") && svg.contains("z (mm)"), "{measure}");
         }
         assert!(names.contains(&format!("fatigue-{body}.vtr")));
     }

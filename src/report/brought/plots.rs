@@ -1,5 +1,6 @@
 //! One plot for each curve of a file: its points, and all sources on them.
 
+use crate::base::number::fixed;
 use crate::report::draw::{Figure, Panel, Series, look};
 use crate::report::plots::in_p0;
 use crate::stress::{Curves, PressureLine, Quantity, StressCurve, Variable, away_from_edges};
@@ -87,13 +88,13 @@ impl Plots<'_> {
     /// What stays the same along a curve, in words.
     fn place(at: &[[f64; 3]]) -> String {
         let axis = running(at);
-        let fixed = |k: &usize| {
+        let constant = |k: &usize| {
             let first = at.first().map_or(0.0, |p| p[*k]);
             at.iter()
                 .all(|p| (p[*k] - first).abs() < 1e-6)
-                .then(|| format!("{} = {first:.3} C", ["x", "y", "z"][*k]))
+                .then(|| format!("{} = {} C", ["x", "y", "z"][*k], fixed(first, 3)))
         };
-        (0..3).filter(|k| *k != axis).filter_map(|k| fixed(&k)).collect::<Vec<_>>().join(", ")
+        (0..3).filter(|k| *k != axis).filter_map(|k| constant(&k)).collect::<Vec<_>>().join(", ")
     }
 
     fn line(&self, own: &PressureLine) -> Figure {

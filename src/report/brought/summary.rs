@@ -1,6 +1,6 @@
 //! A file of curves and what it was compared with, in numbers.
 
-use crate::base::number::fixed;
+use crate::report::fraction::fraction;
 use crate::stress::{Quantity, Variable};
 use crate::study::brought::{FileRun, OnPoints};
 use crate::study::{ErrorRow, Range, Source};
@@ -92,7 +92,7 @@ impl FileSummary {
         let own = self.errors.iter().find(|e| e.source == *source)?;
         let part = |what: &str, worst: Option<Worst>| {
             let Worst { max, rms } = worst?;
-            let [max, rms] = [max, rms].map(|v| fixed(v, 4));
+            let [max, rms] = [max, rms].map(fraction);
             Some(format!("{what} {max} p0 (RMS of the worst curve {rms})"))
         };
         let parts = [part("pressure", own.pressure), part("a stress", own.stress)];

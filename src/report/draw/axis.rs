@@ -1,6 +1,11 @@
 //! An axis: its limits, its ticks, and where a value lies.
 
+use super::letters;
+use super::picture::TEXT;
 use crate::base::number::{fixed, significant, with_minus_signs};
+
+/// Least distance of numbers beside each other (px).
+const GAP: f64 = 6.0;
 
 /// An axis in pixels.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,6 +50,17 @@ impl Axis {
     /// Grid lines and numbers, ascending; numbers have at least `room` pixels each.
     pub fn ticks(&self, room: f64) -> Vec<Tick> {
         if self.log { self.log_ticks() } else { self.linear_ticks(room) }
+    }
+
+    /// Whether numbers along x touch each other.
+    pub fn is_crowded(&self, ticks: &[Tick]) -> bool {
+        let numbers = ticks.iter().filter_map(|t| Some((self.at(t.value), t.text.as_ref()?)));
+        let spans: Vec<[f64; 2]> = numbers
+            .map(|(at, text)| {
+                [-0.5, 0.5].map(|side| at + side * (letters::width(text, TEXT) + GAP))
+            })
+            .collect();
+        spans.windows(2).any(|pair| pair[0][1] > pair[1][0])
     }
 
     fn linear_ticks(&self, room: f64) -> Vec<Tick> {
@@ -139,6 +155,13 @@ mod tests {
         assert!(log.ticks(60.0).len() > 40, "decades have their parts");
         let short = Axis { low: 0.9, high: 11.0, ..log };
         assert_eq!(texts(&short), ["1", "2", "5", "10"]);
+    }
+
+    #[test]
+    fn long_numbers_beside_each_other_are_crowded() {
+        let axis = Axis { low: 0.0, high: 1.34e-3, log: false, from: 0.0, to: 234.0 };
+        let [near, far] = [60.0, 120.0].map(|room| axis.is_crowded(&axis.ticks(room)));
+        assert!(near && !far);
     }
 
     #[test]

@@ -93,6 +93,9 @@ impl<'a> Plot<'a> {
         let style = Style::stroked(if panel.map.is_some() { INK } else { FAINT }, 1.0);
         let line = |from: f64, to: f64| if panel.map.is_some() { (from, from) } else { (from, to) };
         let mut x_ticks = self.x.ticks(X_NUMBER);
+        if self.x.is_crowded(&x_ticks) {
+            x_ticks = self.x.ticks(2.0 * X_NUMBER);
+        }
         if !panel.x_names.is_empty() {
             let tick =
                 |(i, name): (usize, &String)| Tick { value: i as f64, text: Some(name.clone()) };
@@ -273,7 +276,7 @@ impl<'a> Plot<'a> {
             Rule::Horizontal(v, text) => {
                 let y = sharp(self.y.at(*v));
                 picture.line(vec![(self.left, y), (self.right, y)], style);
-                picture.text(Text::new(&**text, self.end_of_level(*v, nth), Anchor::End));
+                picture.text(Text::new(&**text, self.start_of_level(*v, nth), Anchor::Start));
             }
         }
     }
@@ -313,17 +316,18 @@ impl<'a> Plot<'a> {
         let mark = |p: &(f64, f64)| (self.x.at(p.0) - 5.0, self.x.at(p.0) + 5.0, self.y.at(p.1));
         let words = self.panel.rules.iter().enumerate().filter_map(|(i, rule)| match rule {
             Rule::Horizontal(v, text) => {
-                let (x, y) = self.end_of_level(*v, i as f64);
-                Some((x - letters::width(text, TEXT), x, y))
+                let (x, y) = self.start_of_level(*v, i as f64);
+                Some((x, x + letters::width(text, TEXT), y))
             }
             Rule::Vertical(..) => None,
         });
         points.map(mark).chain(words).collect()
     }
 
-    /// Where the word of a level line ends, the `nth` one of the panel.
-    fn end_of_level(&self, v: f64, nth: f64) -> Point {
-        (self.right - 3.0 - 36.0 * nth, sharp(self.y.at(v)) - 8.0)
+    /// Where the word of a level line begins, the `nth` one of the panel: on the left, for points
+    /// that lie so high are on the right.
+    fn start_of_level(&self, v: f64, nth: f64) -> Point {
+        (self.left + 3.0 + 36.0 * nth, sharp(self.y.at(v)) - 8.0)
     }
 }
 

@@ -1,10 +1,9 @@
 //! The page and its Markdown from their templates.
 
 use super::{effects, errors, explorer, fem, solves, times, verification};
-use crate::base::number::{
-    duration, duration_with_spread, fixed, rounded, significant, with_minus_signs,
-};
+use crate::base::number::{duration, duration_with_spread, rounded, significant, with_minus_signs};
 use crate::base::{Error, Result};
+use crate::report::fraction::fraction;
 use crate::report::plots;
 use crate::report::study_files::StudyFiles;
 use crate::study::Source;
@@ -97,7 +96,7 @@ pub fn fill(name: &str, template: &str, data: minijinja::Value) -> Result<String
 fn add_filters(environment: &mut Environment) {
     let dash = || "–".to_string();
     environment.add_filter("p0", move |v: minijinja::Value| {
-        as_number(&v).map_or_else(dash, |v| with_minus_signs(&fixed(v, 4)))
+        as_number(&v).map_or_else(dash, |v| with_minus_signs(&fraction(v)))
     });
     environment
         .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));

@@ -70,13 +70,25 @@ fn with_unit(value: f64, unit: &str) -> String {
     format!("{} {unit}", with_minus_signs(&significant(value, 5))).trim_end().to_string()
 }
 
+/// The units of keys in words, which stand behind the numbers.
+const UNITS: [&str; 5] = [", in metres", " in metres", " in pascals", " in newtons", " in radians"];
+
 /// The numbers and the kinds of profiles of a case, as its file has them, without a tolerance that
 /// had no part.
 fn inputs(case: &Case, label: &Label) -> Vec<[String; 2]> {
     let draft = Draft::of(case, Form::Load);
     let number = |key: &Key| {
         let value = key.get(&draft)?;
-        Some([format!("{} ({})", capital(key.what), key.table()), with_unit(value, "")])
+        let (unit, scale) = match key.leaf().rsplit_once('_') {
+            Some((_, "m")) => ("mm", 1e3),
+            Some(("young", "pa")) => ("GPa", 1e-9),
+            Some((_, "pa")) => ("MPa", 1e-6),
+            Some((_, "n")) => ("N", 1.0),
+            Some((_, "rad")) => ("mrad", 1e3),
+            _ => ("", 1.0),
+        };
+        let what = UNITS.iter().fold(capital(key.what), |what, unit| what.replace(unit, ""));
+        Some([format!("{what} ({})", key.table()), with_unit(scale * value, unit)])
     };
     let profile = |body: BodyKind| {
         let profile = match body {
@@ -133,6 +145,9 @@ fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]
         ("Largest mean pressure of a cell", pressure(found.p_max_pa)),
         ("… at x, y", place(&found.p_max_at_m)),
     ];
+    if let Some(note) = unbounded(case, found) {
+        rows.push(("… at", note.to_string()));
+    }
     if let Some(critical) = &found.critical {
         rows.push(("Largest von Mises stress", pressure(critical.value_pa)));
         rows.push(("… in", critical.body.name().to_string()));
@@ -145,9 +160,6 @@ fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]
         rows.push(("Tilt", with_unit(1e3 * found.tilt_rad, "mrad")));
     }
     if found.centre_of_pressure_m[1] != 0.0 {
-    if let Some(note) = unbounded(case, found) {
-        rows.push(("… at", note.to_string()));
-    }
         rows.push(("Line of action at y", mm(found.centre_of_pressure_m[1])));
     }
     if let Some(cells) = label.cells.as_ref().filter(|_| case.surface.is_some()) {

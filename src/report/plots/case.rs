@@ -136,7 +136,7 @@ impl<'a> CasePlots<'a> {
     /// The part of an axis that is not compared; the curve meets the edge at its value `edge`.
     fn shade(&self, edge: f64) -> Shade {
         let (from, to) = (edge - self.excluded(), edge + self.excluded());
-        Shade { from, to, name: "not compared: singular edge".to_string() }
+        Shade { from, to, name: format!("not compared: within {} C of an edge", self.excluded()) }
     }
 
     /// The parts of an axis along y that are not compared.

@@ -11,4 +11,4 @@ mod times;
 pub use all::{all, named};
 pub use origin::{PROGRAM, origin};
 pub use solution::of_solution;
-pub use symbol::in_p0;
+pub use symbol::{in_p0, symbol_of};

@@ -4,11 +4,15 @@ use crate::stress::{Quantity, Variable};
 
 /// The symbol of a variable as a fraction of p0.
 pub fn in_p0(variable: Variable) -> String {
-    let symbol = match variable {
+    format!("{} / p0", symbol_of(variable))
+}
+
+/// The symbol of a variable.
+pub fn symbol_of(variable: Variable) -> &'static str {
+    match variable {
         Variable::Pressure => "p",
         Variable::Stress(quantity) => symbol(quantity),
-    };
-    format!("{symbol} / p0")
+    }
 }
 
 /// The symbol of a scalar of the stress.
