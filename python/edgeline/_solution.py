@@ -123,10 +123,11 @@ class Solution:
 
     @property
     def cells(self) -> dict[str, NDArray[Any]]:
-        """The contact pressure in cells: the columns of `pressure.csv`.
+        """The contact pressure: the columns of `pressure.csv`.
 
         `x_m`, `y_m`, the sides `dx_m`, `dy_m`, and the mean pressure `p_pa`. The
-        sum of p dx dy is the load.
+        sum of p dx dy is the load. By the engine along a line, y is a node and
+        dy its weight: there, neighbours along y do not join as cells do.
         """
         return self.tables["pressure"]
 

@@ -27,9 +27,10 @@ use std::path::PathBuf;
 
 /// Solves one case with the semi-analytical method.
 ///
-/// Writes summary.json, pressure.csv (the contact pressure, one row per cell), line_load.csv (load
-/// per length and half-width along the contact), curves.csv (stresses on the standard curves of
-/// both bodies) and, with --points, points.csv into the output folder; with --plots also plot-*.svg
+/// Writes summary.json, pressure.csv (the contact pressure over x at the nodes along y, whose
+/// weights are dy_m: the sum of p_pa dx_m dy_m is the load), line_load.csv (load per length and
+/// half-width along the contact), curves.csv (stresses on the standard curves of both bodies) and,
+/// with --points, points.csv into the output folder (docs/files.md); with --plots also plot-*.svg
 /// and .png (pressure, its map, stresses of both bodies) and summary.html, a page about the case.
 /// With --laminae, laminae.csv: slices of the contact beside those of ISO/TS 16281, steel's
 /// constant. With --uncertain, what uncertain inputs make of the results. Takes well under
@@ -37,9 +38,10 @@ use std::path::PathBuf;
 /// symmetric, a few seconds.
 ///
 /// With --engine cells, also pressure.npy (numbers of cells across and along) and axes.json (their
-/// centres); pressure.csv up to 100,000 cells. Takes some seconds, most of them for Love's sums.
-/// For a rough surface also pressure_histogram.csv. With --loads load_gap.csv, with --layers
-/// layer-BODY-NUMBER.npy (numbers of cells, then xx, yy, zz, xy, xz, yz in Pa) and layers.json.
+/// centres); pressure.csv has a row for each cell, up to 100,000 of them. Takes some seconds, most
+/// of them for Love's sums. For a rough surface also pressure_histogram.csv. With --loads
+/// load_gap.csv, with --layers layer-BODY-NUMBER.npy (numbers of cells, then xx, yy, zz, xy, xz, yz
+/// in Pa) and layers.json.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
@@ -114,10 +116,10 @@ enum Engine {
 /// Why stiffnesses and laminae are refused on cells.
 const NOT_ON_CELLS: &str = "the engine on cells does not compute them";
 
-    fn engine(&self, case: &Case) -> Engine {
-        let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
 impl Arguments {
     /// The engine that is asked for; without, the one that takes the case.
+    fn engine(&self, case: &Case) -> Engine {
+        let own = if case.surface.is_some() { Engine::Cells } else { Engine::Line };
         self.engine.unwrap_or(own)
     }
 
@@ -395,9 +397,9 @@ fn text<D>(case: &Case, found: &Summary<D>) -> String {
             found.p_max_pa / p0,
             found.p_max_at_m[0] / hertz.c_m,
             found.p_max_at_m[1] / hertz.c_m,
+            solution::unbounded(case, found).map_or(String::new(), |note| format!(" ({note})")),
         ),
     ];
-            solution::unbounded(case, found).map_or(String::new(), |note| format!(" ({note})")),
     if let Some(critical) = &found.critical {
         let [x, y, z] = critical.at_m.map(|v| v / hertz.c_m);
         lines.push(format!(

@@ -102,7 +102,10 @@ impl Columns {
                     Values::Numbers(values) if row > 0 && values[row] == values[row - 1] => {
                         text.extend_from_within(written.clone());
                     }
-                    Values::Numbers(values) => text.push_str(digits.format(values[row])),
+                    Values::Numbers(values) => {
+                        let number = digits.format(values[row]);
+                        text.push_str(number.strip_suffix(".0").unwrap_or(number));
+                    }
                 }
                 *written = from..text.len();
             }

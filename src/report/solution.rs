@@ -85,7 +85,8 @@ pub fn tables<D>(solution: &Solution<D>, options: &Options) -> Vec<Columns> {
     tables
 }
 
-/// The contact pressure, one row a cell.
+/// The contact pressure: by the line engine over cells across the contact at each node along it,
+/// whose `dy_m` is its weight.
 fn pressure<D>(solution: &Solution<D>) -> Columns {
     let HertzScales { c_m, p0_pa, .. } = solution.curves.hertz;
     let rows = solution.cells.iter().map(|cell| {

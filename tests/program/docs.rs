@@ -75,6 +75,69 @@ fn commands_of_all_pages_exist() {
     }
 }
 
+/// The columns that a page names in the section of a command: the words in code of its tables and
+/// texts.
+fn named_columns(page: &str, command: &str) -> Vec<String> {
+    let section = page.split("\n## ").find(|part| part.lines().next() == Some(command));
+    let words = section.unwrap_or_else(|| panic!("{command}")).split('`').skip(1).step_by(2);
+    words.map(str::to_string).collect()
+}
+
+/// Columns that follow from what is asked for: those of ranges are named by the first and the last.
+fn is_one_of_many(column: &str) -> bool {
+    let words: Vec<&str> = column.split('_').collect();
+    column.starts_with("p_") && column.ends_with("C_p0")
+        || column.ends_with("_half_space")
+        || ["sigma", "von", "tau"].contains(&words[0])
+            && ["rms", "max"].contains(&words[words.len() - 1])
+}
+
+#[test]
+fn the_page_of_tables_has_every_column() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let page = page("docs/files.md");
+    std::fs::write(path.join("points.csv"), "body,x_m,y_m,z_m\nblock,0,0,0\n").unwrap();
+    std::fs::write(path.join("sweep.csv"), "W,S_l,L_r\n1e-3,5,1\n").unwrap();
+    let design = "case = 'flush-short'\nprofile.kind = 'crown'\nbounds.radius_m = [0.1, 10.0]\n\
+                  [[loads]]\nforce_n = 1500.0\n";
+    std::fs::write(path.join("design.toml"), design).unwrap();
+    let line =
+        ["--tolerance", "0.1", "--laminae", "30", "--uncertain", "load_n=5%", "--samples", "4"];
+    let solve = [&["solve", "flush-short", "--points", "points.csv"], &line[..]].concat();
+    let cells = "solve flush-short --engine cells --cells 16,32 --loads 200";
+    for command in [
+        solve.join(" ").as_str(),
+        cells,
+        "fatigue flush-short --places 3,3 --tolerance 0.1",
+        "sweep sweep.csv --base flush-short --out o/sweep.csv",
+        "design design.toml --starts 1 --tolerance 0.1",
+        "study factorial --methods half-space --repeats 0",
+        "compare flush-short given.csv",
+    ] {
+        let mut arguments: Vec<&str> = command.split(' ').collect();
+        if !command.contains("--out") {
+            arguments.extend(["--out", "o"]);
+        }
+        let output = edgeline(path, &arguments).output().unwrap();
+        // Curves from elsewhere may differ.
+        assert!(output.status.code() < Some(2), "{command}: {}", said(&output));
+        // Curves are alike everywhere, and a comparison has the tables of a study.
+        let named = [arguments[0], "solve", "study"].map(|of| named_columns(&page, of)).concat();
+        for file in files(&path.join("o")).iter().filter(|name| name.ends_with(".csv")) {
+            assert!(page.contains(&format!("`{file}`")), "{file}");
+            let text = std::fs::read_to_string(path.join("o").join(file)).unwrap();
+            for column in text.lines().next().unwrap().split(',').filter(|c| !is_one_of_many(c)) {
+                assert!(named.contains(&column.to_string()), "{command}: {file}: {column}");
+            }
+        }
+        if command == cells {
+            std::fs::copy(path.join("o/pressure.csv"), path.join("given.csv")).unwrap();
+        }
+        std::fs::remove_dir_all(path.join("o")).unwrap();
+    }
+}
+
 #[test]
 fn the_reference_has_every_key_option_and_column() {
     let folder = tempfile::tempdir().unwrap();
