@@ -174,7 +174,7 @@ const FINITE: [Resolution; 5] = [
         spacing: 0.025,
         k_max: 130.0,
         k_order: 4,
-        k_step: 4.0,
+        k_step: 6.0,
         k_min: 0.01,
         k_ratio: 3.2,
         images: 2,
@@ -460,12 +460,13 @@ impl Resolution {
         Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
     }
 
-    /// The same for a contact whose `widest` half-width (C) may be above 1: its transform
-    /// oscillates the faster. An error of the sum over it would be noise in what nodes beside each
-    /// other do to each other, and half-widths near an end would follow that.
+    /// The same for a contact that reaches an end of its bodies and whose `widest` half-width (C)
+    /// may be above 1. Its transform oscillates the faster, and a panel of wavenumbers with fewer
+    /// nodes than that turns by radians would leave noise in what nodes beside each other do to
+    /// each other, which half-widths beside the end follow.
     #[must_use]
     pub fn across(self, widest: f64) -> Self {
-        Self { k_step: self.k_step / widest.max(1.0), ..self }
+        Self { k_step: self.k_step.min(self.k_order as f64 / widest), ..self }
     }
 
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.

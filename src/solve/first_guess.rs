@@ -34,27 +34,33 @@ impl Scene {
         };
         let overlap = self.overlap();
         let Some(slices) = slices else { return self.level(tolerance, overlap) };
-        let level = if self.ends_inside(slices) {
-            Resolution::for_tips(tolerance)
+        if self.ends_inside(slices) {
+            return Resolution::for_tips(tolerance);
+        }
+        let gap = self.gap();
+        let turns = [0, 1].map(|side| {
+            let outward = 2.0 * side as f64 - 1.0;
+            let end = slices.ends[side].clamp(overlap[0], overlap[1]);
+            gap.turns_within(end, -outward)
+        });
+        let level = self.level(tolerance, slices.ends).following(turns[0].min(turns[1]));
+        if [0, 1].into_iter().any(|side| self.reaches(slices.ends, side)) {
+            level.across(slices.widest())
         } else {
-            let gap = self.gap();
-            let turns = [0, 1].map(|side| {
-                let outward = 2.0 * side as f64 - 1.0;
-                let end = slices.ends[side].clamp(overlap[0], overlap[1]);
-                gap.turns_within(end, -outward)
-            });
-            self.level(tolerance, slices.ends).following(turns[0].min(turns[1]))
-        };
-        level.across(slices.widest())
+            level
+        }
+    }
+
+    /// Whether a contact that has about these `ends` reaches the end of its bodies on a side.
+    fn reaches(&self, ends: [f64; 2], side: usize) -> bool {
+        (ends[side] - self.overlap()[side]).abs() <= REACHES * self.half_length
     }
 
     /// The resolution for a `tolerance` (p0) of a contact that has about these `ends`. The pressure
     /// has the power of an end of the bodies only where it reaches that.
     fn level(&self, tolerance: f64, ends: [f64; 2]) -> Resolution {
-        let (overlap, known) = (self.overlap(), self.corner_exponents());
-        let reaches =
-            |side: usize| (ends[side] - overlap[side]).abs() <= REACHES * self.half_length;
-        let exponents = [0, 1].map(|side| known[side].filter(|_| reaches(side)));
+        let known = self.corner_exponents();
+        let exponents = [0, 1].map(|side| known[side].filter(|_| self.reaches(ends, side)));
         let largest = exponents.into_iter().flatten().reduce(f64::max);
         Resolution::of(tolerance, &self.end(BodyKind::Block), largest)
     }

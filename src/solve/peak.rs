@@ -244,7 +244,7 @@ mod tests {
             // A dense grid of one body, and the passage with its many instants.
             let body = BodyKind::Block;
             let found = in_bodies(&solved, &[body], Objective::VonMises, 0.1)[0];
-            let [from, to] = solved.scene().ends();
+            let [from, to] = solved.scene().scene.overlap();
             let mut most = 0.0f64;
             for i in 0..=60 {
                 let y = from + (to - from) * f64::from(i) / 60.0;

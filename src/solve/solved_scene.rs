@@ -4,7 +4,7 @@ use super::deep;
 use super::lines::{self, Stresses};
 use super::scene::Scene;
 use super::trial::{
-    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, left_open, problem, touch,
+    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, own_ends, problem, touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Resolution, Stack};
@@ -161,7 +161,9 @@ impl SolvedScene {
         let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
         let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
-        let open = left_open(scene, &line, &contact);
+        let ends = own_ends(scene, &line, &axis, &contact);
+        let open = ends.map(|(open, _)| open);
+        let contact = ContactSolution { ends: ends.map(|(_, at)| at), ..contact };
         if soundness.is_finite() && open.contains(&true) {
             let widest = contact.half_widths.iter().copied().fold(0.0, f64::max);
             let [from, to] = contact.ends;

@@ -348,15 +348,47 @@ pub(super) fn touch(pressure: &Pressure, contact: &ContactSolution) -> Touch {
     Touch::new(ends, &pressure.whole_line())
 }
 
-/// Whether the contact ends before its bodies do, at either end: its axis does, or the last nodes
-/// carry no load.
-pub(super) fn left_open(scene: &Scene, line: &Line, contact: &ContactSolution) -> [bool; 2] {
-    let last = contact.coefficients.len() - 1;
-    let outermost = [if scene.is_symmetric() { last } else { 0 }, last];
-    [0, 1].map(|side| {
-        let lifted = contact.coefficients[outermost[side]].is_empty();
-        line.open[side] || scene.may_end() && lifted
+/// Whether the contact ends before its bodies do, at either end, and where: its axis does, or the
+/// last nodes carry no load.
+pub(super) fn own_ends(
+    scene: &Scene,
+    line: &Line,
+    axis: &Panels,
+    contact: &ContactSolution,
+) -> [(bool, f64); 2] {
+    let nodes = || axis.nodes().iter().copied().zip(&contact.coefficients);
+    let [from, to] = contact.ends;
+    let lifted_at = match scene.may_end() {
+        false => [None; 2],
+        true if scene.is_symmetric() => [lifted(nodes().rev()).map(|y| -y), lifted(nodes().rev())],
+        true => [lifted(nodes()), lifted(nodes().rev())],
+    };
+    [(0, from), (1, to)].map(|(side, end)| match lifted_at[side] {
+        Some(at) if !line.open[side] => (true, at),
+        _ => (line.open[side], end),
     })
+}
+
+/// Where the pressure ends if the outermost of some `nodes`, which come with their modes from the
+/// end inwards, carry none: its square goes linearly to zero, from the last two that carry some.
+fn lifted<'a>(nodes: impl Iterator<Item = (f64, &'a Vec<f64>)>) -> Option<f64> {
+    let mut empty = None;
+    let mut last: Option<(f64, f64)> = None;
+    for (y, modes) in nodes {
+        match (modes.first(), empty, last) {
+            (None, ..) => empty = Some(y),
+            (Some(_), None, _) => return None,
+            (Some(first), _, None) => last = Some((y, first * first)),
+            (Some(first), Some(empty), Some((outer, square))) => {
+                let most = (empty - outer).abs();
+                let falls_in = (outer - y).abs() * square / (first * first - square);
+                // A pressure that does not fall tells nothing.
+                let beyond = if falls_in > 0.0 { falls_in.min(most) } else { most };
+                return Some(outer + (empty - outer).signum() * beyond);
+            }
+        }
+    }
+    empty
 }
 
 /// The largest condition number of the bodies' equations, refused if rounding would not be

@@ -151,28 +151,44 @@ fn singular_ends_under_an_eccentric_load_keep_the_tolerance() {
     }
 }
 
-/// Beside a flush end under an eccentric load half-widths rise steeply up to the end. At 1e-3 the
-/// iteration lost up to 0.3 C of the loaded end in such scenes, and the contact passed as
-/// converged.
+/// Beside a flush end under an eccentric load half-widths rise steeply up to the end. With the sums
+/// over wavenumbers of a contact as wide as Hertz's, pressures 0.05 C from it were up to 0.02 p0 off
+/// at 1e-3, and some contacts lost up to 0.3 C of the loaded end.
 #[test]
-fn a_loaded_flush_end_stays_in_contact() {
-    for (slenderness, nu, arm, most) in
-        [(3.0, 0.45, 0.837, 8e-3), (15.0, 0.3, -4.02, 3e-3), (5.0, 0.3, 1.15, 3e-3)]
-    {
+fn a_loaded_flush_end_keeps_the_tolerance() {
+    for (slenderness, nu, arm) in [(3.0, 0.45, 0.837), (15.0, 0.3, -4.02), (5.0, 0.3, 1.15)] {
         let plain = scene(slenderness, 1.0, nu, EdgeModel::QuarterSpace);
         let at = |tolerance| {
             let tilted = Scene { tilt: Tilt::Free(arm), tolerance, ..plain.clone() };
-            SolvedScene::new(&tilted).unwrap()
+            let solved = SolvedScene::new(&tilted).unwrap();
+            assert!(solved.converged());
+            solved
         };
-        let [coarse, own, fine] = [1e-2, 1e-3, 1e-4].map(at);
-        assert!(own.converged());
-        for from_end in [0.05, 0.1, 0.2, 0.5] {
-            let y = f64::signum(arm) * (slenderness - from_end);
-            let pressure = |solved: &SolvedScene| solved.pressure.at(0.0, y);
-            let want = pressure(&fine);
-            small(&format!("S_l {slenderness}, {from_end}"), (pressure(&own) - want).abs(), most);
-            let off = (pressure(&coarse) - want).abs();
-            small(&format!("S_l {slenderness}, {from_end}, 1e-2"), off, 1e-2);
+        let fine = at(1e-4);
+        for tolerance in [1e-2, 5e-3, 2e-3, 1e-3] {
+            let own = at(tolerance);
+            for from_end in [0.05, 0.1, 0.2, 0.5] {
+                let y = f64::signum(arm) * (slenderness - from_end);
+                let [own, fine] = [&own, &fine].map(|solved| solved.pressure.at(0.0, y));
+                small(&format!("{slenderness}, {from_end}, {tolerance}"), own - fine, tolerance);
+            }
+        }
+    }
+}
+
+/// A contact that all but reaches the end of its bodies ends where its pressure does, at every
+/// tolerance, and not at the last node of the line.
+#[test]
+fn an_end_that_is_all_but_reached_is_the_pressures() {
+    let plain = scene(3.3, 1.0, 0.45, EdgeModel::QuarterSpace);
+    for arm in [0.79, 0.8, 0.81, 0.82, 0.83] {
+        let ends = [5e-3, 1e-3, 3e-4].map(|tolerance| {
+            let tilted = Scene { tilt: Tilt::Free(arm), tolerance, ..plain.clone() };
+            SolvedScene::new(&tilted).unwrap().ends()[0]
+        });
+        println!("{arm}: {ends:?}");
+        for end in ends {
+            small(&format!("{arm}"), end - ends[2], 5e-3);
         }
     }
 }
