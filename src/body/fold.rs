@@ -88,8 +88,8 @@ impl Fold {
 
     /// Adds `factor` times the response of one part to `total`, a matrix over the nodes of the
     /// line: `response` is the same over the nodes of the axis.
-    pub fn add<'a>(
-        &'a self,
+    pub fn add(
+        &self,
         parity: Parity,
         response: &DMatrix<f64>,
         factor: f64,
@@ -108,12 +108,11 @@ impl Fold {
             }
         }
         // And back.
-        let signed = |(i, (beyond, weights)): (usize, &'a (bool, Vec<(usize, f64)>))| {
+        let mut back: Vec<(usize, usize, f64)> = Vec::new();
+        for (i, (beyond, weights)) in self.places.iter().enumerate() {
             let sign = if *beyond { factor * parity.sign() } else { factor };
-            weights.iter().map(move |(node, w)| (i, *node, sign * w))
-        };
-        let back: Vec<(usize, usize, f64)> =
-            self.places.iter().enumerate().flat_map(signed).collect();
+            back.extend(weights.iter().map(|(node, w)| (i, *node, sign * w)));
+        }
         let columns = total.as_mut_slice().chunks_exact_mut(self.places.len());
         for (column, spread) in columns.zip(spread.as_slice().chunks_exact(response.nrows())) {
             for (i, node, weight) in &back {
