@@ -22,12 +22,14 @@ const TIP_NODES: usize = 3;
 /// Iterations of an attempt that is not the last.
 const ATTEMPT: usize = 26;
 
-/// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse. Higher
-/// modes, which describe the pressure's inside, may cancel the slope of the first one for an
-/// iteration, and the half-width would run away.
+/// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse, far
+/// from the solution and [`NEAR`] it. Higher modes, which describe the pressure's inside, may
+/// cancel the slope of the first one for an iteration, and the half-width would run away.
 const STEEPER: f64 = 1.3;
+const NEAR_STEEPER: f64 = 2.0;
 
-/// Amplitude of the edge singularity (p0) from which on tensile nodes are released.
+/// Amplitude of the edge singularity (p0) from which on a solution is near, and tensile nodes are
+/// released.
 const NEAR: f64 = 1e-3;
 
 /// From the node next to an end of the line half-widths are continued up to that end. Its singular
@@ -167,12 +169,13 @@ fn solve_once(
             slopes: &slopes,
         };
         let unknowns = held.solve()?;
-        for (j, slope) in slopes.iter_mut().enumerate() {
-            *slope = edge_slope(&unknowns.as_slice()[layout.modes(j)]);
-        }
         let singular: Vec<f64> =
             layout.free.iter().map(|&j| unknowns[layout.singular(j)]).collect();
         let worst = singular.iter().fold(0.0, |worst: f64, s| worst.max(s.abs()));
+        let steeper = if worst <= NEAR { NEAR_STEEPER } else { STEEPER };
+        for (j, slope) in slopes.iter_mut().enumerate() {
+            *slope = edge_slope(&unknowns.as_slice()[layout.modes(j)], steeper);
+        }
         last = worst;
         let shrunk = layout.shrunk(problem, &contact, &unknowns);
         let settled = shrunk == contact;
@@ -277,11 +280,12 @@ fn check_nodes(
     })
 }
 
-/// The edge slope S of the pressure with these modes, see [`STEEPER`].
-fn edge_slope(modes: &[f64]) -> f64 {
+/// The edge slope S of the pressure with these modes, at most `steeper` times that of the first one
+/// or its inverse, see [`STEEPER`].
+fn edge_slope(modes: &[f64], steeper: f64) -> f64 {
     let slope: f64 = modes.iter().enumerate().map(|(m, c)| (2 * m + 1) as f64 * c).sum();
     match modes.first() {
-        Some(first) if *first > 0.0 => slope.clamp(first / STEEPER, first * STEEPER),
+        Some(first) if *first > 0.0 => slope.clamp(first / steeper, first * steeper),
         Some(first) => *first,
         None => 0.0,
     }
