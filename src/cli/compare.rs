@@ -6,7 +6,7 @@ use super::records::Records;
 use super::study_options::RangeOptions;
 use super::values::unsuited;
 use crate::base::{Error, Result};
-use crate::case::{Case, find_case};
+use crate::case::find_case;
 use crate::host::{Lock, prepare_folder, replace_set};
 use crate::report::comparison::{Context, Summary, files};
 use crate::report::gates;
@@ -29,7 +29,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Files of curves (CSV)
     #[arg(required = true, value_name = "CURVES.csv", value_hint = ValueHint::FilePath)]
     curves: Vec<PathBuf>,
@@ -104,11 +104,7 @@ impl StatedOptions {
     }
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    compare(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn compare(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let case = find_case(&arguments.case)?;
     case.check_force("every model would find another force")?;
     let stated = arguments.stated.statements()?;

@@ -4,7 +4,7 @@ use super::fem_options::Size;
 use super::output::{Exit, print};
 use super::progress::Progress;
 use crate::base::Result;
-use crate::case::{Case, find_case};
+use crate::case::find_case;
 use crate::fem::{Code, DECK_FILES, Driver, FemSettings};
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -19,7 +19,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Folder for the deck; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
@@ -36,11 +36,7 @@ pub(super) struct Arguments {
     gmsh: PathBuf,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    write(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn write(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let case = find_case(&arguments.case)?;
     Code::Calculix.check(&case)?;
     let driver = Driver::without_solver(FemSettings {

@@ -2,7 +2,7 @@
 
 use super::output::{Exit, print, say};
 use crate::base::Result;
-use crate::case::{Case, find_case};
+use crate::case::find_case;
 use crate::explore::serve;
 use clap::{Args, ValueHint};
 use std::path::PathBuf;
@@ -17,17 +17,13 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(default_value = "flush-short", value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Port of 127.0.0.1; any free one by default
     #[arg(long, default_value_t = 0, hide_default_value = true)]
     port: u16,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    explore(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn explore(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let case = find_case(&arguments.case)?;
     case.check_force("the page changes forces")?;
     case.check_smooth("the page solves along a line, where bodies are smooth")?;

@@ -6,7 +6,7 @@ use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
-use crate::case::{Case, find_case};
+use crate::case::find_case;
 use crate::host::{Lock, replace_set};
 use crate::report::fatigue::{CriticalPlace, Passages, Summary, contents, summary};
 use crate::report::study_files::pretty;
@@ -28,7 +28,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
@@ -47,11 +47,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    find(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn find(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let mut case = find_case(&arguments.case)?;
     if let Some(tolerance) = arguments.tolerance {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;

@@ -21,7 +21,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// Folder for the results; created if it does not exist
     #[arg(long, default_value = "out", value_hint = ValueHint::DirPath)]
     out: PathBuf,
@@ -34,11 +34,7 @@ pub(super) struct Arguments {
     json: bool,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    solve(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn solve(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let case = find_case(&arguments.case)?;
     let code = arguments.fem.engine();
     code.check(&case)?;

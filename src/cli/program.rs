@@ -5,8 +5,11 @@ use super::{
     bench, cases, compare, deck, design, doctor, explore, extras, fatigue, fem, gate, report,
     solve, study, sweep,
 };
+use crate::base::Result;
+use crate::case::Case;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use std::path::Path;
 use std::process::ExitCode;
 
 /// Contact pressure and stresses at the ends of finite line contacts: a semi-analytical solver, and
@@ -55,6 +58,11 @@ fn command() -> clap::Command {
     })
 }
 
+/// What `run` does with the case at `path`; an error about the case names its file and line.
+fn on_case(path: &Path, run: impl FnOnce() -> Result<Exit>) -> Result<Exit> {
+    run().map_err(|e| Case::place(path, e))
+}
+
 /// Runs the program with `arguments`, the program's name first, and returns its exit code.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let parsed = command().try_get_matches_from(arguments);
@@ -68,15 +76,15 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     let outcome = match arguments.command {
-        Command::Solve(arguments) => solve::run(arguments),
-        Command::Fatigue(arguments) => fatigue::run(arguments),
-        Command::Explore(arguments) => explore::run(arguments),
-        Command::Deck(arguments) => deck::run(arguments),
-        Command::Fem(arguments) => fem::run(arguments),
+        Command::Solve(own) => on_case(&own.case, || solve::run(&own)),
+        Command::Fatigue(own) => on_case(&own.case, || fatigue::run(&own)),
+        Command::Explore(own) => on_case(&own.case, || explore::run(&own)),
+        Command::Deck(own) => on_case(&own.case, || deck::run(&own)),
+        Command::Fem(own) => on_case(&own.case, || fem::run(&own)),
         Command::Study(arguments) => study::run(arguments),
         Command::Sweep(arguments) => sweep::run(arguments),
         Command::Design(arguments) => design::run(arguments),
-        Command::Compare(arguments) => compare::run(arguments),
+        Command::Compare(own) => on_case(&own.case, || compare::run(&own)),
         Command::Gate(arguments) => gate::run(arguments),
         Command::Bench(arguments) => bench::run(arguments),
         Command::Report(arguments) => report::run(arguments),

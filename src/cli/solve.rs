@@ -46,7 +46,7 @@ use std::path::PathBuf;
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
     #[arg(value_hint = ValueHint::FilePath)]
-    case: PathBuf,
+    pub(super) case: PathBuf,
     /// How the free ends of the bodies are modelled
     #[arg(long, default_value = "quarter-space", value_parser = edge_model())]
     method: EdgeModel,
@@ -168,11 +168,7 @@ impl Arguments {
     }
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Exit> {
-    solve(&arguments).map_err(|e| Case::place(&arguments.case, e))
-}
-
-fn solve(arguments: &Arguments) -> Result<Exit> {
+pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let mut case = find_case(&arguments.case)?;
     let mut options = Options::new(arguments.method);
     if !arguments.body.is_empty() {

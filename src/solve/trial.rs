@@ -357,15 +357,12 @@ pub(super) fn own_ends(
     contact: &ContactSolution,
 ) -> [(bool, f64); 2] {
     let nodes = || axis.nodes().iter().copied().zip(&contact.coefficients);
-    let [from, to] = contact.ends;
-    let lifted_at = match scene.may_end() {
-        false => [None; 2],
-        true if scene.is_symmetric() => [lifted(nodes().rev()).map(|y| -y), lifted(nodes().rev())],
-        true => [lifted(nodes()), lifted(nodes().rev())],
-    };
-    [(0, from), (1, to)].map(|(side, end)| match lifted_at[side] {
-        Some(at) if !line.open[side] => (true, at),
-        _ => (line.open[side], end),
+    let last = lifted(nodes().rev());
+    let first = if scene.is_symmetric() { last.map(|y| -y) } else { lifted(nodes()) };
+    let found = [first, last];
+    [0, 1].map(|side| match found[side] {
+        Some(at) if scene.may_end() && !line.open[side] => (true, at),
+        _ => (line.open[side], contact.ends[side]),
     })
 }
 
