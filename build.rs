@@ -2,7 +2,7 @@
 //! Python sources of the finite-element model, so that the lists are always complete. Evaluates the
 //! closed forms for the tables of stresses, which would take longer than a solve.
 
-use kernels::line_load::{WaveStress, exact_along};
+use kernels::line_load::{WaveStress, exact, exact_along, exact_apart};
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -63,7 +63,7 @@ fn tabulate(out: &Path) {
         println!("cargo::rerun-if-changed=src/kernels/{file}.rs");
     }
     println!("cargo::rerun-if-changed=build.rs");
-    for (name, load) in [("wave", kernels::line_load::exact as Load), ("along", exact_along)] {
+    for (name, load) in [("wave", exact as Load), ("along", exact_along), ("apart", exact_apart)] {
         tabulate_load(out, name, load);
     }
 }

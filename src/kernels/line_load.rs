@@ -30,6 +30,10 @@
 //! ```
 //!
 //! The transform of e^(-kappa v) / kappa^3 is (rho K1 - v J) / (pi k).
+//!
+//! Load apart from the line: forces along u that are opposite on its two sides, the traction -(1/k)
+//! delta'(u) cos(k x). A load along u is one along x with the axes exchanged, l^2 = kappa^2 - k^2
+//! for k^2; the pair is minus its slope along u over k, with d_u^2 = k^2 - kappa^2 on every e.
 
 use super::bessel::{incomplete, k0_k1};
 use std::f64::consts::FRAC_1_PI;
@@ -105,6 +109,41 @@ pub fn exact_along(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
         xw: slope1 - square * (2.0 * nu * slope3 + v * slope2),
         xd: square * v * e1 - e0,
         wd: k * v * slope1,
+    }
+}
+
+/// As [`exact`], of forces apart from the line: the phases are those of a load into the surface.
+#[inline]
+pub fn exact_apart(k: f64, nu: f64, u: f64, v: f64) -> WaveStress {
+    let rho = (u * u + v * v).sqrt();
+    let x = k * rho;
+    let (k0, k1) = k0_k1(x);
+    let (j, n) = incomplete(k * u.abs(), k * v);
+    let (square, k1_rho) = (k * k, k1 / rho);
+    // K2(x) k / rho^2 and K3(x) k^2 / rho^3, from K3 = K1 + 4 K2 / x.
+    let k2_rho2 = (k * k0 + 2.0 * k1_rho) / (rho * rho);
+    let k3_rho3 = (square * k1_rho + 4.0 * k2_rho2) / (rho * rho);
+    // As in [`exact_along`], and m = -1 and -2.
+    let e3 = FRAC_1_PI * (rho * k1 - v * j) / k;
+    let e2 = FRAC_1_PI * j / k;
+    let e1 = FRAC_1_PI * k0;
+    let e0 = FRAC_1_PI * k * v * k1_rho;
+    let em1 = FRAC_1_PI * k * (v * v * k2_rho2 - k1_rho);
+    let em2 = FRAC_1_PI * k * v * (v * v * k3_rho3 - 3.0 * k2_rho2);
+    let slope2 = -FRAC_1_PI * n * u.signum();
+    let slope3 = -FRAC_1_PI * u * k0 - v * slope2;
+    let slope1 = -FRAC_1_PI * k * u * k1_rho;
+    let slope0 = -FRAC_1_PI * k * v * u * k2_rho2;
+    let slope_m1 = FRAC_1_PI * k * u * (k2_rho2 - v * v * k3_rho3);
+    WaveStress {
+        xx: k * v * (square * e2 - e0) - 2.0 * nu * (2.0 * k * e1 - em1 / k)
+            + 2.0 * nu * k * square * e3,
+        ww: 2.0 * em1 / k - 2.0 * k * ((1.0 - nu) * e1 + nu * square * e3)
+            + v * (2.0 * k * e0 - em2 / k - k * square * e2),
+        dd: v * (em2 / k - k * e0),
+        xw: (1.0 - 2.0 * nu) * slope1 + 2.0 * nu * square * slope3 + v * (square * slope2 - slope0),
+        xd: v * (em1 - square * e1),
+        wd: slope0 / k + v * (k * slope1 - slope_m1 / k),
     }
 }
 
