@@ -360,21 +360,7 @@ impl Body {
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
         let n = self.surface.axis.len();
-        let mut displacement = Rows::new(&self.surface, n);
-        let reach = self.reach(k);
-        let mut values = Vec::new();
-        for (i, stencil) in self.compliance_stencils.iter().enumerate() {
-            displacement.push(|charges, nodes| {
-                k0_of_all(k, stencil.offsets(), reach, &mut values);
-                stencil.add_row(&values, charges, nodes);
-                let mut strips = 0.0;
-                let y = self.surface.axis.nodes()[self.contact.start + i];
-                self.for_strips(k, y, 0.0, |u, w| strips += w * k0(k * u.abs()));
-                self.add_mean(strips, nodes);
-            });
-        }
-        // f = 2 K0.
-        let displacement = 2.0 * displacement.finish();
+        let displacement = self.displacement(k);
         // An end face beyond the reach of this wavenumber carries no load.
         if !self.end.freed || self.ledge > self.reach(k) {
             let compliance = displacement.columns_range(self.contact()).into_owned();
@@ -416,9 +402,28 @@ impl Body {
         }
     }
 
+    /// Displacement f at the contact nodes per P.
+    pub(super) fn displacement(&self, k: f64) -> DMatrix<f64> {
+        let mut displacement = Rows::new(&self.surface, self.surface.axis.len());
+        let reach = self.reach(k);
+        let mut values = Vec::new();
+        for (i, stencil) in self.compliance_stencils.iter().enumerate() {
+            displacement.push(|charges, nodes| {
+                k0_of_all(k, stencil.offsets(), reach, &mut values);
+                stencil.add_row(&values, charges, nodes);
+                let mut strips = 0.0;
+                let y = self.surface.axis.nodes()[self.contact.start + i];
+                self.for_strips(k, y, 0.0, |u, w| strips += w * k0(k * u.abs()));
+                self.add_mean(strips, nodes);
+            });
+        }
+        // f = 2 K0.
+        2.0 * displacement.finish()
+    }
+
     /// Adds the effect of strips of unit pressure to a row over the surface's nodes; they carry the
     /// mean.
-    fn add_mean(&self, strips: f64, row: &mut [f64]) {
+    pub(super) fn add_mean(&self, strips: f64, row: &mut [f64]) {
         if strips != 0.0 {
             for (r, w) in row.iter_mut().zip(self.surface.axis.weights()) {
                 *r += strips * w / self.half;
@@ -435,7 +440,7 @@ impl Body {
 
     /// Compressive stress yy on the end face per load of `kernel` on the surface: T_zy per P, T_sy
     /// per traction along x.
-    fn surface_matrix(&self, k: f64, kernel: &WaveTable) -> DMatrix<f64> {
+    pub(super) fn surface_matrix(&self, k: f64, kernel: &WaveTable) -> DMatrix<f64> {
         let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
         let mut values = Vec::new();
         let faces = self.to_face.iter().zip(&self.strips_to_face).take(self.face_len(k));
@@ -457,7 +462,7 @@ impl Body {
     }
 
     /// T_yz: compressive stress zz on z = 0 per q on both end faces.
-    fn faces_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
+    pub(super) fn faces_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
         let n = self.surface.axis.len();
         let mut matrix = Rows::new(&self.face, columns);
         let mut values = Vec::new();
@@ -520,6 +525,12 @@ impl Body {
         sum
     }
 
+    /// Cosine transforms over the depth of the face's loads: a row for each of the plate's
+    /// wavenumbers, over the face's nodes.
+    pub(super) fn cosines(&self) -> &DMatrix<f64> {
+        &self.cosines
+    }
+
     /// Cosine transform in z of the face load, at the plate's wavenumbers; empty if the plate's
     /// remainder is negligible.
     pub fn plate_transform(&self, k: f64, q: &[f64]) -> Vec<f64> {
@@ -537,7 +548,7 @@ fn column_sum(matrix: &DMatrix<f64>) -> f64 {
 }
 
 /// Rows over the nodes of sources, filled one after the other.
-struct Rows<'a> {
+pub(super) struct Rows<'a> {
     sources: &'a Sources,
     columns: usize,
     charges: Vec<f64>,
@@ -546,12 +557,12 @@ struct Rows<'a> {
 
 impl<'a> Rows<'a> {
     /// No rows yet; `columns` first nodes are kept.
-    fn new(sources: &'a Sources, columns: usize) -> Self {
+    pub fn new(sources: &'a Sources, columns: usize) -> Self {
         Self { sources, columns, charges: Vec::new(), nodes: Vec::new() }
     }
 
     /// Appends a row that `fill` writes over the charges and over the nodes, both initially zero.
-    fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
+    pub fn push(&mut self, fill: impl FnOnce(&mut [f64], &mut [f64])) {
         let (charge, node) = (self.charges.len(), self.nodes.len());
         self.charges.resize(charge + self.sources.charge_count(), 0.0);
         self.nodes.resize(node + self.columns, 0.0);
@@ -559,7 +570,7 @@ impl<'a> Rows<'a> {
     }
 
     /// The matrix over the nodes.
-    fn finish(self) -> DMatrix<f64> {
+    pub fn finish(self) -> DMatrix<f64> {
         let rows = self.nodes.len() / self.columns;
         let mut nodes = DMatrix::from_vec(self.columns, rows, self.nodes);
         self.sources.scatter(&self.charges, &mut nodes);

@@ -13,6 +13,7 @@ mod mirror;
 mod model;
 mod part;
 mod quarter_space;
+mod skin;
 mod stack;
 pub mod stencil;
 
@@ -24,4 +25,5 @@ pub use fold::Fold;
 pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;
 pub use part::Part;
+pub use skin::{Skin, SkinLine, Skins};
 pub use stack::{LoadedLine, Placed, Stack};

@@ -86,6 +86,7 @@ impl Draft {
         let mut draft = Draft::new(name(&root)?, form);
         read_profiles(&root, path, &mut draft)?;
         read_surface(&root, path, &mut draft)?;
+        read_order(&root, &mut draft)?;
         for (key, entry) in entries(&root, &keys_of(form))? {
             key.set(&mut draft, entry.number()?);
         }
@@ -180,6 +181,14 @@ fn check_one_of_several(table: &Table, keys: &[&'static Key]) -> Result<()> {
         )),
         _ => Ok(()),
     }
+}
+
+/// Takes the order in C / R to which bodies are round.
+pub(super) fn read_order(root: &Table, draft: &mut Draft) -> Result<()> {
+    if let Some(entry) = root.find("accuracy.first_order") {
+        draft.case.accuracy.first_order = entry.flag()?;
+    }
+    Ok(())
 }
 
 /// Takes the kinds and the files of the bodies' profiles; files are looked for beside the case

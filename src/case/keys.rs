@@ -56,6 +56,7 @@ fn others_of(table: &str) -> &'static [&'static str] {
         "roller" | "block" => &["profile"],
         "roller.profile" | "block.profile" => &["kind", "file"],
         "surface" => &["heights", "detrend"],
+        "accuracy" => &["first_order"],
         _ => &[],
     }
 }

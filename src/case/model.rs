@@ -148,12 +148,16 @@ impl Fatigue {
 pub struct Accuracy {
     /// Requested accuracy of the semi-analytical solution, as a fraction of p0.
     pub tolerance: f64,
+    /// Whether what round surfaces and free ends make of each other is taken in, to first order in
+    /// C / R: the pressure then depends on W.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub first_order: bool,
 }
 
 impl Default for Accuracy {
     /// The accuracy of a case without its own.
     fn default() -> Self {
-        Self { tolerance: 1e-3 }
+        Self { tolerance: 1e-3, first_order: false }
     }
 }
 
@@ -260,7 +264,8 @@ impl Case {
     /// The same case with another tolerance.
     #[must_use]
     pub fn with_tolerance(self, tolerance: f64) -> Self {
-        Self { accuracy: Accuracy { tolerance }, ..self }
+        let accuracy = Accuracy { tolerance, ..self.accuracy };
+        Self { accuracy, ..self }
     }
 
     /// Sets the lengths and the force from `factors`, the radius and the materials.

@@ -34,6 +34,10 @@ pub fn case_schema() -> Value {
         push(&mut profile["required"], "kind");
         tables[body]["properties"]["profile"] = profile;
     }
+    tables["accuracy"]["properties"]["first_order"] = json!({
+        "description": "Whether what round surfaces and free ends make of each other is taken in, to first order in C / R; false by default.",
+        "type": "boolean",
+    });
     let surface = &mut tables["surface"];
     surface["properties"]["heights"] = json!({
         "description": "The file of the heights, .npy, .csv or .x3p, beside the case file. The first two need dx_m and dy_m.",

@@ -253,7 +253,7 @@ fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result
     if let Some(tolerance) = arguments.tolerance {
         cells.tolerance = checked_residual(tolerance)?;
     }
-    let grid = check_cells(case, &cells)?;
+    let grid = check_cells(case, options.method, &cells)?;
     for force_n in &arguments.loads {
         let checked = case.clone().with_force(*force_n).check();
         checked.map_err(|e| e.of_option("--loads", &stated(*force_n)))?;

@@ -87,14 +87,22 @@ impl Default for CellOptions {
     }
 }
 
-/// Refuses a case that cells do not take, or not with these options; the first grid that is tried
-/// for others.
+/// Refuses a case that cells do not take, by this `method` and with these options; the first grid
+/// that is tried for others.
 ///
 /// # Errors
 /// [`Error::Value`] with what to do.
-pub fn check_cells(case: &Case, cells: &CellOptions) -> Result<Grid> {
+pub fn check_cells(case: &Case, method: EdgeModel, cells: &CellOptions) -> Result<Grid> {
     case.check_force("cells take a force")?;
-    let scene = Scene::new(case, EdgeModel::HalfSpace, None);
+    let scene = Scene::new(case, method, None);
+    if scene.curvatures.iter().any(|curvature| *curvature != 0.0) {
+        return Err(Error::Value {
+            key: "accuracy.first_order".into(),
+            value: "true".into(),
+            reason: "cells take bodies for flat where they press on each other".into(),
+            remedy: "solve this case with --engine line, or remove the key".into(),
+        });
+    }
     if scene.slides {
         return Err(Error::Value {
             key: "sliding.friction".into(),
@@ -242,7 +250,7 @@ pub fn solve_on_cells(
     progress: &dyn Fn(usize, f64),
 ) -> Result<CellSolution> {
     options.check(case)?;
-    check_cells(case, cells)?;
+    check_cells(case, options.method, cells)?;
     let scene = Scene::new(case, options.method, options.psi);
     let start = Instant::now();
     let region = Region::new(case, &scene, cells);
@@ -301,7 +309,7 @@ pub fn loads_on_cells(
     forces: &[f64],
     progress: &dyn Fn(usize, f64),
 ) -> Result<Vec<LoadStep>> {
-    check_cells(case, cells)?;
+    check_cells(case, options.method, cells)?;
     let scene = Scene::new(case, options.method, options.psi);
     let region = Region::new(case, &scene, cells);
     let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);

@@ -11,6 +11,13 @@ use std::f64::consts::PI;
 /// A number smaller than this part of a length or an angle beside it is rounding.
 const NOTHING: f64 = 1e-9;
 
+/// Largest change of the pressure and of stresses by a round surface between free ends, per C / R
+/// (p0), the part of a tolerance that is not felt, and the largest C / R that it is known for: what
+/// is of first order in it means nothing beyond.
+const ROUND: f64 = 0.8;
+const UNFELT: f64 = 0.05;
+const ROUNDEST: f64 = 0.1;
+
 /// One of the two bodies of a [`Scene`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneBody {
@@ -42,9 +49,9 @@ pub enum Tilt {
     Free(f64),
 }
 
-/// A dimensionless contact. The load factor W is not in it, unless a profile or a tilt needs it:
-/// only the approach's reference depth and the roller's diametral tension know the radius. y is
-/// counted from the roller's middle.
+/// A dimensionless contact. The load factor W is not in it, unless a profile, a tilt or a round
+/// surface needs it: else only the approach's reference depth and the roller's
+/// diametral tension know the radius. y is counted from the roller's middle.
 #[derive(Debug, Clone)]
 pub struct Scene {
     /// Half-length of the bodies' overlap (C).
@@ -68,6 +75,9 @@ pub struct Scene {
     /// Depth (C) of the lines whose tilt is held; zero where none is, or where they are parallel by
     /// symmetry.
     pub depth: f64,
+    /// C / R of each body whose round surface changes pressures and stresses beside free end faces,
+    /// [`crate::body::Skins`]; zero where that is not asked for or does not matter.
+    pub curvatures: PerBody<f64>,
     /// The edge model.
     pub model: EdgeModel,
     /// Weight of the images of `guilbault`; by default [`crate::body::guilbault_psi`] of each body.
@@ -99,6 +109,7 @@ impl Scene {
             rough: false,
             steepness: 0.0,
             depth: 0.0,
+            curvatures: PerBody { block: 0.0, roller: 0.0 },
             model,
             psi: None,
             tolerance,
@@ -117,11 +128,12 @@ impl Scene {
             sliding: Sliding { friction },
             fatigue: _,
             surface,
-            accuracy: Accuracy { tolerance },
+            accuracy: Accuracy { tolerance, first_order },
             cells: _,
         } = case;
         let Roller { radius_m, length_m: roller_m, material: roller_material, profile: _ } = roller;
-        let Block { length_m: block_m, material: block_material, radius_m: _, profile: _ } = block;
+        let Block { length_m: block_m, material: block_material, radius_m: hollow_m, profile: _ } =
+            block;
         let Load { force_n: _, approach_m: _, eccentricity_m } = load;
         let Pose { tilt_rad, offset_m } = pose;
         let hertz = case.hertz();
@@ -152,12 +164,23 @@ impl Scene {
         let profiled = bodies.iter().any(|body| body.profile.is_some());
         let from = block_ends[0].max(roller_ends[0]);
         let to = block_ends[1].min(roller_ends[1]);
+        let curvature = |radius_m: f64, nu: f64| {
+            let own = rounded(c_m / radius_m);
+            let felt = ROUND * own.abs() > UNFELT * tolerance;
+            let matters = *first_order && felt && model.end(nu, psi).freed;
+            if matters { own.clamp(-ROUNDEST, ROUNDEST) } else { 0.0 }
+        };
+        let curvatures = PerBody {
+            block: hollow_m.map_or(0.0, |radius_m| curvature(radius_m, block_material.poisson)),
+            roller: curvature(*radius_m, roller_material.poisson),
+        };
         let scene = Self {
             half_length: 0.5 * (to - from),
             middle: 0.5 * (from + to),
             load: PI * roller_half.min(block_half),
             steepness: if profiled { steepness } else { 0.0 },
             depth: 0.0,
+            curvatures,
             bodies,
             tilt,
             slides: *friction != 0.0,
@@ -200,6 +223,7 @@ impl Scene {
             },
             steepness: factor * self.steepness,
             depth: factor * self.depth,
+            curvatures: self.curvatures.map(|curvature| curvature / factor),
             ..self.clone()
         }
     }
@@ -272,6 +296,7 @@ impl Scene {
             rough: _,
             steepness,
             depth,
+            curvatures,
             model,
             psi,
             tolerance,
@@ -281,6 +306,7 @@ impl Scene {
             Tilt::Free(arm) => (true, arm),
         };
         let mut numbers = vec![*half_length, *middle, *load, *tilt, *steepness, *depth, *tolerance];
+        numbers.extend(curvatures.iter());
         for SceneBody { half, middle, nu, share, profile } in bodies.iter() {
             numbers.extend([*half, *middle, *nu, *share]);
             let own = profile.as_ref().map(Profile::numbers).unwrap_or_default();

@@ -7,7 +7,7 @@ use super::trial::{
     Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, own_ends, problem, touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
-use crate::body::{Resolution, Stack};
+use crate::body::{Resolution, Skins, Stack};
 use crate::contact::{self, Compliance, ContactSolution};
 use crate::stress::round::ContactEnds;
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
@@ -77,6 +77,8 @@ pub struct SolvedScene {
     /// [`Pressure::moments`] of the own pressure.
     moments: DMatrix<f64>,
     bodies: Vec<Stack>,
+    /// Their skins, where they are round.
+    skins: Vec<Option<Skins>>,
     compliances: Vec<DMatrix<f64>>,
 }
 
@@ -160,7 +162,7 @@ impl SolvedScene {
         let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
         let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
         let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
-        let Parts { axis, wavenumbers, bodies, compliances, condition } = parts;
+        let Parts { axis, wavenumbers, bodies, skins, compliances, condition } = parts;
         let ends = own_ends(scene, &line, &axis, &contact);
         let open = ends.map(|(open, _)| open);
         let contact = ContactSolution { ends: ends.map(|(_, at)| at), ..contact };
@@ -191,6 +193,7 @@ impl SolvedScene {
             condition,
             moments,
             bodies,
+            skins,
             compliances,
         })
     }
@@ -233,7 +236,12 @@ impl SolvedScene {
         let open = [if self.scene.is_symmetric() { right } else { left }, right];
         let contact = ContactEnds { at: self.own.pressure.ends(), open };
         let contact = self.scene.may_end().then_some(contact);
-        BodyField::new(field.following_contact(contact), self.unit)
+        let skins = match kind {
+            BodyKind::Block => self.skins.first(),
+            BodyKind::Roller => self.skins.last(),
+        };
+        let skins = skins.and_then(Option::as_ref);
+        BodyField::new(field.with_skins(skins).following_contact(contact), self.unit)
     }
 
     /// The field of a body in the solution's own unit.

@@ -7,7 +7,7 @@ use super::scene::{Scene, SceneBody, Tilt};
 use super::secants::Secants;
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Panels, Result, Wavenumbers};
-use crate::body::{LoadedLine, Placed, Resolution, Shape, Stack};
+use crate::body::{LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack};
 use crate::contact::{
     self, Compliance, ContactSettings, ContactSolution, Problem, Rotation, Shaped, Slices,
 };
@@ -108,6 +108,8 @@ pub(super) struct Parts {
     pub wavenumbers: Wavenumbers,
     /// The block and the roller; one for both if they are alike.
     pub bodies: Vec<Stack>,
+    /// The skins of these bodies, where they are round.
+    pub skins: Vec<Option<Skins>>,
     /// The compliance of both together at each coarse wavenumber.
     pub compliances: Vec<DMatrix<f64>>,
     /// The largest condition number of their equations.
@@ -219,13 +221,27 @@ impl Trial<'_> {
         // Bodies with the same ends and Poisson's ratio share one computation.
         let distinct =
             if scene.bodies_are_alike() { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
-        let stack = |&kind: &BodyKind| {
+        let placed = |kind: BodyKind| {
             let SceneBody { half, middle, nu, .. } = scene.bodies[kind];
-            let placed = Placed { middle, shape: Shape { half, nu }, end: scene.end(kind) };
+            Placed { middle, shape: Shape { half, nu }, end: scene.end(kind) }
+        };
+        let stack = |&kind: &BodyKind| {
             let line = LoadedLine { axis: &axis, symmetric, slides: scene.slides };
-            Stack::new(line, placed, resolution, coarse)
+            Stack::new(line, placed(kind), resolution, coarse)
         };
         let bodies: Vec<Stack> = distinct.iter().map(stack).collect();
+        // While ends are sought all is coarser than what a round shape adds.
+        let curvatures = scene.curvatures.map(|own| if self.powers { *own } else { 0.0 });
+        let skin = |&kind: &BodyKind| {
+            let alike = distinct.len() == 1;
+            let others = BodyKind::ALL.into_iter().filter(|other| alike || *other == kind);
+            let sharper = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
+            let curvature = others.map(|kind| curvatures[kind]).fold(0.0, sharper);
+            let kinks = &self.gap.kinks();
+            let line = SkinLine { ends: line.ends, exponents, kinks, symmetric };
+            (curvature != 0.0).then(|| Skins::new(line, placed(kind), curvature))
+        };
+        let skins: Vec<Option<Skins>> = distinct.iter().map(skin).collect();
         let condition = checked_condition(&bodies)?;
         let compliances = (0..coarse.len()).map(|i| {
             let mut total = DMatrix::zeros(axis.len(), axis.len());
@@ -233,8 +249,14 @@ impl Trial<'_> {
             bodies[bodies.len() - 1].add_compliance(i, roller.share, &mut total);
             total
         });
-        let compliances = compliances.collect();
-        Ok(Parts { axis, wavenumbers, bodies, compliances, condition })
+        let mut compliances: Vec<DMatrix<f64>> = compliances.collect();
+        for kind in BodyKind::ALL.into_iter().filter(|kind| curvatures[*kind] != 0.0) {
+            let own = if kind == BodyKind::Block { skins.first() } else { skins.last() };
+            let skins = own.and_then(Option::as_ref).expect("a round body has a skin");
+            let factor = curvatures[kind] * scene.bodies[kind].share;
+            skins.add_compliances(coarse.nodes(), factor, &axis, &mut compliances);
+        }
+        Ok(Parts { axis, wavenumbers, bodies, skins, compliances, condition })
     }
 
     /// The contact on a line, from what is `known` of it, to which it adds.

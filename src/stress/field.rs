@@ -10,11 +10,12 @@
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
 use super::round::{ContactEnds, LocalContact, RoundStress, STEP, rounded};
-use super::target::{KeptPlates, Loaded, ON_FACE, Target};
+use super::skin::SkinField;
+use super::target::{KeptPlates, Loaded, ON_FACE, Target, add_wave};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
 use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
-use crate::body::Stack;
+use crate::body::{Skins, Stack};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::{Arc, Mutex};
@@ -47,6 +48,8 @@ pub struct Field<'a> {
     pub(super) pressure: &'a dyn Load,
     /// The pressure as a traction along x, if the contact carries one.
     pub(super) traction: Option<&'a dyn Traction>,
+    /// The loads that a round surface adds, if the body has one.
+    skin: Option<SkinField<'a>>,
     wavenumbers: &'a Wavenumbers,
     /// The loads for the plane x = 0, where every wave is at its crest: the coarse wavenumbers,
     /// with the quadrature over the fine ones in their loads.
@@ -103,6 +106,7 @@ impl<'a> Field<'a> {
             stack,
             pressure,
             traction: None,
+            skin: None,
             wavenumbers,
             central,
             all,
@@ -122,6 +126,12 @@ impl<'a> Field<'a> {
         Self { traction: Some(traction), ..self }
     }
 
+    /// The same field of a body with a round surface, whose `skins` belong to the pressure's line.
+    #[must_use]
+    pub fn with_skins(self, skins: Option<&'a Skins>) -> Self {
+        Self { skin: skins.map(|skins| SkinField::new(skins, self.pressure)), ..self }
+    }
+
     /// The same field, where what a round surface adds follows the local contact between these
     /// ends, not that of the mean load all along the line.
     #[must_use]
@@ -139,6 +149,11 @@ impl<'a> Field<'a> {
         };
         let local = self.pressure.local_contact(LocalContact::place(y, contact.at));
         local.on_line(y, contact, body)
+    }
+
+    /// The skin, unless the depth `z` is beyond it.
+    fn skin_near(&self, z: f64) -> Option<&SkinField<'a>> {
+        self.skin.as_ref().filter(|_| z <= FAR_BELOW * self.stack.body().half)
     }
 
     /// Whether the contact is symmetric about y = 0.
@@ -224,18 +239,27 @@ impl<'a> Field<'a> {
     pub fn round_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<RoundStress> {
         let contact = self.local_contact(y);
         let flat = |all: &[f64], places: &[f64]| vec![self.near_or_far(y, z, all, places)];
-        rounded(xs, &[z], &contact, off_middle, flat).swap_remove(0)
+        let mut all = rounded(xs, &[z], &contact, off_middle, flat).swap_remove(0);
+        if let Some(skin) = self.skin_near(z) {
+            add_skins(&mut all, &skin.at(y, z, xs));
+        }
+        all
     }
 
     /// [`Field::down`], with the contribution of a round surface per C / R.
     pub fn round_down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<RoundStress>> {
-        rounded(xs, zs, &self.local_contact(y), off_middle, |all, places| {
+        let mut rows = rounded(xs, zs, &self.local_contact(y), off_middle, |all, places| {
             let far = |z: &f64| places.iter().any(|x| self.is_far(*x, *z));
             match zs.iter().any(far) {
                 true => zs.iter().map(|&z| self.near_or_far(y, z, all, places)).collect(),
                 false => self.down(all, y, zs),
             }
-        })
+        });
+        if let Some(skin) = self.skin_near(zs.iter().copied().fold(0.0, f64::max)) {
+            let skins = skin.down(xs, y, zs);
+            rows.iter_mut().zip(skins).for_each(|(row, skins)| add_skins(row, &skins));
+        }
+        rows
     }
 
     /// Stresses at the points (x, `y`, z): for each z >= 0 of `zs` those for each x of `xs`, in
@@ -293,7 +317,11 @@ impl<'a> Field<'a> {
         let round = |(s, y): (FlatStress, &f64)| {
             RoundStress::new(0.0, z, s, FlatStress::default(), &self.local_contact(*y))
         };
-        flat.into_iter().zip(ys).map(round).collect()
+        let mut all: Vec<RoundStress> = flat.into_iter().zip(ys).map(round).collect();
+        if let Some(skin) = self.skin_near(z) {
+            add_skins(&mut all, &skin.along(z, ys));
+        }
+        all
     }
 
     /// Stresses at the points (`x`, y, `z`) for each y of `ys`, in their order. They equal
@@ -533,12 +561,9 @@ impl<'a> Field<'a> {
     }
 }
 
-/// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times
-/// `shears`, all others times `others`.
-fn add_wave(sum: &mut [f64; 6], amplitudes: &[f64; 6], others: f64, shears: f64) {
-    for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
-        *s += a * if StressTensor::ODD_IN_X[i] { shears } else { others };
-    }
+/// Adds what a skin makes of stresses.
+fn add_skins(stresses: &mut [RoundStress], skins: &[StressTensor]) {
+    stresses.iter_mut().zip(skins).for_each(|(s, skin)| s.round.pressure += *skin);
 }
 
 /// One side of a line of points along y, from the contact's middle.

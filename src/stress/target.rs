@@ -1,7 +1,7 @@
 //! The amplitudes of the waves of stress at one point.
 
 use super::load::Load;
-use super::waves::{Influence, PartLoads, TractionLoads, Waves};
+use super::waves::{Influence, PartLoads, TractionLoads, Waves, shears};
 use super::work::Work;
 use crate::base::StressTensor;
 use crate::body::{Body, Stack, transition};
@@ -200,14 +200,15 @@ impl<'a> PartTarget<'a> {
             eta if body.half - eta < ON_FACE * body.half => body.half,
             eta => eta,
         };
+        let (lowest, shears) = (waves.k[0], shears(body, waves));
         let faces = body
             .end
             .freed
-            .then(|| Influence::of_faces(body, waves, eta, z, [body.half - eta, body.half + eta]));
+            .then(|| Influence::of_faces(body, shears, eta, z, [body.half - eta, body.half + eta]));
         let correction = loaded.gamma.map(|gamma| {
             let [near, far] = [body.half - eta, body.half + eta].map(|s| transition(s, z, gamma));
             let share = near + body.parity.sign() * far;
-            (Influence::of_surface(body, waves, body.half, z), share)
+            (Influence::of_surface(body, lowest, shears, body.half, z), share)
         });
         let plate = body.end.freed.then(|| PlateAt {
             kernels: waves.central.then(|| (loaded.plates.at(loaded.stack, waves, eta), part)),
@@ -218,12 +219,12 @@ impl<'a> PartTarget<'a> {
             loads,
             eta,
             behind: y < 0.0,
-            surface: Influence::of_surface(body, waves, eta, z),
+            surface: Influence::of_surface(body, lowest, shears, eta, z),
             faces,
             correction,
             plate,
             under: (body.along.is_some() && z < UNDER_SURFACE)
-                .then(|| Influence::of_surface(body, waves, eta, UNDER_SURFACE)),
+                .then(|| Influence::of_surface(body, lowest, shears, eta, UNDER_SURFACE)),
             central: waves.central,
             stresses: BlockStress::default(),
             traction: Default::default(),
@@ -368,8 +369,16 @@ impl<'a> PartTarget<'a> {
     }
 }
 
+/// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times
+/// `shears`, all others times `others`.
+pub(super) fn add_wave(sum: &mut [f64; 6], amplitudes: &[f64; 6], others: f64, shears: f64) {
+    for (i, (s, a)) in sum.iter_mut().zip(amplitudes).enumerate() {
+        *s += a * if StressTensor::ODD_IN_X[i] { shears } else { others };
+    }
+}
+
 /// The components of a load on the surface in the body's axes.
-fn in_body(stress: &WaveStress) -> [f64; 6] {
+pub(super) fn in_body(stress: &WaveStress) -> [f64; 6] {
     let WaveStress { xx, ww, dd, xw, xd, wd } = *stress;
     [xx, ww, dd, xw, xd, wd]
 }

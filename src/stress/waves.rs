@@ -191,7 +191,7 @@ impl PartLoads {
 
 /// The loads in blocks, from those on the surface and on the end faces at the wavenumbers `k`, a
 /// column for each; the end faces carry loads at the first `ends` of them.
-fn blocks(
+pub(super) fn blocks(
     body: &Body,
     (k, ends): (&[f64], usize),
     surface: &DMatrix<f64>,
@@ -265,7 +265,7 @@ fn nodal_loads<S: AsRef<[f64]>>(
 }
 
 /// Whether shears are ever wanted: in the plane x = 0 those of a traction alone.
-fn shears(body: &Body, waves: &Waves) -> bool {
+pub(super) fn shears(body: &Body, waves: &Waves) -> bool {
     !waves.central || body.along.is_some()
 }
 
@@ -299,19 +299,20 @@ enum Position {
 }
 
 impl Influence {
-    /// P on z = 0 and its images, from (`y`, `z`).
-    pub fn of_surface(body: &Body, waves: &Waves, y: f64, z: f64) -> Self {
+    /// P on z = 0 and its images, from (`y`, `z`), at wavenumbers from the `lowest` on, for all
+    /// stresses or for those without `shears`.
+    pub fn of_surface(body: &Body, lowest: f64, shears: bool, y: f64, z: f64) -> Self {
         let mut strips = Vec::with_capacity(body.most_strips());
-        body.for_strips(waves.k[0], y, z, |u, w| strips.push((u, w as f32)));
+        body.for_strips(lowest, y, z, |u, w| strips.push((u, w as f32)));
         let stencil = body.surface_stencil(y, z);
-        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, shears(body, waves))
+        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, shears)
     }
 
     /// q on the end faces at +H and -H, `depths` from them, from (`y`, `z`).
-    pub fn of_faces(body: &Body, waves: &Waves, y: f64, z: f64, depths: [f64; 2]) -> [Self; 2] {
+    pub fn of_faces(body: &Body, shears: bool, y: f64, z: f64, depths: [f64; 2]) -> [Self; 2] {
         let [near, far] = body.face_stencils(y, z);
         [(near, depths[0]), (far, depths[1])].map(|(stencil, depth)| {
-            Self::new(Side::Face, stencil, &[], &body.face.axis, z, depth, shears(body, waves))
+            Self::new(Side::Face, stencil, &[], &body.face.axis, z, depth, shears)
         })
     }
 
@@ -457,8 +458,10 @@ mod tests {
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
             let influences = |waves: &Waves| {
-                let faces = Influence::of_faces(body, waves, y, z, [body.half - y, body.half + y]);
-                [vec![Influence::of_surface(body, waves, y, z)], faces.into()].concat()
+                let shears = shears(body, waves);
+                let faces = Influence::of_faces(body, shears, y, z, [body.half - y, body.half + y]);
+                let surface = Influence::of_surface(body, waves.k[0], shears, y, z);
+                [vec![surface], faces.into()].concat()
             };
             let own = influences(&all);
             for (i, &k) in k.iter().enumerate() {

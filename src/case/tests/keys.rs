@@ -42,7 +42,7 @@ fn every_field() -> Case {
             detrend: Some(Detrend::Plane),
             samples: None,
         }),
-        accuracy: Accuracy { tolerance: 2e-3 },
+        accuracy: Accuracy { tolerance: 2e-3, first_order: true },
         cells: Some(Cells { half_width_m: 4e-4 }),
     }
 }
@@ -109,6 +109,7 @@ fn numbers(table: &Table, prefix: &str) -> BTreeMap<String, f64> {
                     "{path}"
                 );
             }
+            Value::Boolean(_) => assert_eq!(path, "accuracy.first_order"),
             other => panic!("{path} = {other} is neither a number nor a known text"),
         }
     }

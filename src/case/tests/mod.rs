@@ -56,8 +56,11 @@ fn a_case_survives_its_file() {
     for text in [DIMENSIONLESS, LOADED] {
         let case = parse(text).unwrap();
         assert_eq!(parse(&case.to_toml()).unwrap(), case);
-        let other =
-            Case { name: "other".into(), accuracy: Accuracy { tolerance: 1e-4 }, ..case.clone() };
+        let other = Case {
+            name: "other".into(),
+            accuracy: Accuracy { tolerance: 1e-4, first_order: true },
+            ..case.clone()
+        };
         assert!(case.is_same_problem(&other));
         let longer = Block { length_m: 1.001 * case.block.length_m, ..case.block.clone() };
         assert!(!case.is_same_problem(&Case { block: longer, ..case.clone() }));

@@ -1,0 +1,530 @@
+//! The skin of a body with a round surface: what lies between the surface and a tangent plane.
+//!
+//! A load's own field, behind its own tangent, carries the stresses xx, xy and yy along the surface
+//! beside it. There, at the distance u across the contact, the surface lies g = u^2 / (2 R) below
+//! the tangent, and the field has to do without this skin, whose membrane forces are g times those
+//! stresses: to first order in C / R the flat body carries minus their divergence as tractions,
+//! d/dx (g xx) + d/dy (g xy) along x and d/dx (g xy) + d/dy (g yy) along y. In plane strain there
+//! are none: xx vanishes beside the load. Near a free end they keep their size from C to the length
+//! of the body.
+//!
+//! With the amplitude S(k) of a stress under a unit load, g times it has the amplitude -S''(k) / (2
+//! R). The tractions along y are written as pairs of forces, [`Direction::Apart`], of the
+//! membrane's tension and the integral of what else acts along y: at a corner tensions vanish, but
+//! steeply.
+//!
+//! The surface itself moves along its normal by u_z + g e_zz - (u / R) u_x, behind a load's own
+//! tangent; the last two terms, with the displacement by the tractions, are what the round shape
+//! adds to the compliance. In plane strain this is -pi (1 - 2 nu) / ((1 - nu) k^2): the surface
+//! shrinks under the load, and is rounder there.
+//!
+//! All of this is a small part of the stresses, so that it has axes and wavenumbers of its own, few
+//! for any tolerance. Slopes along k ask for something else than the solution's: that nothing is
+//! cut off at one wavenumber and not at the next.
+
+use super::axes::Resolution;
+use super::finite::{Body, Rows};
+use super::fold::Fold;
+use super::part::Part;
+use super::stack::Placed;
+use super::stencil::Stencil;
+use crate::base::{Panels, Parity, Wavenumbers, linear};
+use crate::kernels::line_load::WaveStress;
+use crate::kernels::wave::{Direction, Places, WAVES, Wanted, WaveTable};
+use nalgebra::DMatrix;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// The resolution of a skin, but for its smallest wavenumber.
+const RESOLUTION: Resolution = Resolution {
+    order: 4,
+    corner: 0.05,
+    corner_ratio: 4.0,
+    ratio: 2.3,
+    modes: 0,
+    spacing: 0.0,
+    k_max: 9.0,
+    k_order: 4,
+    k_step: 3.0,
+    k_min: 0.0,
+    k_ratio: 5.0,
+    images: 1,
+    face_reach: 14.0,
+    reach: 14.0,
+};
+
+/// The least wavenumber times a body's half-length that has a skin: under longer waves the body is
+/// a plate whose surface carries no stress beside the load.
+const LONGEST: f64 = 0.35;
+
+/// Number of wavenumbers below that are known, for slopes along k.
+const BEFORE: usize = 2;
+
+/// Distance from an end face (C) within which the tension of the skin is taken to vanish, as it
+/// does on the face, and the displacement to be one: what the nodes at the corner have of them are
+/// differences of large numbers.
+const NEAR_FACE: f64 = 0.05;
+
+/// Number of wavenumbers whose polynomial in ln k gives slopes and values between them.
+const WIDTH: usize = 5;
+
+/// The contact line of a skin.
+#[derive(Debug, Clone, Copy)]
+pub struct SkinLine<'a> {
+    /// Its ends (C); the upper one alone counts if it is symmetric.
+    pub ends: [f64; 2],
+    /// The exponents of a pressure that grows towards them.
+    pub exponents: [Option<f64>; 2],
+    /// Kinks of the gap.
+    pub kinks: &'a [f64],
+    /// Whether it is one half of a contact that is symmetric about y = 0.
+    pub symmetric: bool,
+}
+
+/// The skin of a body at all wavenumbers.
+#[derive(Debug)]
+pub struct Skins {
+    /// Place of the body's middle (C).
+    pub middle: f64,
+    /// The contact line.
+    pub line: Panels,
+    /// The same from the body's middle.
+    pub fold: Fold,
+    /// The body on axes of its own, for each part of the load.
+    pub bodies: Vec<Body>,
+    /// The wavenumbers; those of the first panel have no skin.
+    pub wavenumbers: Wavenumbers,
+    /// Stresses of loads along x and apart from lines along x.
+    pub tables: [Arc<WaveTable>; 2],
+    /// The loads on each of the bodies at each wavenumber from the second panel on.
+    loads: Vec<Vec<Skin>>,
+    /// What it adds to the compliance, over the nodes of the line, at each
+    /// wavenumber from the second panel on.
+    compliances: Vec<DMatrix<f64>>,
+    /// The same at all longer waves.
+    longest: DMatrix<f64>,
+}
+
+/// The loads on a body at one wavenumber that its round surface adds, per C / R and per contact
+/// pressure at the contact nodes.
+#[derive(Debug, Clone)]
+pub struct Skin {
+    /// Traction along x at the surface nodes, with sin(k x).
+    pub along: DMatrix<f64>,
+    /// Forces apart from lines along x at the surface nodes.
+    pub apart: DMatrix<f64>,
+    /// P at the surface nodes, which with q frees the end faces of these tractions' stress.
+    pub surface: DMatrix<f64>,
+    /// q at the face nodes.
+    pub face: DMatrix<f64>,
+}
+
+impl Skins {
+    /// The skin of a body with free end faces and this C / R: beyond R from a load the surface is
+    /// no longer near its tangent plane, and waves that long have no skin.
+    pub fn new(line: SkinLine, Placed { middle, shape, end }: Placed, curvature: f64) -> Self {
+        let longest = (LONGEST / shape.half).max(curvature.abs());
+        let resolution = Resolution { k_min: longest, ..RESOLUTION };
+        let SkinLine { ends, exponents, kinks, symmetric } = line;
+        let (line, _) = resolution.contact_line(ends, exponents, kinks, symmetric);
+        let fold = Fold::new(&line, middle, symmetric);
+        let coarse = wavenumbers(&resolution, longest);
+        let first = resolution.k_order;
+        let k = &coarse.nodes()[first - BEFORE..];
+        let tables = [Direction::Along, Direction::Apart]
+            .map(|direction| WaveTable::shared(direction, shape.nu));
+        let bends = fold.parities().contains(&Parity::Odd);
+        let body = |&parity: &Parity| {
+            let part = Part { parity, bends, slides: false };
+            Body::new(fold.axis(), shape, end, part, &resolution)
+        };
+        let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
+        let mut compliances = vec![DMatrix::zeros(line.len(), line.len()); k.len() - BEFORE];
+        let mut longest = DMatrix::zeros(line.len(), line.len());
+        let loads = bodies.iter().map(|body| {
+            let own = OnSurface::new(body, k);
+            let all = compliances.iter_mut().enumerate().map(|(i, sum)| {
+                let (skin, [own, longer]) = own.skin(BEFORE + i, &tables);
+                fold.add(body.parity, &own, 1.0, sum);
+                if i == 0 {
+                    fold.add(body.parity, &longer, 1.0, &mut longest);
+                }
+                skin
+            });
+            all.collect()
+        });
+        let loads = loads.collect();
+        let wavenumbers = Wavenumbers::new(coarse, resolution.k_step);
+        Self { middle, line, fold, bodies, wavenumbers, tables, loads, compliances, longest }
+    }
+
+    /// The loads on body number `part` at coarse wavenumber number `i`; none of the first panel.
+    pub fn loads(&self, part: usize, i: usize) -> Option<&Skin> {
+        self.loads[part].get(i.checked_sub(self.wavenumbers.coarse().order())?)
+    }
+
+    /// Adds `factor` times what the skin adds to the compliance at each of the wavenumbers `k` to
+    /// its matrix of `totals`, over the nodes of another `axis` of the line.
+    pub fn add_compliances(
+        &self,
+        k: &[f64],
+        factor: f64,
+        axis: &Panels,
+        totals: &mut [DMatrix<f64>],
+    ) {
+        let coarse = self.wavenumbers.coarse();
+        let known = &coarse.nodes()[coarse.order()..];
+        let mut onto = DMatrix::<f64>::zeros(self.line.len(), axis.len());
+        for (i, y) in self.line.nodes().iter().enumerate() {
+            axis.load_interpolation(*y).for_each(|(j, w)| onto[(i, j)] += w);
+        }
+        let mut back = DMatrix::<f64>::zeros(axis.len(), self.line.len());
+        for (i, y) in axis.nodes().iter().enumerate() {
+            self.line.interpolation(*y).for_each(|(j, w)| back[(i, j)] += w);
+        }
+        for (k, total) in k.iter().zip(totals) {
+            let k = *k;
+            if k > known[known.len() - 1] {
+                let plane = factor * plane(self.bodies[0].nu, k);
+                (0..axis.len()).for_each(|i| total[(i, i)] += plane);
+                continue;
+            }
+            let mut own = DMatrix::zeros(self.line.len(), self.line.len());
+            let (first, places) = nearest(known, k);
+            let near = self.compliances[first..].iter().zip(0..places.len());
+            match k < known[0] {
+                true => own += &self.longest * factor,
+                false => near.for_each(|(compliance, j)| {
+                    own += compliance * (factor * derivatives(&places, j, k.ln())[0]);
+                }),
+            }
+            *total += &back * (own * &onto);
+        }
+    }
+}
+
+/// Panels of wavenumbers: one without a skin up to the `longest` wave's, then such that grow.
+fn wavenumbers(resolution: &Resolution, longest: f64) -> Panels {
+    let most = resolution.k_max / longest;
+    let panels = (most.ln() / resolution.k_ratio.ln()).ceil().max(1.0);
+    let breaks = (0..=panels as i32).map(|i| longest * most.powf(f64::from(i) / panels));
+    Panels::new([0.0].into_iter().chain(breaks).collect(), resolution.k_order)
+}
+
+/// What a round surface adds to the compliance in plane strain, per C / R.
+fn plane(nu: f64, k: f64) -> f64 {
+    -PI * (1.0 - 2.0 * nu) / ((1.0 - nu) * k * k)
+}
+
+/// What one wavenumber of a body leads to, per contact pressure.
+struct Wave {
+    /// P at the surface nodes, and q at the face nodes.
+    own: DMatrix<f64>,
+    q: DMatrix<f64>,
+    /// Normal stress on the faces per P, and on the surface per q.
+    faces: [DMatrix<f64>; 2],
+    /// (k / 2) e^(-k |u|) over the surface's loads at the offsets u from each of its nodes.
+    spread: DMatrix<f64>,
+    /// Displacement at the contact nodes per P.
+    displacement: DMatrix<f64>,
+    /// Stresses xx, yy and xy on the surface at its nodes.
+    stresses: [DMatrix<f64>; 3],
+}
+
+/// Waves whose compliance is wanted.
+#[derive(Debug, Clone, Copy)]
+enum Waves {
+    Own,
+    /// All that are longer, if none of these has a skin.
+    Longer,
+}
+
+/// The waves of a body, and its surface.
+struct OnSurface<'a> {
+    body: &'a Body,
+    k: &'a [f64],
+    waves: Vec<Wave>,
+    /// Derivatives and integrals along the surface.
+    slope: DMatrix<f64>,
+    integral: DMatrix<f64>,
+}
+
+impl<'a> OnSurface<'a> {
+    /// Those of a `body` at the ascending wavenumbers `k`.
+    fn new(body: &'a Body, k: &'a [f64]) -> Self {
+        let axis = &body.surface.axis;
+        let stencils: Vec<Stencil> =
+            axis.nodes().iter().map(|y| body.surface_stencil(*y, 0.0)).collect();
+        let wave = |&k: &f64| {
+            let mut waves = Wave::new(body, k);
+            let [even, odd] = spread(body, &stencils, k);
+            let free = 1.0 - 2.0 * body.nu;
+            let own = &waves.own;
+            let beside = free * &even * own;
+            waves.stresses = [-2.0 * body.nu * own - &beside, beside - own, free * odd * own];
+            waves.spread = even;
+            waves
+        };
+        let mut waves: Vec<Wave> = k.iter().map(wave).collect();
+        for (k, waves) in k.chunks(WAVES).zip(waves.chunks_mut(WAVES)) {
+            add_faces(body, k, waves);
+        }
+        Self { body, k, waves, slope: slopes(axis), integral: integrals(axis, body.parity) }
+    }
+
+    /// The skin at wavenumber number `i`, with what it adds to the compliance there and, if no
+    /// longer waves have a skin, under these.
+    fn skin(&self, i: usize, tables: &[Arc<WaveTable>; 2]) -> (Skin, [DMatrix<f64>; 2]) {
+        let (body, k) = (self.body, self.k[i]);
+        let (first, places) = nearest(self.k, k);
+        let (rows, columns) = self.waves[i].own.shape();
+        let zeros = || [0; 3].map(|_| DMatrix::zeros(rows, columns));
+        let (mut once, mut twice) = (zeros(), zeros());
+        for (j, wave) in self.waves[first..first + places.len()].iter().enumerate() {
+            let [_, by_ln, twice_by_ln] = derivatives(&places, j, k.ln());
+            for (component, stress) in wave.stresses.iter().enumerate() {
+                once[component] += stress * (by_ln / k);
+                twice[component] += stress * ((twice_by_ln - by_ln) / (k * k));
+            }
+        }
+        let [xx, yy, xy] = &twice;
+        let mut tension = yy.clone();
+        for (mut row, y) in tension.row_iter_mut().zip(body.surface.axis.nodes()) {
+            let square = ((body.half - y) / NEAR_FACE).powi(2);
+            row *= square / (1.0 + square);
+        }
+        let apart = -0.5 * k * (tension + k * (&self.integral * xy));
+        let along = -0.5 * (k * xx - &self.slope * xy);
+        let skin = self.waves[i].freed(body, k, tables, along, apart);
+        let compliance = |waves| self.compliance(i, [&once, &twice], &skin, waves);
+        let compliances = [compliance(Waves::Own), compliance(Waves::Longer)];
+        (skin, compliances)
+    }
+
+    /// What a `skin` adds to the compliance at wavenumber number `i`, from the first and the second
+    /// slope of the stresses along k.
+    fn compliance(
+        &self,
+        i: usize,
+        [once, twice]: [&[DMatrix<f64>; 3]; 2],
+        skin: &Skin,
+        waves: Waves,
+    ) -> DMatrix<f64> {
+        let (body, k, wave) = (self.body, self.k[i], &self.waves[i]);
+        let (nu, contact) = (body.nu, body.contact());
+        let rows = |matrix: &DMatrix<f64>| matrix.rows_range(contact.clone()).into_owned();
+        // E e_zz and E e_xx; zz is minus the pressure, the same at all wavenumbers.
+        let pressed = DMatrix::<f64>::identity(contact.len(), contact.len());
+        let down = |[xx, yy, _]: &[DMatrix<f64>; 3]| -nu * (rows(xx) + rows(yy));
+        let across = |[xx, yy, _]: &[DMatrix<f64>; 3]| rows(xx) - nu * rows(yy);
+        let strain = across(&wave.stresses) + nu * pressed;
+        // u_x = e_xx / k with sin(k x), and u sin(k u) is minus the slope of cos(k u) along k. The
+        // load's own place does not move: the sum over all waves, here in closed form, is zero.
+        let beside = match waves {
+            Waves::Own => -0.5 * down(twice) - across(once) / k + strain / (k * k),
+            Waves::Longer => -0.5 * down(once) / k - strain / (k * k),
+        };
+        let shear = 0.5 * PI * (1.0 - 2.0 * nu) / (1.0 - nu);
+        let dragged = 2.0 / k * (&wave.spread * (&skin.apart - &skin.along) - &skin.apart);
+        let mut all = PI / (1.0 - nu * nu) * beside
+            + shear * rows(&dragged)
+            + &wave.displacement * &skin.surface;
+        // A displacement is smooth at the corner, where stresses need not be.
+        let from_face: Vec<f64> =
+            body.surface.axis.nodes()[contact].iter().map(|y| body.half - y).collect();
+        let near = from_face.partition_point(|s| *s >= NEAR_FACE);
+        if near > 0 {
+            let inner = all.row(near - 1).into_owned();
+            (near..from_face.len()).for_each(|i| all.set_row(i, &inner));
+        }
+        all
+    }
+}
+
+impl Wave {
+    /// The waves of a `body` at the wavenumber `k`, without the stresses on the surface.
+    fn new(body: &Body, k: f64) -> Self {
+        let n = body.surface.axis.len();
+        let contact = body.contact();
+        let at = |i, j| f64::from(u8::from(i == contact.start + j));
+        let pressed = DMatrix::from_fn(n, contact.len(), at);
+        let to_face = body.surface_matrix(k, &body.kernel);
+        let from_face = body.faces_matrix(k, to_face.nrows());
+        let faces = [to_face, from_face];
+        let own = solved(&faces, pressed);
+        let none = || DMatrix::zeros(0, 0);
+        Self {
+            q: -(&faces[0] * &own),
+            own,
+            faces,
+            spread: none(),
+            displacement: body.displacement(k),
+            stresses: [none(), none(), none()],
+        }
+    }
+
+    /// The skin with the loads `along` and `apart`, and those that free the end faces of them.
+    fn freed(
+        &self,
+        body: &Body,
+        k: f64,
+        tables: &[Arc<WaveTable>; 2],
+        along: DMatrix<f64>,
+        apart: DMatrix<f64>,
+    ) -> Skin {
+        let [to_face, from_face] = &self.faces;
+        // sin(k x) is a quarter of a wave behind: stresses across the contact are - cos(k x).
+        let own = body.surface_matrix(k, &tables[1]) * &apart
+            - body.surface_matrix(k, &tables[0]) * &along;
+        let surface = solved(&self.faces, from_face * &own);
+        Skin { face: -(to_face * &surface + own), along, apart, surface }
+    }
+}
+
+/// P under the `loads` on the surface of a body with these matrices of its faces.
+fn solved([to_face, from_face]: &[DMatrix<f64>; 2], loads: DMatrix<f64>) -> DMatrix<f64> {
+    let n = from_face.nrows();
+    let (rows, columns) = loads.shape();
+    let system = DMatrix::identity(n, n) - from_face * to_face;
+    linear::solve(system, loads).unwrap_or_else(|| DMatrix::zeros(rows, columns))
+}
+
+/// Sums of (k / 2) e^(-k |u|) over the surface's loads at the offsets u of `stencils`, one for each
+/// of its nodes, and of the same with the sign of u: the stresses beside line loads.
+fn spread(body: &Body, stencils: &[Stencil], k: f64) -> [DMatrix<f64>; 2] {
+    let n = body.surface.axis.len();
+    let reach = body.reach(k);
+    let even = |u: f64| if u.abs() < reach { 0.5 * k * (-k * u.abs()).exp() } else { 0.0 };
+    let mut rows = [0; 2].map(|_| Rows::new(&body.surface, n));
+    for (stencil, &y) in stencils.iter().zip(body.surface.axis.nodes()) {
+        let values: Vec<f64> = stencil.offsets().iter().map(|u| even(*u)).collect();
+        let signs = stencil.offsets().iter().map(|u| if *u == 0.0 { 0.0 } else { u.signum() });
+        let signed: Vec<f64> = values.iter().zip(signs).map(|(v, sign)| sign * v).collect();
+        let mut strips = [0.0; 2];
+        body.for_strips(k, y, 0.0, |u, w| {
+            strips[0] += w * even(u);
+            strips[1] += w * u.signum() * even(u);
+        });
+        for ((rows, values), strips) in rows.iter_mut().zip([values, signed]).zip(strips) {
+            rows.push(|charges, nodes| {
+                stencil.add_row(&values, charges, nodes);
+                body.add_mean(strips, nodes);
+            });
+        }
+    }
+    rows.map(Rows::finish)
+}
+
+/// Adds the stresses on the surface under q on the end faces to those of up to [`WAVES`] `waves`.
+fn add_faces(body: &Body, k: &[f64], waves: &mut [Wave]) {
+    let mut own = [f64::INFINITY; WAVES];
+    own[..k.len()].copy_from_slice(k);
+    let of_wave = |wave: &Wave| [0; 3].map(|_| Rows::new(&body.face, wave.q.nrows()));
+    let mut rows: Vec<[Rows; 3]> = waves.iter().map(of_wave).collect();
+    let (unit, reach) = ([[1.0; WAVES]], body.reach(1.0));
+    for &y in body.surface.axis.nodes() {
+        let sides = body.face_stencils(y, 0.0);
+        let depths = [body.half - y, body.half + y];
+        let values = [0, 1].map(|side| {
+            let of_load = |u: &f64| {
+                let places = Places::new(vec![*u], depths[side], true);
+                let all = body.kernel.sum(&own, &places, reach, &unit, Wanted::ALL);
+                all.map(|(stress, _)| stress)
+            };
+            sides[side].offsets().iter().map(of_load).collect::<Vec<_>>()
+        });
+        for (wave, rows) in rows.iter_mut().enumerate() {
+            for (component, rows) in rows.iter_mut().enumerate() {
+                rows.push(|charges, nodes| {
+                    for ((stencil, values), into) in sides.iter().zip(&values).zip([-1.0, 1.0]) {
+                        let own = |stresses: &[WaveStress; WAVES]| {
+                            let s = &stresses[wave];
+                            [s.xx, s.dd, into * s.xd][component]
+                        };
+                        let own: Vec<f64> = values.iter().map(own).collect();
+                        stencil.add_row(&own, charges, nodes);
+                    }
+                });
+            }
+        }
+    }
+    for ((rows, wave), &k) in rows.into_iter().zip(waves).zip(k) {
+        let mut per_load = rows.map(Rows::finish);
+        add_plate(body, k, &mut per_load);
+        let sums = wave.stresses.iter_mut().zip(per_load);
+        sums.for_each(|(sum, per_load)| *sum += per_load * &wave.q);
+    }
+}
+
+/// Adds the plate's remainder to stresses on the surface per q.
+fn add_plate(body: &Body, k: f64, stresses: &mut [DMatrix<f64>; 3]) {
+    let waves = body.plate_waves(k);
+    if waves.is_empty() {
+        return;
+    }
+    let nodes = body.surface.axis.nodes();
+    let kernels: Vec<Vec<[f64; 6]>> = nodes.iter().map(|y| body.plate_kernel(&waves, *y)).collect();
+    let columns = stresses[0].ncols();
+    for (stress, component) in stresses.iter_mut().zip([0, 1, 3]) {
+        let at = |i: usize, l: usize| kernels[i][l][component];
+        let kernel = DMatrix::from_fn(nodes.len(), waves.len(), at);
+        *stress += kernel * body.cosines().columns(0, columns);
+    }
+}
+
+/// The first of the wavenumbers `known` whose polynomial in ln k serves `k`, and their logarithms.
+fn nearest(known: &[f64], k: f64) -> (usize, Vec<f64>) {
+    let count = WIDTH.min(known.len());
+    let above = known.partition_point(|other| *other < k);
+    let first = (above + 1).saturating_sub(count.div_ceil(2)).min(known.len() - count);
+    (first, known[first..first + count].iter().map(|k| k.ln()).collect())
+}
+
+/// Value, first and second derivative at `x` of the Lagrange polynomial number `j` of `nodes`.
+fn derivatives(nodes: &[f64], j: usize, x: f64) -> [f64; 3] {
+    // One factor after the other.
+    let (mut value, mut first, mut second) = (1.0, 0.0, 0.0);
+    for (i, node) in nodes.iter().enumerate() {
+        if i != j {
+            let slope = 1.0 / (nodes[j] - node);
+            let factor = (x - node) * slope;
+            second = second * factor + 2.0 * first * slope;
+            first = first * factor + value * slope;
+            value *= factor;
+        }
+    }
+    [value, first, second]
+}
+
+/// The derivative at the nodes of an `axis` of the panels' polynomials through the values there.
+fn slopes(axis: &Panels) -> DMatrix<f64> {
+    let order = axis.order();
+    let mut matrix = DMatrix::zeros(axis.len(), axis.len());
+    for from in (0..axis.len()).step_by(order) {
+        let own = &axis.nodes()[from..from + order];
+        for (i, x) in own.iter().enumerate() {
+            (0..order).for_each(|j| matrix[(from + i, from + j)] = derivatives(own, j, *x)[1]);
+        }
+    }
+    matrix
+}
+
+/// The integral of loads from the middle of the body to each node of its `axis`; of loads whose
+/// integral is even, `parity`, minus that from the node to the end.
+fn integrals(axis: &Panels, parity: Parity) -> DMatrix<f64> {
+    let order = axis.order();
+    let mut matrix = DMatrix::zeros(axis.len(), axis.len());
+    for (i, &y) in axis.nodes().iter().enumerate() {
+        let panel = axis.panel_of(y);
+        let [a, b] = axis.panel(panel);
+        let (part, others, sign) = match parity {
+            Parity::Even => ([y, b], (panel + 1) * order..axis.len(), -1.0),
+            Parity::Odd => ([a, y], 0..panel * order, 1.0),
+        };
+        for (j, w) in axis.integrals(panel, part).into_iter().enumerate() {
+            matrix[(i, panel * order + j)] = sign * w;
+        }
+        others.for_each(|j| matrix[(i, j)] = sign * axis.weights()[j]);
+    }
+    matrix
+}
