@@ -8,6 +8,7 @@ mod common;
 mod eccentric;
 mod ends;
 mod fields;
+mod first_order;
 mod imports;
 mod layering;
 mod profiles;

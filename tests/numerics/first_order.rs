@@ -1,0 +1,144 @@
+//! What round surfaces and free ends make of each other, to first order in C / R.
+
+use super::common::{case as straight, small};
+use edgeline::base::gauss_legendre;
+use edgeline::body::EdgeModel;
+use edgeline::case::{Case, Study, find_case};
+use edgeline::fem::FemResults;
+use edgeline::solve::{CellOptions, Options, Scene, Solution, check_cells, solve};
+use edgeline::stress::{BodyKind, EDGE, away_from_edges};
+use std::f64::consts::{FRAC_PI_2, PI};
+use std::path::Path;
+
+/// The case of this name, with or without the terms.
+fn case(name: &str, first_order: bool) -> Case {
+    let mut case = find_case(Path::new(name)).unwrap();
+    case.accuracy.first_order = first_order;
+    case
+}
+
+fn solved(case: &Case) -> Solution {
+    solve(case, &Options::new(EdgeModel::QuarterSpace)).unwrap()
+}
+
+/// In plane strain the surface of a roller shrinks under the pressure, in proportion to it, and is
+/// rounder there: with e = (C / R) (1 - nu1^2) E* / E1 (1 - 2 nu) / (2 (1 - nu)) the gap's slope is
+/// 2 (x + e F), F the load from 0 to x. Under the slope a T_1 + e sum f_n T_n the pressure is
+/// sqrt(1 - t^2) times U_0 (a + e f_1) and others that carry no load, so that a = 1 - e f_1 / 2.
+#[test]
+fn the_middle_of_a_long_contact_is_as_narrow_as_in_plane_strain() {
+    let [flat, round] = [false, true].map(|order| {
+        let mut case = straight(1e-3, 200.0, 1.0);
+        case.accuracy.first_order = order;
+        let lines = solved(&case).line_loads;
+        lines[lines.len() / 2]
+    });
+    let (nu, curvature) = (0.3, 2.0 * (1e-3 / PI).sqrt());
+    let e = 0.5 * curvature * (1.0 - 2.0 * nu) / (2.0 * (1.0 - nu));
+    // F of the Hertz pressure at the cosine of an angle, and its first coefficient.
+    let load = |angle: f64| 0.5 * (angle.cos() * angle.sin() + FRAC_PI_2 - angle);
+    let (nodes, weights) = gauss_legendre(40);
+    let angles = nodes.iter().map(|g| FRAC_PI_2 * (1.0 + g)).zip(&weights);
+    let first: f64 = angles.map(|(angle, w)| w * load(angle) * angle.cos()).sum();
+    // The ends move a little load away from the middle.
+    let want = -0.5 * e * first + 0.5 * (round.load / flat.load - 1.0);
+    let got = round.half_width / flat.half_width - 1.0;
+    small(
+        "change of the half-width, in that of plane strain, less 1",
+        (got / want - 1.0).abs(),
+        0.04,
+    );
+    assert!(want < -2e-3, "{want}");
+}
+
+/// Mirror images have mirrored pressures, and those of a body that is not symmetric about the
+/// contact's middle come from both of its parts.
+#[test]
+fn mirror_images_are_mirrored() {
+    let [left, right] = [-1.0, 1.0].map(|side| {
+        let mut case = case("eccentric-half", true).with_tolerance(5e-3);
+        case.load.eccentricity_m = case.load.eccentricity_m.map(|y| side * y.abs());
+        solved(&case)
+    });
+    for (i, line) in left.line_loads.iter().enumerate() {
+        let other = &right.line_loads[right.line_loads.len() - 1 - i];
+        assert!((line.y + other.y).abs() < 1e-9, "{} {}", line.y, other.y);
+        small("load per length", (line.load - other.load).abs(), 1e-5);
+    }
+    for body in BodyKind::ALL {
+        let of = |solution: &Solution, name: &str| {
+            solution.curves.curve(body, name).unwrap().stress.clone()
+        };
+        let pairs = [("depth-end", "depth-end-neg"), ("depth-0.9", "depth-0.9-neg")];
+        for (one, other) in pairs {
+            for (a, b) in of(&left, one).iter().zip(of(&right, other)).skip(2) {
+                small("xx", (a.xx - b.xx).abs(), 1e-4);
+                small("yz", (a.yz + b.yz).abs(), 1e-4);
+            }
+        }
+    }
+}
+
+/// The corners of the study with the largest C / R, and its middle, against recorded finite
+/// elements: limits are a third to a half of the differences without these terms.
+#[test]
+fn round_rollers_have_the_stresses_of_finite_elements() {
+    let study = Study::built_in();
+    let wide = |case: &&Case| case.name.contains("w1e-3") || case.name == "centre";
+    for case in study.cases().filter(wide) {
+        assert!(case.accuracy.first_order);
+        let recorded = FemResults::embedded_of(case).unwrap().expect("a record");
+        let solution = solved(case);
+        let half = 0.5 * case.roller.length_m / case.hertz().c_m;
+        let counts = |at: [f64; 3]| {
+            let on_rim = at[2] == 0.0 && (at[0].abs() - 1.0).abs() < 0.06;
+            away_from_edges(at, [-half, half], EDGE) && !on_rim
+        };
+        let (mut worst, mut largest) = ([0.0f64; 2], [0.0f64; 2]);
+        for want in &recorded.finest().curves.stress {
+            let got = solution.curves.curve(want.body, &want.name).expect("the same curves");
+            let body = usize::from(want.body == BodyKind::Roller);
+            for component in 0..6 {
+                let pairs = want.at.iter().zip(want.stress.iter().zip(&got.stress));
+                let off: Vec<f64> = pairs
+                    .filter(|(at, _)| counts(**at))
+                    .map(|(_, (a, b))| a.components()[component] - b.components()[component])
+                    .collect();
+                let rms = (off.iter().map(|d| d * d).sum::<f64>() / off.len() as f64).sqrt();
+                worst[body] = worst[body].max(rms);
+                largest[body] = off.iter().fold(largest[body], |m, d| m.max(d.abs()));
+            }
+        }
+        let name = &case.name;
+        small(&format!("{name}: block, root mean square"), worst[0], 0.004);
+        small(&format!("{name}: roller, root mean square"), worst[1], 0.006);
+        small(&format!("{name}: block, largest"), largest[0], 0.010);
+        small(&format!("{name}: roller, largest"), largest[1], 0.014);
+    }
+}
+
+/// Cells know flat bodies; models without free end faces have nothing of these terms, and share
+/// their solutions as before.
+#[test]
+fn only_free_ends_of_the_line_engine_have_the_terms() {
+    let case = case("half-short", true);
+    let checked = |method| check_cells(&case, method, &CellOptions::default());
+    let said = checked(EdgeModel::QuarterSpace).unwrap_err().to_string();
+    assert!(said.contains("accuracy.first_order") && said.contains("--engine line"), "{said}");
+    checked(EdgeModel::Guilbault).unwrap();
+    let heavier = |case: &Case| {
+        let factors = case.factors();
+        let other = straight(2.0 * factors.load, factors.slenderness, factors.length_ratio);
+        Case { accuracy: case.accuracy, ..other }
+    };
+    for (model, first_order, same) in [
+        (EdgeModel::QuarterSpace, true, false),
+        (EdgeModel::QuarterSpace, false, true),
+        (EdgeModel::Mirror, true, true),
+    ] {
+        let mut case = straight(3e-4, 5.0, 0.5);
+        case.accuracy.first_order = first_order;
+        let key = |case: &Case| Scene::new(case, model, None).key();
+        assert_eq!(key(&case) == key(&heavier(&case)), same, "{model} {first_order}");
+    }
+}
