@@ -113,8 +113,8 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
 }
 
 /// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric`
-/// drops most within 0.1 C of the end, where its meshes differ by 0.03 p0; in `designed-roller` it
-/// is what the curved gap adds (`docs/fem.md`).
+/// drops most within 0.1 C of the end, where its meshes differ by 0.03 p0; the block's uniform
+/// sigma_xx of `designed-roller` is off (`docs/fem.md`).
 #[test]
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
@@ -136,7 +136,7 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
-        within(case, [0.005, 0.01, 0.013], 0.04);
+        within(case, [0.003, 0.0095, 0.0095], 0.04);
     }
 }
 
