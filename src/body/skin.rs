@@ -144,12 +144,13 @@ impl Skins {
         let loads = bodies.iter().map(|body| {
             let own = OnSurface::new(body, k);
             let all = compliances.iter_mut().enumerate().map(|(i, sum)| {
-                let (skin, [own, longer]) = own.skin(BEFORE + i, &tables);
-                fold.add(body.parity, &own, 1.0, sum);
+                let wave = own.skin(BEFORE + i, &tables);
+                fold.add(body.parity, &own.compliance(&wave, Waves::Own), 1.0, sum);
                 if i == 0 {
+                    let longer = own.compliance(&wave, Waves::Longer);
                     fold.add(body.parity, &longer, 1.0, &mut longest);
                 }
-                skin
+                wave.skin
             });
             all.collect()
         });
@@ -182,24 +183,27 @@ impl Skins {
         for (i, y) in axis.nodes().iter().enumerate() {
             self.line.interpolation(*y).for_each(|(j, w)| back[(i, j)] += w);
         }
-        for (k, total) in k.iter().zip(totals) {
-            let k = *k;
+        for (&k, total) in k.iter().zip(totals) {
             if k > known[known.len() - 1] {
                 let plane = factor * plane(self.bodies[0].nu, k);
                 (0..axis.len()).for_each(|i| total[(i, i)] += plane);
-                continue;
+            } else {
+                *total += &back * (self.compliance(known, k) * factor * &onto);
             }
-            let mut own = DMatrix::zeros(self.line.len(), self.line.len());
-            let (first, places) = nearest(known, k);
-            let near = self.compliances[first..].iter().zip(0..places.len());
-            match k < known[0] {
-                true => own += &self.longest * factor,
-                false => near.for_each(|(compliance, j)| {
-                    own += compliance * (factor * derivatives(&places, j, k.ln())[0]);
-                }),
-            }
-            *total += &back * (own * &onto);
         }
+    }
+
+    /// What it adds to the compliance at a wavenumber `k` up to the last of those `known`.
+    fn compliance(&self, known: &[f64], k: f64) -> DMatrix<f64> {
+        if k < known[0] {
+            return self.longest.clone();
+        }
+        let (first, places) = nearest(known, k);
+        let mut sum = DMatrix::zeros(self.line.len(), self.line.len());
+        for (j, compliance) in self.compliances[first..first + places.len()].iter().enumerate() {
+            sum += compliance * derivatives(&places, j, k.ln())[0];
+        }
+        sum
     }
 }
 
@@ -229,6 +233,15 @@ struct Wave {
     displacement: DMatrix<f64>,
     /// Stresses xx, yy and xy on the surface at its nodes.
     stresses: [DMatrix<f64>; 3],
+}
+
+/// A skin at one wavenumber.
+struct SkinWave {
+    number: usize,
+    /// The first and the second slope along k of the stresses on the surface.
+    once: [DMatrix<f64>; 3],
+    twice: [DMatrix<f64>; 3],
+    skin: Skin,
 }
 
 /// Waves whose compliance is wanted.
@@ -272,9 +285,8 @@ impl<'a> OnSurface<'a> {
         Self { body, k, waves, slope: slopes(axis), integral: integrals(axis, body.parity) }
     }
 
-    /// The skin at wavenumber number `i`, with what it adds to the compliance there and, if no
-    /// longer waves have a skin, under these.
-    fn skin(&self, i: usize, tables: &[Arc<WaveTable>; 2]) -> (Skin, [DMatrix<f64>; 2]) {
+    /// The skin at wavenumber number `i`.
+    fn skin(&self, i: usize, tables: &[Arc<WaveTable>; 2]) -> SkinWave {
         let (body, k) = (self.body, self.k[i]);
         let (first, places) = nearest(self.k, k);
         let (rows, columns) = self.waves[i].own.shape();
@@ -296,21 +308,13 @@ impl<'a> OnSurface<'a> {
         let apart = -0.5 * k * (tension + k * (&self.integral * xy));
         let along = -0.5 * (k * xx - &self.slope * xy);
         let skin = self.waves[i].freed(body, k, tables, along, apart);
-        let compliance = |waves| self.compliance(i, [&once, &twice], &skin, waves);
-        let compliances = [compliance(Waves::Own), compliance(Waves::Longer)];
-        (skin, compliances)
+        SkinWave { number: i, once, twice, skin }
     }
 
-    /// What a `skin` adds to the compliance at wavenumber number `i`, from the first and the second
-    /// slope of the stresses along k.
-    fn compliance(
-        &self,
-        i: usize,
-        [once, twice]: [&[DMatrix<f64>; 3]; 2],
-        skin: &Skin,
-        waves: Waves,
-    ) -> DMatrix<f64> {
-        let (body, k, wave) = (self.body, self.k[i], &self.waves[i]);
+    /// What a skin adds to the compliance at its own wavenumber or under longer waves.
+    fn compliance(&self, own: &SkinWave, waves: Waves) -> DMatrix<f64> {
+        let SkinWave { number, once, twice, skin } = own;
+        let (body, k, wave) = (self.body, self.k[*number], &self.waves[*number]);
         let (nu, contact) = (body.nu, body.contact());
         let rows = |matrix: &DMatrix<f64>| matrix.rows_range(contact.clone()).into_owned();
         // E e_zz and E e_xx; zz is minus the pressure, the same at all wavenumbers.

@@ -4,7 +4,8 @@ use super::deep;
 use super::lines::{self, Stresses};
 use super::scene::Scene;
 use super::trial::{
-    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, own_ends, problem, touch,
+    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, own_ends, part_of, problem,
+    touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Resolution, Skins, Stack};
@@ -200,10 +201,7 @@ impl SolvedScene {
 
     /// The body, shared by identical bodies.
     fn body(&self, kind: BodyKind) -> &Stack {
-        match kind {
-            BodyKind::Block => &self.bodies[0],
-            BodyKind::Roller => &self.bodies[self.bodies.len() - 1],
-        }
+        part_of(&self.bodies, kind)
     }
 
     /// Whether the contact iteration reached its tolerance, and the search for the contact's ends
@@ -236,11 +234,7 @@ impl SolvedScene {
         let open = [if self.scene.is_symmetric() { right } else { left }, right];
         let contact = ContactEnds { at: self.own.pressure.ends(), open };
         let contact = self.scene.may_end().then_some(contact);
-        let skins = match kind {
-            BodyKind::Block => self.skins.first(),
-            BodyKind::Roller => self.skins.last(),
-        };
-        let skins = skins.and_then(Option::as_ref);
+        let skins = part_of(&self.skins, kind).as_ref();
         BodyField::new(field.with_skins(skins).following_contact(contact), self.unit)
     }
 

@@ -116,6 +116,15 @@ pub(super) struct Parts {
     pub condition: f64,
 }
 
+/// The part of a body among `parts`, which are the block's and the roller's, or one for both if they
+/// are alike.
+pub(super) fn part_of<T>(parts: &[T], kind: BodyKind) -> &T {
+    match kind {
+        BodyKind::Block => &parts[0],
+        BodyKind::Roller => &parts[parts.len() - 1],
+    }
+}
+
 /// A contact whose ends are found.
 pub(super) struct Settled {
     pub line: Line,
@@ -217,7 +226,6 @@ impl Trial<'_> {
         let halves = [scene.bodies.block.half, scene.bodies.roller.half];
         let wavenumbers = resolution.wavenumbers_of(&halves, parity);
         let coarse = wavenumbers.coarse();
-        let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
         // Bodies with the same ends and Poisson's ratio share one computation.
         let distinct =
             if scene.bodies_are_alike() { &BodyKind::ALL[..1] } else { &BodyKind::ALL[..] };
@@ -245,14 +253,15 @@ impl Trial<'_> {
         let condition = checked_condition(&bodies)?;
         let compliances = (0..coarse.len()).map(|i| {
             let mut total = DMatrix::zeros(axis.len(), axis.len());
-            bodies[0].add_compliance(i, block.share, &mut total);
-            bodies[bodies.len() - 1].add_compliance(i, roller.share, &mut total);
+            for kind in BodyKind::ALL {
+                let share = scene.bodies[kind].share;
+                part_of(&bodies, kind).add_compliance(i, share, &mut total);
+            }
             total
         });
         let mut compliances: Vec<DMatrix<f64>> = compliances.collect();
         for kind in BodyKind::ALL.into_iter().filter(|kind| curvatures[*kind] != 0.0) {
-            let own = if kind == BodyKind::Block { skins.first() } else { skins.last() };
-            let skins = own.and_then(Option::as_ref).expect("a round body has a skin");
+            let skins = part_of(&skins, kind).as_ref().expect("a round body has a skin");
             let factor = curvatures[kind] * scene.bodies[kind].share;
             skins.add_compliances(coarse.nodes(), factor, &axis, &mut compliances);
         }
@@ -353,10 +362,10 @@ impl Trial<'_> {
         let (widths, modes) = (contact.half_widths.clone(), contact.coefficients.clone());
         let pressure = Pressure::new(parts.axis.clone(), scene.is_symmetric(), widths, modes);
         let moments = pressure.moments(&parts.wavenumbers);
-        let [block, roller] =
-            [&parts.bodies[0], &parts.bodies[parts.bodies.len() - 1]].map(|body| {
-                Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
-            });
+        let [block, roller] = BodyKind::ALL.map(|kind| {
+            let body = part_of(&parts.bodies, kind);
+            Field::new(body, &parts.wavenumbers, &pressure, &moments, None, scene.tolerance)
+        });
         deep::tilt(scene, [&block, &roller], &touch(&pressure, contact), scene.depth)
     }
 }

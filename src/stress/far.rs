@@ -58,10 +58,15 @@ impl Field<'_> {
     /// load's resultants.
     pub(super) fn is_far(&self, x: f64, z: f64) -> bool {
         let (reach, freed) = (FAR * self.stack.body().half, self.stack.body().end.freed);
-        let beside = if freed { BESIDE.max(reach) } else { reach };
-        let distant = (x * reach / beside).hypot(z) > reach;
+        let distant = (x * reach / self.beside()).hypot(z) > reach;
         // Forces along a half-space's surface have no formula here.
         distant && (freed || self.traction.is_none())
+    }
+
+    /// The distance beside the contact (C) beyond which a point on the surface is far.
+    pub(super) fn beside(&self) -> f64 {
+        let reach = FAR * self.stack.body().half;
+        if self.stack.body().end.freed { BESIDE.max(reach) } else { reach }
     }
 
     /// The stress at a far point under the `pieces` of the load.

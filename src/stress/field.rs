@@ -129,7 +129,8 @@ impl<'a> Field<'a> {
     /// The same field of a body with a round surface, whose `skins` belong to the pressure's line.
     #[must_use]
     pub fn with_skins(self, skins: Option<&'a Skins>) -> Self {
-        Self { skin: skins.map(|skins| SkinField::new(skins, self.pressure)), ..self }
+        let reach = [self.beside(), FAR_BELOW * self.stack.body().half];
+        Self { skin: skins.map(|skins| SkinField::new(skins, self.pressure, reach)), ..self }
     }
 
     /// The same field, where what a round surface adds follows the local contact between these
@@ -149,11 +150,6 @@ impl<'a> Field<'a> {
         };
         let local = self.pressure.local_contact(LocalContact::place(y, contact.at));
         local.on_line(y, contact, body)
-    }
-
-    /// The skin, unless the depth `z` is beyond it.
-    fn skin_near(&self, z: f64) -> Option<&SkinField<'a>> {
-        self.skin.as_ref().filter(|_| z <= FAR_BELOW * self.stack.body().half)
     }
 
     /// Whether the contact is symmetric about y = 0.
@@ -240,7 +236,7 @@ impl<'a> Field<'a> {
         let contact = self.local_contact(y);
         let flat = |all: &[f64], places: &[f64]| vec![self.near_or_far(y, z, all, places)];
         let mut all = rounded(xs, &[z], &contact, off_middle, flat).swap_remove(0);
-        if let Some(skin) = self.skin_near(z) {
+        if let Some(skin) = &self.skin {
             add_skins(&mut all, &skin.at(y, z, xs));
         }
         all
@@ -255,7 +251,7 @@ impl<'a> Field<'a> {
                 false => self.down(all, y, zs),
             }
         });
-        if let Some(skin) = self.skin_near(zs.iter().copied().fold(0.0, f64::max)) {
+        if let Some(skin) = &self.skin {
             let skins = skin.down(xs, y, zs);
             rows.iter_mut().zip(skins).for_each(|(row, skins)| add_skins(row, &skins));
         }
@@ -318,7 +314,7 @@ impl<'a> Field<'a> {
             RoundStress::new(0.0, z, s, FlatStress::default(), &self.local_contact(*y))
         };
         let mut all: Vec<RoundStress> = flat.into_iter().zip(ys).map(round).collect();
-        if let Some(skin) = self.skin_near(z) {
+        if let Some(skin) = &self.skin {
             add_skins(&mut all, &skin.along(z, ys));
         }
         all

@@ -12,7 +12,7 @@ mod load;
 mod pressure;
 mod quantity;
 pub mod round;
-pub mod skin;
+mod skin;
 mod target;
 mod waves;
 mod work;

@@ -1,7 +1,7 @@
 //! The stresses of the loads that a body's round surface adds, per C / R; see [`Skins`].
 
 use super::load::Load;
-use super::target::{ON_FACE, add_wave, in_body};
+use super::target::{INTO_FACES, add_side, add_wave, from_face, in_body, off_middle};
 use super::waves::{Influence, LoadBlock, blocks};
 use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
 use crate::body::{Body, Skin, Skins};
@@ -25,6 +25,8 @@ const NODES_PER_E: f64 = 1.3;
 pub(super) struct SkinField<'a> {
     skins: &'a Skins,
     pressure: &'a dyn Load,
+    /// The distance beside the contact and the depth (C) beyond which its stresses are not felt.
+    reach: [f64; 2],
     /// For each node of the skin's line the nodes of the pressure's, with weights.
     places: Vec<Vec<(usize, f64)>>,
     /// The loads for the plane x = 0.
@@ -58,8 +60,9 @@ struct SkinLoads {
 }
 
 impl<'a> SkinField<'a> {
-    /// The field of these `skins` under `pressure`.
-    pub fn new(skins: &'a Skins, pressure: &'a dyn Load) -> Self {
+    /// The field of these `skins` under `pressure`, within the `reach` beside the contact and below
+    /// it (C).
+    pub fn new(skins: &'a Skins, pressure: &'a dyn Load, reach: [f64; 2]) -> Self {
         let places: Vec<_> = skins.line.nodes().iter().map(|y| pressure.neighbours(*y)).collect();
         let numbers = &skins.wavenumbers;
         let transforms = transforms(pressure, &places, numbers.fine().nodes());
@@ -71,7 +74,7 @@ impl<'a> SkinField<'a> {
         let contact = moments.rows_range(order..).into_owned();
         let own = SkinWaves::new(skins, k, weights, contact, |i| (i + order, vec![1.0]));
         let central = Arc::new(SkinWaves { central: true, ..own });
-        Self { skins, pressure, places, central, all: Mutex::default() }
+        Self { skins, pressure, reach, places, central, all: Mutex::default() }
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
@@ -102,18 +105,28 @@ impl<'a> SkinField<'a> {
     /// Stresses at the points (x, `y`, z): for each z of `zs` those for each x of `xs`, in their
     /// order. They vary with ln z.
     pub fn down(&self, xs: &[f64], y: f64, zs: &[f64]) -> Vec<Vec<StressTensor>> {
-        let places: Vec<f64> = zs.iter().map(|z| z.max(LEAST_DEPTH).ln()).collect();
-        let all = sampled(&places, |t| self.below(y, t.exp(), xs));
-        let meeting = |(row, z): (Vec<StressTensor>, &f64)| {
-            row.into_iter().map(|own| self.meeting(own, y, *z)).collect()
+        let [beside, deepest] = self.reach;
+        let near = |x: &f64| x.abs() <= beside;
+        let own: Vec<f64> = xs.iter().copied().filter(near).collect();
+        let felt = zs.iter().filter(|z| **z <= deepest && !own.is_empty());
+        let places: Vec<f64> = felt.map(|z| z.max(LEAST_DEPTH).ln()).collect();
+        let mut rows = sampled(&places, |t| self.below(y, t.exp(), &own)).into_iter();
+        let of_depth = |z: &f64| {
+            let row = if *z <= deepest { rows.next() } else { None };
+            let mut row = row.into_iter().flatten().map(|s| self.meeting(s, y, *z));
+            let at = |x: &f64| if near(x) { row.next() } else { None };
+            xs.iter().map(at).map(Option::unwrap_or_default).collect()
         };
-        all.into_iter().zip(zs).map(meeting).collect()
+        zs.iter().map(of_depth).collect()
     }
 
     /// Stresses at the points (0, y, `z`) for each y of `ys`, in their order. They vary with the
     /// distance from the contact's end on the same side, in that of the depth.
     pub fn along(&self, z: f64, ys: &[f64]) -> Vec<StressTensor> {
         let depth = z.max(LEAST_DEPTH);
+        if z > self.reach[1] {
+            return vec![StressTensor::default(); ys.len()];
+        }
         let [from, to] = self.pressure.ends();
         let (middle, end) = (0.5 * (from + to), 0.5 * (to - from));
         let mut stresses = vec![StressTensor::default(); ys.len()];
@@ -132,8 +145,7 @@ impl<'a> SkinField<'a> {
 
     /// Stresses at the points (x, `y`, `z`) for each x of `xs`, in their order.
     pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let all = self.below(y, z.max(LEAST_DEPTH), xs);
-        all.into_iter().map(|own| self.meeting(own, y, z)).collect()
+        self.down(xs, y, &[z]).swap_remove(0)
     }
 
     /// A stress at `y` and the depth `z` from that at [`LEAST_DEPTH`] or at the same depth: free
@@ -141,14 +153,14 @@ impl<'a> SkinField<'a> {
     fn meeting(&self, mut s: StressTensor, y: f64, z: f64) -> StressTensor {
         let share = (z / LEAST_DEPTH).min(1.0);
         [&mut s.zz, &mut s.xz, &mut s.yz].into_iter().for_each(|stress| *stress *= share);
-        let half = self.skins.bodies[0].half;
-        if half - (y - self.skins.middle).abs() < ON_FACE * half {
+        let body = &self.skins.bodies[0];
+        if off_middle(body, y - self.skins.middle) == body.half {
             (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0);
         }
         s
     }
 
-    /// [`SkinField::at`] at least [`LEAST_DEPTH`] deep.
+    /// [`SkinField::at`] at least [`LEAST_DEPTH`] deep, within reach.
     fn below(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
@@ -179,7 +191,7 @@ fn sampled(places: &[f64], at: impl Fn(f64) -> Vec<StressTensor>) -> Vec<Vec<Str
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| [low.min(*t), high.max(*t)]);
     let nodes = (NODES_PER_E * (to - from)).max(0.0).ceil() as usize + 2;
-    if places.len() <= nodes || from == to {
+    if places.len() <= nodes || from >= to {
         return places.iter().map(|t| at(*t)).collect();
     }
     let axis = Panels::new(vec![from, to], nodes);
@@ -290,10 +302,7 @@ impl<'a> SkinTarget<'a> {
         z: f64,
     ) -> Self {
         let y = y - skins.middle;
-        let eta = match y.abs() {
-            eta if body.half - eta < ON_FACE * body.half => body.half,
-            eta => eta,
-        };
+        let eta = off_middle(body, y);
         let (lowest, shears) = (waves.k[0], !waves.central);
         let depths = [body.half - eta, body.half + eta];
         Self {
@@ -341,17 +350,12 @@ impl<'a> SkinTarget<'a> {
             *sum += if StressTensor::ODD_IN_X[component] { own } else { -own };
         }
         sum.iter_mut().zip(in_body(&surface)).for_each(|(sum, own)| *sum += own);
-        for (s, into) in [(near, -1.0), (far, 1.0)] {
-            let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
-            sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
+        for (face, into) in [near, far].iter().zip(INTO_FACES) {
+            sum.iter_mut().zip(from_face(face, into)).for_each(|(sum, own)| *sum += own);
         }
         let kernel = self.body.plate_kernel(&self.loads.plate_waves[i], self.eta);
         let plate = Body::plate_stress(&kernel, &self.loads.plate[i], &self.phases);
         sum.iter_mut().zip(plate).for_each(|(sum, own)| *sum += own);
-        let sign = if self.behind { self.body.parity.sign() } else { 1.0 };
-        for (component, (total, own)) in total.iter_mut().zip(sum).enumerate() {
-            let turned = self.behind && StressTensor::ODD_IN_Y[component];
-            *total += if turned { -sign * own } else { sign * own };
-        }
+        add_side(self.body, self.behind, total, sum);
     }
 }

@@ -195,11 +195,7 @@ impl<'a> PartTarget<'a> {
     fn new(loaded: &Loaded<'a>, waves: &'a Waves, part: usize, y: f64, z: f64) -> Self {
         let (body, loads) = (&loaded.stack.parts()[part].0, &waves.parts[part]);
         let y = y - loaded.stack.middle;
-        // A distance from the face of the size of rounding has no quadrature.
-        let eta = match y.abs() {
-            eta if body.half - eta < ON_FACE * body.half => body.half,
-            eta => eta,
-        };
+        let eta = off_middle(body, y);
         let (lowest, shears) = (waves.k[0], shears(body, waves));
         let faces = body
             .end
@@ -245,11 +241,7 @@ impl<'a> PartTarget<'a> {
 
     /// Adds the amplitudes `own` of this part to `sum`, on the point's side of the body's middle.
     fn add_to(&self, sum: &mut [f64; 6], own: [f64; 6]) {
-        let sign = if self.behind { self.body.parity.sign() } else { 1.0 };
-        for (component, (sum, own)) in sum.iter_mut().zip(own).enumerate() {
-            let turned = self.behind && StressTensor::ODD_IN_Y[component];
-            *sum += if turned { -sign * own } else { sign * own };
-        }
+        add_side(self.body, self.behind, sum, own);
     }
 
     /// Sums the loads of the [`WAVES`] wavenumbers from number `first` on.
@@ -349,10 +341,9 @@ impl<'a> PartTarget<'a> {
         amplitudes: &mut [f64; 6],
     ) -> usize {
         let mut done = 0;
-        for (face, into) in faces.iter().zip([-1.0, 1.0]) {
+        for (face, into) in faces.iter().zip(INTO_FACES) {
             let (s, count) = face[i % WAVES];
-            let own = [s.xx, s.dd, s.ww, into * s.xd, s.xw, into * s.wd];
-            amplitudes.iter_mut().zip(own).for_each(|(a, f)| *a += f);
+            amplitudes.iter_mut().zip(from_face(&s, into)).for_each(|(a, f)| *a += f);
             done += count;
         }
         if let Some(PlateAt { kernels, phases }) = &self.plate {
@@ -367,6 +358,34 @@ impl<'a> PartTarget<'a> {
         }
         done
     }
+}
+
+/// The distance of `y`, from the middle of a `body`, from that middle. A distance from the face of
+/// the size of rounding has no quadrature.
+pub(super) fn off_middle(body: &Body, y: f64) -> f64 {
+    match y.abs() {
+        eta if body.half - eta < ON_FACE * body.half => body.half,
+        eta => eta,
+    }
+}
+
+/// Adds the amplitudes `own` of a part of the loads on a `body` to `sum`, on the other side of its
+/// middle if the point lies `behind` it.
+pub(super) fn add_side(body: &Body, behind: bool, sum: &mut [f64; 6], own: [f64; 6]) {
+    let sign = if behind { body.parity.sign() } else { 1.0 };
+    for (component, (sum, own)) in sum.iter_mut().zip(own).enumerate() {
+        let turned = behind && StressTensor::ODD_IN_Y[component];
+        *sum += if turned { -sign * own } else { sign * own };
+    }
+}
+
+/// The direction of y into the body at its end faces at +H and at -H.
+pub(super) const INTO_FACES: [f64; 2] = [-1.0, 1.0];
+
+/// The components of a load on an end face in the body's axes; `into` is one of [`INTO_FACES`].
+pub(super) fn from_face(stress: &WaveStress, into: f64) -> [f64; 6] {
+    let WaveStress { xx, ww, dd, xw, xd, wd } = *stress;
+    [xx, dd, ww, into * xd, xw, into * wd]
 }
 
 /// Adds a wave of these `amplitudes` to the components of a stress: the shears xy and xz times

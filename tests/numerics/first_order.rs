@@ -5,7 +5,7 @@ use edgeline::base::gauss_legendre;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Study, find_case};
 use edgeline::fem::FemResults;
-use edgeline::solve::{CellOptions, Options, Scene, Solution, check_cells, solve};
+use edgeline::solve::{CellOptions, Options, Point, Scene, Solution, check_cells, solve};
 use edgeline::stress::{BodyKind, EDGE, away_from_edges};
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;
@@ -140,5 +140,24 @@ fn only_free_ends_of_the_line_engine_have_the_terms() {
         case.accuracy.first_order = first_order;
         let key = |case: &Case| Scene::new(case, model, None).key();
         assert_eq!(key(&case) == key(&heavier(&case)), same, "{model} {first_order}");
+    }
+}
+
+/// Stresses down a line that goes deeper than the skin is felt are those at its points.
+#[test]
+fn lines_into_short_bodies_are_their_points() {
+    let mut case = straight(2e-2, 0.7, 1.0).with_tolerance(5e-3);
+    case.accuracy.first_order = true;
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    let line = solved(&case).curves.curve(BodyKind::Roller, "depth-end-x0.7").unwrap().clone();
+    let c_m = case.hertz().c_m;
+    let body = BodyKind::Roller;
+    options.points = line.at.iter().map(|at| Point { body, at_m: at.map(|v| v * c_m) }).collect();
+    options.curves.clear();
+    let points = solve(&case, &options).unwrap().points;
+    assert!(line.at[line.at.len() - 1][2] > 5.0 * 0.7);
+    for (a, b) in line.stress.iter().zip(&points) {
+        let pairs = a.components().into_iter().zip(b.components());
+        small("line and point", pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), 5e-4);
     }
 }
