@@ -116,8 +116,8 @@ pub(super) struct Parts {
     pub condition: f64,
 }
 
-/// The part of a body among `parts`, which are the block's and the roller's, or one for both if they
-/// are alike.
+/// The part of a body among `parts`, which are the block's and the roller's, or one for both if
+/// they are alike.
 pub(super) fn part_of<T>(parts: &[T], kind: BodyKind) -> &T {
     match kind {
         BodyKind::Block => &parts[0],
