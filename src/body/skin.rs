@@ -98,10 +98,15 @@ pub struct Skins {
     pub tables: [Arc<WaveTable>; 2],
     /// The loads on each of the bodies at each wavenumber from the second panel on.
     loads: Vec<Vec<Skin>>,
-    /// What it adds to the compliance, over the nodes of the line, at each
-    /// wavenumber from the second panel on.
-    compliances: Vec<DMatrix<f64>>,
-    /// The same at all longer waves.
+    /// What the skin of each body adds to the compliance at each of these wavenumbers.
+    compliances: Vec<SkinCompliances>,
+}
+
+/// What the skin of a part of a body adds to the compliance, per C / R, over the contact's nodes.
+#[derive(Debug)]
+struct SkinCompliances {
+    own: Vec<DMatrix<f64>>,
+    /// That of all longer waves.
     longest: DMatrix<f64>,
 }
 
@@ -139,29 +144,23 @@ impl Skins {
             Body::new(fold.axis(), shape, end, part, &resolution)
         };
         let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
-        let mut compliances = vec![DMatrix::zeros(line.len(), line.len()); k.len() - BEFORE];
-        let mut longest = DMatrix::zeros(line.len(), line.len());
-        let loads = bodies.iter().map(|body| {
+        let of_body = |body: &Body| {
             let own = OnSurface::new(body, k);
-            let all = compliances.iter_mut().enumerate().map(|(i, sum)| {
-                let wave = own.skin(BEFORE + i, &tables);
-                fold.add(body.parity, &own.compliance(&wave, Waves::Own), 1.0, sum);
-                if i == 0 {
-                    let longer = own.compliance(&wave, Waves::Longer);
-                    fold.add(body.parity, &longer, 1.0, &mut longest);
-                }
-                wave.skin
-            });
-            all.collect()
-        });
-        let loads = loads.collect();
+            own.skins(|i, along, apart| own.waves[i].freed(body, k[i], &tables, along, apart))
+        };
+        let (loads, compliances) = bodies.iter().map(of_body).unzip();
         let wavenumbers = Wavenumbers::new(coarse, resolution.k_step);
-        Self { middle, line, fold, bodies, wavenumbers, tables, loads, compliances, longest }
+        Self { middle, line, fold, bodies, wavenumbers, tables, loads, compliances }
     }
 
     /// The loads on body number `part` at coarse wavenumber number `i`; none of the first panel.
     pub fn loads(&self, part: usize, i: usize) -> Option<&Skin> {
         self.loads[part].get(i.checked_sub(self.wavenumbers.coarse().order())?)
+    }
+
+    /// The least wavenumber that has a skin.
+    pub fn longest(&self) -> f64 {
+        self.wavenumbers.coarse().breaks()[1]
     }
 
     /// Adds `factor` times what the skin adds to the compliance at each of the wavenumbers `k` to
@@ -173,8 +172,7 @@ impl Skins {
         axis: &Panels,
         totals: &mut [DMatrix<f64>],
     ) {
-        let coarse = self.wavenumbers.coarse();
-        let known = &coarse.nodes()[coarse.order()..];
+        let known = self.known();
         let mut onto = DMatrix::<f64>::zeros(self.line.len(), axis.len());
         for (i, y) in self.line.nodes().iter().enumerate() {
             axis.load_interpolation(*y).for_each(|(j, w)| onto[(i, j)] += w);
@@ -188,19 +186,95 @@ impl Skins {
                 let plane = factor * plane(self.bodies[0].nu, k);
                 (0..axis.len()).for_each(|i| total[(i, i)] += plane);
             } else {
-                *total += &back * (self.compliance(known, k) * factor * &onto);
+                let mut sum = DMatrix::zeros(self.line.len(), self.line.len());
+                for (body, compliances) in self.bodies.iter().zip(&self.compliances) {
+                    self.fold.add(body.parity, &compliances.at(known, k), factor, &mut sum);
+                }
+                *total += &back * (sum * &onto);
             }
         }
     }
 
-    /// What it adds to the compliance at a wavenumber `k` up to the last of those `known`.
-    fn compliance(&self, known: &[f64], k: f64) -> DMatrix<f64> {
+    /// [`Skins::add_compliances`] less what the skin of the half-space adds on which the load is
+    /// mirrored in the planes of the end faces. What is left is smooth along the line: it is
+    /// interpolated by a spline, so that nothing jumps from one panel to the next.
+    pub fn add_compliances_of_ends(
+        &self,
+        k: &[f64],
+        factor: f64,
+        axis: &Panels,
+        totals: &mut [DMatrix<f64>],
+    ) {
+        let coarse = self.wavenumbers.coarse();
+        let waves = &coarse.nodes()[coarse.order() - BEFORE..];
+        let known = self.known();
+        for (body, free) in self.bodies.iter().zip(&self.compliances) {
+            let none = DMatrix::zeros(body.surface.axis.len(), body.contact().len());
+            let mirrored = OnSurface::mirrored(body, waves);
+            let (_, mirrored) = mirrored.skins(|_, along, apart| Skin {
+                along,
+                apart,
+                surface: none.clone(),
+                face: DMatrix::zeros(0, 0),
+            });
+            let line = self.fold.axis();
+            let onto = self.splines(axis, body.parity);
+            // Of the density of a load: an even or odd part carries half of what acts on a side.
+            let share = if self.fold.parities().len() == 1 { factor } else { 0.5 * factor };
+            for (&k, total) in k.iter().zip(totals.iter_mut()) {
+                if k > known[known.len() - 1] {
+                    continue;
+                }
+                let mut kernel = share * (free.at(known, k) - mirrored.at(known, k));
+                let columns = kernel.column_iter_mut().zip(line.weights());
+                columns.for_each(|(mut column, weight)| column /= *weight);
+                let mut smooth = &onto * kernel * onto.transpose();
+                let columns = smooth.column_iter_mut().zip(axis.weights());
+                columns.for_each(|(mut column, weight)| column *= *weight);
+                *total += smooth;
+            }
+        }
+    }
+
+    /// The wavenumbers that have a skin.
+    fn known(&self) -> &[f64] {
+        let coarse = self.wavenumbers.coarse();
+        &coarse.nodes()[coarse.order()..]
+    }
+
+    /// A part of a function, from the nodes of the folded line to those of an `axis` along the
+    /// contact.
+    fn splines(&self, axis: &Panels, parity: Parity) -> DMatrix<f64> {
+        let line = self.fold.axis();
+        let (n, sign) = (line.len(), parity.sign());
+        // Where the line begins at the body's middle it goes on behind it.
+        let behind = if line.breaks()[0] == 0.0 { n } else { 0 };
+        let before = line.nodes()[..behind].iter().rev().map(|y| -y);
+        let nodes: Vec<f64> = before.chain(line.nodes().iter().copied()).collect();
+        let places: Vec<f64> = axis.nodes().iter().map(|y| (y - self.middle).abs()).collect();
+        let all = spline(&nodes, &places);
+        let mut folded = all.columns(behind, n).into_owned();
+        for i in 0..behind {
+            folded.column_mut(i).axpy(sign, &all.column(behind - 1 - i), 1.0);
+        }
+        for (mut row, y) in folded.row_iter_mut().zip(axis.nodes()) {
+            if *y < self.middle {
+                row *= sign;
+            }
+        }
+        folded
+    }
+}
+
+impl SkinCompliances {
+    /// That at a wavenumber `k` up to the last of those `known`.
+    fn at(&self, known: &[f64], k: f64) -> DMatrix<f64> {
         if k < known[0] {
             return self.longest.clone();
         }
         let (first, places) = nearest(known, k);
-        let mut sum = DMatrix::zeros(self.line.len(), self.line.len());
-        for (j, compliance) in self.compliances[first..first + places.len()].iter().enumerate() {
+        let mut sum = DMatrix::zeros(self.longest.nrows(), self.longest.ncols());
+        for (j, compliance) in self.own[first..first + places.len()].iter().enumerate() {
             sum += compliance * derivatives(&places, j, k.ln())[0];
         }
         sum
@@ -225,7 +299,8 @@ struct Wave {
     /// P at the surface nodes, and q at the face nodes.
     own: DMatrix<f64>,
     q: DMatrix<f64>,
-    /// Normal stress on the faces per P, and on the surface per q.
+    /// Normal stress on the faces per P, and on the surface per q; of no use where the load is
+    /// mirrored.
     faces: [DMatrix<f64>; 2],
     /// (k / 2) e^(-k |u|) over the surface's loads at the offsets u from each of its nodes.
     spread: DMatrix<f64>,
@@ -265,11 +340,25 @@ struct OnSurface<'a> {
 impl<'a> OnSurface<'a> {
     /// Those of a `body` at the ascending wavenumbers `k`.
     fn new(body: &'a Body, k: &'a [f64]) -> Self {
+        let mut own = Self::beside(body, k, Wave::new);
+        for (k, waves) in k.chunks(WAVES).zip(own.waves.chunks_mut(WAVES)) {
+            add_faces(body, k, waves);
+        }
+        own
+    }
+
+    /// Those of the half-space on which the load on a `body` is mirrored in its end faces.
+    fn mirrored(body: &'a Body, k: &'a [f64]) -> Self {
+        Self::beside(body, k, |body, _| Wave::mirrored(body))
+    }
+
+    /// Those that `wave` gives, with the stresses on the surface beside its loads.
+    fn beside(body: &'a Body, k: &'a [f64], wave: impl Fn(&Body, f64) -> Wave) -> Self {
         let axis = &body.surface.axis;
         let stencils: Vec<Stencil> =
             axis.nodes().iter().map(|y| body.surface_stencil(*y, 0.0)).collect();
         let wave = |&k: &f64| {
-            let mut waves = Wave::new(body, k);
+            let mut waves = wave(body, k);
             let [even, odd] = spread(body, &stencils, k);
             let free = 1.0 - 2.0 * body.nu;
             let own = &waves.own;
@@ -278,15 +367,34 @@ impl<'a> OnSurface<'a> {
             waves.spread = even;
             waves
         };
-        let mut waves: Vec<Wave> = k.iter().map(wave).collect();
-        for (k, waves) in k.chunks(WAVES).zip(waves.chunks_mut(WAVES)) {
-            add_faces(body, k, waves);
-        }
+        let waves = k.iter().map(wave).collect();
         Self { body, k, waves, slope: slopes(axis), integral: integrals(axis, body.parity) }
     }
 
-    /// The skin at wavenumber number `i`.
-    fn skin(&self, i: usize, tables: &[Arc<WaveTable>; 2]) -> SkinWave {
+    /// The skins at all wavenumbers but the first [`BEFORE`], and what they add to the compliance.
+    /// `freed` makes a skin of the number of its wavenumber and its loads along and apart.
+    fn skins(
+        &self,
+        freed: impl Fn(usize, DMatrix<f64>, DMatrix<f64>) -> Skin,
+    ) -> (Vec<Skin>, SkinCompliances) {
+        let (mut skins, mut own) = (Vec::new(), Vec::new());
+        let mut longest = None;
+        for i in BEFORE..self.k.len() {
+            let wave = self.skin(i, &freed);
+            own.push(self.compliance(&wave, Waves::Own));
+            longest.get_or_insert_with(|| self.compliance(&wave, Waves::Longer));
+            skins.push(wave.skin);
+        }
+        (skins, SkinCompliances { own, longest: longest.expect("a skin") })
+    }
+
+    /// The skin at wavenumber number `i`, which `freed` makes of this number and of the loads along
+    /// and apart.
+    fn skin(
+        &self,
+        i: usize,
+        freed: impl Fn(usize, DMatrix<f64>, DMatrix<f64>) -> Skin,
+    ) -> SkinWave {
         let (body, k) = (self.body, self.k[i]);
         let (first, places) = nearest(self.k, k);
         let (rows, columns) = self.waves[i].own.shape();
@@ -307,8 +415,7 @@ impl<'a> OnSurface<'a> {
         }
         let apart = -0.5 * k * (tension + k * (&self.integral * xy));
         let along = -0.5 * (k * xx - &self.slope * xy);
-        let skin = self.waves[i].freed(body, k, tables, along, apart);
-        SkinWave { number: i, once, twice, skin }
+        SkinWave { number: i, once, twice, skin: freed(i, along, apart) }
     }
 
     /// What a skin adds to the compliance at its own wavenumber or under longer waves.
@@ -348,10 +455,7 @@ impl<'a> OnSurface<'a> {
 impl Wave {
     /// The waves of a `body` at the wavenumber `k`, without the stresses on the surface.
     fn new(body: &Body, k: f64) -> Self {
-        let n = body.surface.axis.len();
-        let contact = body.contact();
-        let at = |i, j| f64::from(u8::from(i == contact.start + j));
-        let pressed = DMatrix::from_fn(n, contact.len(), at);
+        let pressed = pressed(body);
         let to_face = body.surface_matrix(k, &body.kernel);
         let from_face = body.faces_matrix(k, to_face.nrows());
         let faces = [to_face, from_face];
@@ -363,6 +467,20 @@ impl Wave {
             faces,
             spread: none(),
             displacement: body.displacement(k),
+            stresses: [none(), none(), none()],
+        }
+    }
+
+    /// The same of the half-space on which the load is mirrored.
+    fn mirrored(body: &Body) -> Self {
+        let none = || DMatrix::zeros(0, 0);
+        let (n, contact) = (body.surface.axis.len(), body.contact().len());
+        Self {
+            own: pressed(body),
+            q: none(),
+            faces: [none(), none()],
+            spread: none(),
+            displacement: DMatrix::zeros(contact, n),
             stresses: [none(), none(), none()],
         }
     }
@@ -383,6 +501,13 @@ impl Wave {
         let surface = solved(&self.faces, from_face * &own);
         Skin { face: -(to_face * &surface + own), along, apart, surface }
     }
+}
+
+/// The surface nodes' P under the pressure at each contact node alone.
+fn pressed(body: &Body) -> DMatrix<f64> {
+    let contact = body.contact();
+    let at = |i, j| f64::from(u8::from(i == contact.start + j));
+    DMatrix::from_fn(body.surface.axis.len(), contact.len(), at)
 }
 
 /// P under the `loads` on the surface of a body with these matrices of its faces.
@@ -500,6 +625,36 @@ fn derivatives(nodes: &[f64], j: usize, x: f64) -> [f64; 3] {
     [value, first, second]
 }
 
+/// The natural cubic spline through values at the ascending `nodes`, at `places`.
+fn spline(nodes: &[f64], places: &[f64]) -> DMatrix<f64> {
+    let n = nodes.len();
+    let widths: Vec<f64> = nodes.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    // The second derivatives at the nodes, which vanish at both ends.
+    let mut system = DMatrix::<f64>::identity(n, n);
+    let mut right = DMatrix::<f64>::zeros(n, n);
+    for i in 1..n - 1 {
+        let [h, g] = [widths[i - 1], widths[i]];
+        let row = [(i - 1, h / 6.0, 1.0 / h), (i, (h + g) / 3.0, -1.0 / h - 1.0 / g)];
+        for (j, left, slope) in row.into_iter().chain([(i + 1, g / 6.0, 1.0 / g)]) {
+            system[(i, j)] = left;
+            right[(i, j)] = slope;
+        }
+    }
+    let bends = linear::solve(system, right).expect("nodes differ");
+    let mut matrix = DMatrix::zeros(places.len(), n);
+    for (mut row, place) in matrix.row_iter_mut().zip(places) {
+        let i = nodes[1..n - 1].partition_point(|node| node < place);
+        let h = widths[i];
+        let [s, t] = [(nodes[i + 1] - place) / h, (place - nodes[i]) / h];
+        row[i] += s;
+        row[i + 1] += t;
+        for (j, v) in [(i, s), (i + 1, t)] {
+            row += bends.row(j) * ((v.powi(3) - v) * h * h / 6.0);
+        }
+    }
+    matrix
+}
+
 /// The derivative at the nodes of an `axis` of the panels' polynomials through the values there.
 fn slopes(axis: &Panels) -> DMatrix<f64> {
     let order = axis.order();
@@ -531,4 +686,49 @@ fn integrals(axis: &Panels, parity: Parity) -> DMatrix<f64> {
         others.for_each(|j| matrix[(i, j)] = sign * axis.weights()[j]);
     }
     matrix
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::{EdgeModel, Shape};
+    use crate::kernels::round;
+    use nalgebra::DVector;
+
+    /// Waves along the line are waves of a mirrored half-space, those of the forces of [`round`];
+    /// slopes along k are accurate to some percent.
+    #[test]
+    fn a_mirrored_skin_has_the_compliance_of_forces() {
+        let (half, nu) = (3.0, 0.3);
+        let (shape, end) = (Shape { half, nu }, EdgeModel::QuarterSpace.end(nu, None));
+        let ends = [-half, half];
+        let line = SkinLine { ends, exponents: [None; 2], kinks: &[], symmetric: true };
+        let skins = Skins::new(line, Placed { middle: 0.0, shape, end }, 0.03);
+        let axis = &skins.line;
+        for (k, waves) in [(0.6, 0.0), (1.7, 0.0), (0.6, 1.0), (1.7, 1.0), (1.7, 2.0)] {
+            let [mut all, mut of_ends] = [0; 2].map(|_| [DMatrix::zeros(axis.len(), axis.len())]);
+            skins.add_compliances(&[k], 1.0, axis, &mut all);
+            skins.add_compliances_of_ends(&[k], 1.0, axis, &mut of_ends);
+            let [all, of_ends] = [&all[0], &of_ends[0]];
+            let l = waves * PI / half;
+            let wave =
+                DVector::from_iterator(axis.len(), axis.nodes().iter().map(|y| (l * y).cos()));
+            let weighted = wave.component_mul(&DVector::from_column_slice(axis.weights()));
+            let got = weighted.dot(&((all - of_ends) * &wave)) / weighted.dot(&wave);
+            let want = PI * round::wave(k, l, nu);
+            let limit = if l == 0.0 { 1e-3 } else { 0.1 };
+            assert!((got / want - 1.0).abs() < limit, "{k} {l}: {got} {want}");
+        }
+    }
+
+    #[test]
+    fn splines_follow_smooth_functions() {
+        let nodes: Vec<f64> = (0..30).map(|i| 0.01 * f64::from(i * i)).collect();
+        let places = [0.005, 0.3, 2.0, 7.9];
+        let values = DVector::from_iterator(30, nodes.iter().map(|x| (0.5 * x).sin()));
+        let found = spline(&nodes, &places) * values;
+        for (got, x) in found.iter().zip(places) {
+            assert!((got - (0.5 * x).sin()).abs() < 1e-3, "{x}: {got}");
+        }
+    }
 }

@@ -82,6 +82,12 @@ impl EndStress<'_> {
         }
         sums
     }
+
+    /// What the skin of a round surface adds there, see [`Field::skin_at`].
+    pub fn skin_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        let [even, odd] = self.fields.each_ref().map(|[freed, _]| freed.skin_at(y, z, xs));
+        even.into_iter().zip(odd).map(|(even, odd)| even + odd).collect()
+    }
 }
 
 impl Load for Part<'_> {

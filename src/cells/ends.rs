@@ -21,14 +21,17 @@
 //! by 3 pi / (k H^3 (1 - nu) (3 + nu)) (Kirchhoff's plate w = (A + B k z) e^(-k z) cos k x under
 //! the moment M cos k x on its edge without shear, whose slope is 2 M / (D k (1 - nu) (3 + nu))
 //! with the plate's stiffness D).
+//!
+//! What a round surface adds to the compliance ([`Skins`]) is split in the same way: cells and
+//! their images have that of a round half-space ([`crate::kernels::round`]), R the rest.
 
 use super::columns::Columns;
 use super::grid::Grid;
-use super::influence::HalfTransform;
+use super::influence::{HalfTransform, Images, RoundImages};
 use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
-use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape, Stack};
+use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack};
 use crate::stress::{Field, Load};
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
@@ -47,6 +50,8 @@ pub struct FreeBody {
     pub nu: f64,
     /// Share of the compliance.
     pub share: f64,
+    /// C / R of its surface, to which first order the compliance is wanted.
+    pub curvature: f64,
 }
 
 /// Accuracy (p0) of the nodes that carry the free ends.
@@ -60,6 +65,8 @@ const NEGLIGIBLE: f64 = 1e-5;
 struct Freed {
     stack: Stack,
     mirrored: Stack,
+    /// Its skin, where it is round.
+    skins: Option<Skins>,
     /// What [`FreeEnds::long`] has of it, times k e^(k H).
     long: DMatrix<f64>,
 }
@@ -76,6 +83,8 @@ pub struct FreeEnds {
     wavenumbers: Wavenumbers,
     /// Bodies of one place, one length and one Poisson's ratio are one.
     bodies: Vec<Freed>,
+    /// The surfaces that are round.
+    round: Vec<RoundImages>,
     /// B, a column for each of the few shapes along the line that R consists of: those of rigid
     /// motions, then the others.
     basis: DMatrix<f64>,
@@ -100,28 +109,47 @@ impl FreeEnds {
         let wavenumbers = resolution.wavenumbers_of(&halves, parity);
         let distinct = distinct(bodies);
         let mut sums = vec![DMatrix::zeros(axis.len(), axis.len()); wavenumbers.coarse().len()];
-        let bodies = distinct.iter().map(|own| {
+        let mut round = Vec::new();
+        let bodies = distinct.iter().map(|Distinct { own, rounded }| {
             let coarse = wavenumbers.coarse();
             let line = LoadedLine { axis: &axis, symmetric, slides: false };
+            let placed = |model: EdgeModel| {
+                let (middle, shape) = (own.middle, Shape { half: own.half, nu: own.nu });
+                Placed { middle, shape, end: model.end(own.nu, None) }
+            };
             // The cells' own images make a mirrored half-space.
             let models = [EdgeModel::QuarterSpace, EdgeModel::Mirror];
-            let [stack, mirrored] = models.map(|model| {
-                let (middle, shape) = (own.middle, Shape { half: own.half, nu: own.nu });
-                let placed = Placed { middle, shape, end: model.end(own.nu, None) };
-                Stack::new(line, placed, &resolution, coarse)
-            });
+            let [stack, mirrored] =
+                models.map(|model| Stack::new(line, placed(model), &resolution, coarse));
             for (i, sum) in sums.iter_mut().enumerate() {
                 stack.add_compliance(i, own.share, sum);
                 mirrored.add_compliance(i, -own.share, sum);
             }
-            Freed { stack, mirrored, long: long(own, symmetric) }
+            let skins = (own.curvature != 0.0).then(|| {
+                let exponents = exponents.map(|m| (m != 0.0).then_some(m));
+                let line = SkinLine { ends, exponents, kinks: &[], symmetric };
+                Skins::new(line, placed(EdgeModel::QuarterSpace), own.curvature)
+            });
+            if let Some(skins) = &skins {
+                skins.add_compliances_of_ends(coarse.nodes(), *rounded, &axis, &mut sums);
+                let FreeBody { half, middle, nu, .. } = *own;
+                let images = Images { half, middle, weight: *rounded };
+                round.push(RoundImages { images, nu, zero: 1.0 / skins.longest() });
+            }
+            Freed { stack, mirrored, skins, long: long(own, symmetric) }
         });
         let bodies = bodies.collect();
         let basis = rigid(&axis, symmetric);
         let matrices = Vec::new();
-        let mut ends = Self { bodies, axis, symmetric, exponents, wavenumbers, basis, matrices };
+        let mut ends =
+            Self { bodies, round, axis, symmetric, exponents, wavenumbers, basis, matrices };
         ends.compress(sums);
         ends
+    }
+
+    /// The surfaces that are round.
+    pub(super) fn round(&self) -> &[RoundImages] {
+        &self.round
     }
 
     /// Finds the shapes that R(k), given at the coarse wavenumbers, consists of.
@@ -220,14 +248,19 @@ impl FreeEnds {
             body.half == half && body.nu == nu && stack.middle == middle
         };
         let freed = self.bodies.iter().find(own).expect("one of the bodies");
-        [&freed.stack, &freed.mirrored]
-            .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance))
+        let [free, mirrored] = [&freed.stack, &freed.mirrored]
+            .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance));
+        [free.with_skins(freed.skins.as_ref()), mirrored]
     }
 
-    /// The displacement (C^2 / (2 R)) of the line x = 0 that the free ends add, at `y`, under a
-    /// `pressure` on the axis; far points are those of contacts on `grid`.
-    pub fn lift<'a>(&'a self, pressure: &dyn Load, grid: &Grid) -> impl Fn(f64) -> f64 + use<'a> {
-        let wavenumbers = self.resolving(grid);
+    /// The displacement (C^2 / (2 R)) of the line x = 0 that free ends and round surfaces add, at
+    /// `y`, under the pressures of `cells`, which on the axis are `pressure`.
+    pub fn lift<'a>(
+        &'a self,
+        pressure: &dyn Load,
+        cells: &'a CellPressure,
+    ) -> impl Fn(f64) -> f64 + use<'a> {
+        let wavenumbers = self.resolving(&cells.grid);
         let fine = wavenumbers.fine();
         let weights = DVector::from_column_slice(self.axis.weights());
         let shapes = scaled(self.basis.clone(), &weights, |value, weight| value * weight);
@@ -246,8 +279,10 @@ impl FreeEnds {
         moved /= PI * PI;
         let displaced = &self.basis * moved;
         move |y| {
+            let round: f64 = self.round.iter().map(|body| body.displacement(cells, y)).sum();
             let y = if self.symmetric { y.abs() } else { y };
-            self.axis.interpolation(y).map(|(node, share)| share * displaced[node]).sum()
+            let ends = self.axis.interpolation(y).map(|(node, share)| share * displaced[node]);
+            round + ends.sum::<f64>()
         }
     }
 
@@ -318,14 +353,30 @@ impl Freed {
     }
 }
 
-/// The bodies that differ, with the shares of those like them.
-fn distinct(bodies: &[FreeBody]) -> Vec<FreeBody> {
-    let mut distinct: Vec<FreeBody> = Vec::new();
+/// A body with the shares of those like it.
+struct Distinct {
+    /// With the largest C / R of them.
+    own: FreeBody,
+    /// Their C / R times their shares.
+    rounded: f64,
+}
+
+/// The bodies that differ in more than their surfaces.
+fn distinct(bodies: &[FreeBody]) -> Vec<Distinct> {
+    let mut distinct: Vec<Distinct> = Vec::new();
     for body in bodies {
-        let like = |b: &&mut FreeBody| FreeBody { share: body.share, ..**b } == *body;
+        let FreeBody { half: _, middle: _, nu: _, share, curvature } = *body;
+        let rounded = curvature * share;
+        let like = |b: &&mut Distinct| FreeBody { share, curvature, ..b.own } == *body;
         match distinct.iter_mut().find(like) {
-            Some(like) => like.share += body.share,
-            None => distinct.push(*body),
+            Some(Distinct { own, rounded: sum }) => {
+                own.share += share;
+                *sum += rounded;
+                if curvature.abs() > own.curvature.abs() {
+                    own.curvature = curvature;
+                }
+            }
+            None => distinct.push(Distinct { own: *body, rounded }),
         }
     }
     distinct
@@ -339,7 +390,7 @@ fn rigid(axis: &Panels, symmetric: bool) -> DMatrix<f64> {
 
 /// What a body's long waves displace over the shapes of rigid motions, times k.
 fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
-    let FreeBody { half, middle, nu, share } = *body;
+    let FreeBody { half, middle, nu, share, curvature: _ } = *body;
     let uniform = share * Shape { half, nu }.moved();
     if symmetric {
         // A node acts on both sides of the middle.

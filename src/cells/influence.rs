@@ -1,8 +1,9 @@
 //! What a cell and its images in the end faces displace, and the spectra of these kernels.
 
 use super::grid::Grid;
+use super::pressure::CellPressure;
 use crate::base::Parity;
-use crate::kernels::deflection;
+use crate::kernels::{deflection, round};
 use rayon::prelude::*;
 use realfft::RealFftPlanner;
 use rustfft::num_complex::Complex;
@@ -31,6 +32,41 @@ impl Images {
     }
 }
 
+/// What a body's round surface adds to the displacement by every cell and its images.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct RoundImages {
+    /// The images; the weight is the body's share of the compliance times its C / R.
+    pub images: Images,
+    /// Poisson's ratio.
+    pub nu: f64,
+    /// The distance from a force at which the surface is taken not to move (C).
+    pub zero: f64,
+}
+
+impl RoundImages {
+    /// What is added by a cell of these half-sides at the distance (`x`, `y`) from its centre.
+    fn influence(&self, x: f64, y: f64, (a, b): (f64, f64)) -> f64 {
+        round::rectangle([x, y], [a, b], self.nu, self.zero)
+    }
+
+    /// What is added on the line x = 0, at `y`, by all cells and their images.
+    pub fn displacement(&self, cells: &CellPressure, y: f64) -> f64 {
+        let grid = &cells.grid;
+        let half_sides = grid.half_sides();
+        let [one, other] = self.images.shifts().map(|(shift, _)| shift);
+        let row = |(j, row): (usize, &[f64])| -> f64 {
+            let at = grid.y(j);
+            let places = [at, one - at, other - at].map(|place| y - place);
+            let all = |x: f64| places.map(|v| self.influence(x, v, half_sides)).iter().sum::<f64>();
+            let loaded = row.iter().enumerate().filter(|(_, p)| **p != 0.0);
+            loaded.map(|(i, p)| p * all(grid.x(i))).sum()
+        };
+        let rows: Vec<f64> =
+            cells.pressure.par_chunks_exact(grid.nx).enumerate().map(row).collect();
+        self.images.weight * rows.iter().sum::<f64>()
+    }
+}
+
 /// Eq. 3: displacement u at the distance (`x`, `y`) from the centre of a cell of half-sides `a` and
 /// `b` under the unit pressure.
 pub(super) fn influence(x: f64, y: f64, (a, b): (f64, f64)) -> f64 {
@@ -46,9 +82,14 @@ pub(super) struct Table {
 }
 
 impl Table {
-    /// The displacement by the cell itself.
-    pub(super) fn direct(grid: &Grid, mx: usize, my: usize) -> Self {
-        Self::sum(grid, mx, my, &[(0.0, 1.0)])
+    /// The displacement by the cell itself, between bodies of which some are `round`.
+    pub(super) fn direct(grid: &Grid, [mx, my]: [usize; 2], round: &[RoundImages]) -> Self {
+        let mut all = Self::sum(grid, mx, my, &[(0.0, 1.0)], influence);
+        for body in round {
+            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
+            all.add(&Self::sum(grid, mx, my, &[(0.0, body.images.weight)], own));
+        }
+        all
     }
 
     /// The part that is even, or odd, in y of the displacements by a pressure that is mirrored in y
@@ -56,28 +97,49 @@ impl Table {
     /// no odd part.
     pub(super) fn images(
         grid: &Grid,
-        mx: usize,
-        my: usize,
+        [mx, my]: [usize; 2],
         images: &[Images],
+        round: &[RoundImages],
         parity: Parity,
     ) -> Self {
         let both = |(shift, weight): (f64, f64)| {
             [(shift, 0.5 * weight), (-shift, 0.5 * parity.sign() * weight)]
         };
-        let shifts = images.iter().flat_map(Images::shifts).flat_map(both);
-        Self::sum(grid, mx, my, &shifts.collect::<Vec<_>>())
-    }
-
-    /// The displacement by an even pressure, whose images are shifted only.
-    pub(super) fn even(grid: &Grid, mx: usize, my: usize, images: &[Images]) -> Self {
-        let mut all = Self::direct(grid, mx, my);
-        let images = Self::images(grid, mx, my, images, Parity::Even);
-        all.values.iter_mut().zip(images.values).for_each(|(sum, image)| *sum += image);
+        let shifts: Vec<_> = images.iter().flat_map(Images::shifts).flat_map(both).collect();
+        let mut all = Self::sum(grid, mx, my, &shifts, influence);
+        for body in round {
+            let shifts = body.images.shifts().map(both);
+            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
+            all.add(&Self::sum(grid, mx, my, shifts.as_flattened(), own));
+        }
         all
     }
 
-    /// The weighted sum of the influences of cells at `shifts` along y.
-    fn sum(grid: &Grid, mx: usize, my: usize, shifts: &[(f64, f64)]) -> Self {
+    /// The displacement by an even pressure, whose images are shifted only.
+    pub(super) fn even(
+        grid: &Grid,
+        sides: [usize; 2],
+        images: &[Images],
+        round: &[RoundImages],
+    ) -> Self {
+        let mut all = Self::direct(grid, sides, round);
+        all.add(&Self::images(grid, sides, images, round, Parity::Even));
+        all
+    }
+
+    /// Adds another table of the same distances.
+    fn add(&mut self, other: &Self) {
+        self.values.iter_mut().zip(&other.values).for_each(|(sum, own)| *sum += own);
+    }
+
+    /// The weighted sum of the influences, by `kernel`, of cells at `shifts` along y.
+    fn sum(
+        grid: &Grid,
+        mx: usize,
+        my: usize,
+        shifts: &[(f64, f64)],
+        kernel: impl Fn(f64, f64, (f64, f64)) -> f64 + Sync,
+    ) -> Self {
         let (a, b) = grid.half_sides();
         let place = |j: usize, shift: f64| (2.0 * b * j as f64 - shift).abs();
         // Images of bodies that are whole numbers of cells long share most distances.
@@ -86,7 +148,7 @@ impl Table {
         places.sort_by(f64::total_cmp);
         places.dedup_by(|next, kept| *next - *kept < SAME * b);
         let row = |y: &f64| -> Vec<f64> {
-            (0..=mx).map(|i| influence(2.0 * a * i as f64, *y, (a, b))).collect()
+            (0..=mx).map(|i| kernel(2.0 * a * i as f64, *y, (a, b))).collect()
         };
         let rows: Vec<Vec<f64>> = places.par_iter().map(row).collect();
         let mut values = vec![0.0; (mx + 1) * (my + 1)];
@@ -179,7 +241,8 @@ mod tests {
             Images { half: 3.0, middle: 0.0, weight: 0.7 },
             Images { half: 4.17, middle: 0.4, weight: 0.6 },
         ];
-        let [even, odd] = Parity::BOTH.map(|parity| Table::images(&grid, 4, 6, &images, parity));
+        let [even, odd] =
+            Parity::BOTH.map(|parity| Table::images(&grid, [4, 6], &images, &[], parity));
         for (i, j, k) in [(0, 0, 0), (3, 2, 5), (1, 5, 5)] {
             // From (x, y) = cell (0, k) to cell (i, j).
             let (x, y, from) = (grid.x(i) - grid.x(0), grid.y(j), grid.y(k));
@@ -194,7 +257,7 @@ mod tests {
             let got = even.values[at] + sign * odd.values[at];
             assert!((got / want - 1.0).abs() < 1e-13, "{got} {want}");
         }
-        let both = Table::even(&grid, 4, 6, &images);
+        let both = Table::even(&grid, [4, 6], &images, &[]);
         let direct = influence(grid.x(3) - grid.x(0), grid.y(4) - grid.y(0), cell);
         let want = direct + even.values[4 * 5 + 3];
         assert!((both.values[4 * 5 + 3] / want - 1.0).abs() < 1e-14);

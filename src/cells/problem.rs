@@ -224,7 +224,9 @@ impl CellProblem {
     fn even(&self, grid: &Grid, ends: Option<&FreeEnds>) -> EvenConvolution {
         let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
         let scale = 1.0 / (mx * my) as f64;
-        let spectrum = Table::even(grid, mx, my, &self.images).spectrum(Parity::Even, scale);
+        let round = ends.map_or(&[][..], FreeEnds::round);
+        let table = Table::even(grid, [mx, my], &self.images, round);
+        let spectrum = table.spectrum(Parity::Even, scale);
         let ends = ends.map(|ends| ends.on_cells(grid, mx));
         EvenConvolution::new([grid.nx / 2, grid.ny / 2], [mx, my], spectrum, ends)
     }
@@ -233,12 +235,13 @@ impl CellProblem {
     fn whole(&self, grid: &Grid, ends: Option<&FreeEnds>) -> WholeConvolution {
         let [mx, my] = [good_length(grid.nx), good_length(grid.ny)];
         let scale = 1.0 / (4 * mx * my) as f64;
-        let direct = Table::direct(grid, mx, my).spectrum(Parity::Even, scale);
+        let round = ends.map_or(&[][..], FreeEnds::round);
+        let direct = Table::direct(grid, [mx, my], round).spectrum(Parity::Even, scale);
         let apart = self.images.iter().any(|images| images.middle != 0.0);
         let images = Parity::BOTH.map(|parity| match parity {
             Parity::Even if self.images.is_empty() => Vec::new(),
             Parity::Odd if !apart => Vec::new(),
-            _ => Table::images(grid, mx, my, &self.images, parity).spectrum(parity, scale),
+            _ => Table::images(grid, [mx, my], &self.images, round, parity).spectrum(parity, scale),
         });
         let ends = ends.map(|ends| ends.on_cells(grid, mx));
         WholeConvolution::new([grid.nx, grid.ny], [mx, my], direct, images, ends)

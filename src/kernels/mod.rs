@@ -11,5 +11,6 @@ pub mod line_load;
 pub mod love;
 pub mod patches;
 pub mod plate;
+pub mod round;
 pub mod strip;
 pub mod wave;

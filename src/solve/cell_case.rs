@@ -95,14 +95,6 @@ impl Default for CellOptions {
 pub fn check_cells(case: &Case, method: EdgeModel, cells: &CellOptions) -> Result<Grid> {
     case.check_force("cells take a force")?;
     let scene = Scene::new(case, method, None);
-    if scene.curvatures.iter().any(|curvature| *curvature != 0.0) {
-        return Err(Error::Value {
-            key: "accuracy.first_order".into(),
-            value: "true".into(),
-            reason: "cells take bodies for flat where they press on each other".into(),
-            remedy: "solve this case with --engine line, or remove the key".into(),
-        });
-    }
     if scene.slides {
         return Err(Error::Value {
             key: "sliding.friction".into(),

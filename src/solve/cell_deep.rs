@@ -48,7 +48,7 @@ fn displaced(
     let mut all = vec![0.0; at.len()];
     let free = problem.free.as_ref().map(|free| {
         let columns = free.columns(pressure);
-        let lift = free.lift(&columns, &pressure.grid);
+        let lift = free.lift(&columns, pressure);
         all.iter_mut().zip(at).for_each(|(sum, y)| *sum = lift(scene.off_middle(*y)));
         let moments = free.moments(&columns);
         (free, columns, moments)

@@ -170,7 +170,12 @@ impl Summed<'_> {
         let flat = |all: &[f64], _: &[f64]| {
             vec![self.at(y, z, all).into_iter().map(FlatStress::from).collect()]
         };
-        rounded(&xs, &[z], contact, sloped, flat).swap_remove(0)
+        let mut all = rounded(&xs, &[z], contact, sloped, flat).swap_remove(0);
+        if let Some(ends) = self.ends.as_ref().filter(|_| !self.flat) {
+            let skin = ends.skin_at(y, z, &xs);
+            all.iter_mut().zip(skin).for_each(|(sum, skin)| sum.round.pressure += skin);
+        }
+        all
     }
 
     /// The flat body's stresses at `y`, `z` for each x of `xs`.

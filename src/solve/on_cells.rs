@@ -49,7 +49,8 @@ impl Scene {
     pub(super) fn free_ends(&self, symmetric: bool) -> Option<Arc<FreeEnds>> {
         let free = BodyKind::ALL.into_iter().filter(|kind| self.end(*kind).freed).map(|kind| {
             let SceneBody { half, middle, nu, share, .. } = self.bodies[kind];
-            FreeBody { half, middle: self.off_middle(middle), nu, share }
+            let (middle, curvature) = (self.off_middle(middle), self.curvatures[kind]);
+            FreeBody { half, middle, nu, share, curvature }
         });
         let free: Vec<FreeBody> = free.collect();
         let ends = || FreeEnds::new(self.half_length, &free, symmetric, self.end_exponents());

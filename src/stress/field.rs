@@ -133,6 +133,12 @@ impl<'a> Field<'a> {
         Self { skin: skins.map(|skins| SkinField::new(skins, self.pressure, reach)), ..self }
     }
 
+    /// What the skin of a round surface adds at (x, `y`, `z`) for each x of `xs`, per C / R;
+    /// nothing where the body has none.
+    pub fn skin_at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+        self.skin.as_ref().map_or(Vec::new(), |skin| skin.at(y, z, xs))
+    }
+
     /// The same field, where what a round surface adds follows the local contact between these
     /// ends, not that of the mean load all along the line.
     #[must_use]

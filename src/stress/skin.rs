@@ -63,7 +63,9 @@ impl<'a> SkinField<'a> {
     /// The field of these `skins` under `pressure`, within the `reach` beside the contact and below
     /// it (C).
     pub fn new(skins: &'a Skins, pressure: &'a dyn Load, reach: [f64; 2]) -> Self {
-        let places: Vec<_> = skins.line.nodes().iter().map(|y| pressure.neighbours(*y)).collect();
+        let neighbours =
+            |y: &f64| pressure.axis().load_interpolation(pressure.on_axis(*y)).collect();
+        let places: Vec<Vec<_>> = skins.line.nodes().iter().map(neighbours).collect();
         let numbers = &skins.wavenumbers;
         let transforms = transforms(pressure, &places, numbers.fine().nodes());
         let moments = numbers.moments(transforms.as_slice(), places.len());

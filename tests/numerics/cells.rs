@@ -258,9 +258,24 @@ fn eight_corners() -> Vec<(String, Case)> {
     symmetric.into_iter().chain((0..4).map(|i| (format!("skew {i}"), skew(i)))).collect()
 }
 
+/// A block with a hollow of 2.5 times the roller's radius, beside the middle of an offset roller.
+const HOLLOW: &str = "name = \"hollow\"\n[roller]\nradius_m = 8e-3\nlength_m = 2.5e-3\nyoung_pa = 210e9\n\
+     poisson = 0.3\n[block]\nlength_m = 4e-3\nradius_m = -20e-3\nyoung_pa = 180e9\npoisson = 0.22\n\
+     [load]\nforce_n = 3000.0\neccentricity_m = 1e-4\n[pose]\noffset_m = 2e-4";
+
 #[test]
 fn corners_are_the_line_engines_on_a_small_grid() {
-    for (name, case) in eight_corners() {
+    let mut all = eight_corners();
+    // Some of them with what round surfaces make of the compliance and of the stresses.
+    let rounded = |(name, case): (String, Case)| {
+        let mut case = case;
+        case.accuracy.first_order = true;
+        (format!("{name}, to first order"), case)
+    };
+    let hollow = ("hollow".into(), Case::from_toml(HOLLOW).unwrap());
+    let some = [all[1].clone(), all[5].clone(), hollow];
+    all.extend(some.map(rounded));
+    for (name, case) in all {
         let mut options = Options::new(EdgeModel::QuarterSpace);
         options.curves = ["depth-0.9", "along-y-0.78C"].map(String::from).to_vec();
         let line = on_line(&case, &options);
@@ -520,8 +535,9 @@ fn a_bump_beyond_the_smooth_contact_carries_load() {
 /// other means than those of a smooth one.
 #[test]
 fn vanishing_heights_on_skew_bodies_with_free_ends_change_nothing() {
-    for number in [0, 1] {
-        let smooth = skew(number);
+    for (number, first_order) in [(0, false), (1, false), (1, true)] {
+        let mut smooth = skew(number);
+        smooth.accuracy.first_order = first_order;
         let mut rough = smooth.clone();
         let [from, to] = smooth.overlap();
         let c_m = smooth.hertz().c_m;
