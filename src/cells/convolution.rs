@@ -66,9 +66,11 @@ impl Linear for EvenConvolution {
                     let factors = &spectrum[k * (my + 1)..][..my];
                     let wave = |j| waves[j * mx + k];
                     along_y.filter(scratch, ny, wave, factors, |j, v| filtered[j] = v);
-                    if let Some(ends) = ends {
-                        ends.add(k, wave, filtered);
-                    }
+                }
+                if let Some(ends) = ends {
+                    let first = block * LINES;
+                    let lines = filtered.len() / ny;
+                    ends.add(first, |j| &waves[j * mx + first..][..lines], filtered);
                 }
             },
         );

@@ -26,6 +26,7 @@
 //! their images have that of a round half-space ([`crate::kernels::round`]), R the rest.
 
 use super::columns::Columns;
+use super::convolution::LINES;
 use super::grid::Grid;
 use super::influence::{HalfTransform, Images, RoundImages};
 use super::means::means;
@@ -446,8 +447,8 @@ pub(super) struct EndCorrection {
 pub(super) trait Amplitude<const PARTS: usize>: Copy {
     /// Its real numbers.
     fn parts(self) -> [f64; PARTS];
-    /// Adds real numbers.
-    fn add(&mut self, parts: [f64; PARTS]);
+    /// Adds to one of them.
+    fn add(&mut self, part: usize, value: f64);
 }
 
 impl Amplitude<1> for f64 {
@@ -455,8 +456,8 @@ impl Amplitude<1> for f64 {
         [self]
     }
 
-    fn add(&mut self, [part]: [f64; 1]) {
-        *self += part;
+    fn add(&mut self, _part: usize, value: f64) {
+        *self += value;
     }
 }
 
@@ -465,55 +466,79 @@ impl Amplitude<2> for Complex<f64> {
         [self.re, self.im]
     }
 
-    fn add(&mut self, [re, im]: [f64; 2]) {
-        self.re += re;
-        self.im += im;
+    fn add(&mut self, part: usize, value: f64) {
+        *if part == 0 { &mut self.re } else { &mut self.im } += value;
     }
 }
 
-/// Adds `factor` times `from` to `sum`; compiled for the processor's vector units with what calls
-/// it.
-#[inline(always)]
-fn axpy(factor: f64, from: &[f64], sum: &mut [f64]) {
-    sum.iter_mut().zip(from).for_each(|(sum, v)| *sum += factor * v);
-}
+/// Rows of a matrix that [`thin_product`] takes at once.
+const ROWS: usize = 4;
 
-/// Products of the shapes with the numbers `p`, of each cell one after the other.
+/// The product of a `matrix`, row by row, with some `columns` side by side.
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-fn project(shapes: &[f64], p: &[f64], loads: &mut [f64]) {
-    let rank = loads.len();
-    shapes.chunks_exact(rank).zip(p).for_each(|(shapes, p)| axpy(*p, shapes, loads));
-}
-
-/// The product of the columns of a `matrix` with `loads`.
-#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
-fn product(matrix: &[f64], loads: &[f64], moved: &mut [f64]) {
-    let rank = moved.len();
-    matrix.chunks_exact(rank).zip(loads).for_each(|(column, load)| axpy(*load, column, moved));
+fn thin_product(matrix: &[f64], columns: &[[f64; LINES]], out: &mut [[f64; LINES]]) {
+    let n = columns.len();
+    let add = |sum: &mut [f64; LINES], factor: f64, column: &[f64; LINES]| {
+        sum.iter_mut().zip(column).for_each(|(sum, v)| *sum += factor * v);
+    };
+    for (rows, out) in matrix.chunks(ROWS * n).zip(out.chunks_mut(ROWS)) {
+        let mut sums = [[0.0; LINES]; ROWS];
+        if let [first, second, third, fourth] = &mut sums
+            && rows.len() == ROWS * n
+        {
+            let (front, back) = rows.split_at(2 * n);
+            let ((a, b), (c, d)) = (front.split_at(n), back.split_at(n));
+            for ((((column, a), b), c), d) in columns.iter().zip(a).zip(b).zip(c).zip(d) {
+                add(first, *a, column);
+                add(second, *b, column);
+                add(third, *c, column);
+                add(fourth, *d, column);
+            }
+        } else {
+            for (sum, row) in sums.iter_mut().zip(rows.chunks_exact(n)) {
+                columns.iter().zip(row).for_each(|(column, v)| add(sum, *v, column));
+            }
+        }
+        out.copy_from_slice(&sums[..out.len()]);
+    }
 }
 
 impl EndCorrection {
-    /// Adds the displacement that the pressures `p(j)` of wavenumber `k` cause to `out`.
-    pub(super) fn add<const PARTS: usize, T: Amplitude<PARTS>>(
+    /// Adds the displacement that pressures cause to `out`: those of up to [`LINES`] wavenumbers
+    /// from number `first` on, `p(j)` for cell j, all cells of one wavenumber after the other.
+    pub(super) fn add<'a, const PARTS: usize, T: Amplitude<PARTS> + 'a>(
         &self,
-        k: usize,
-        p: impl Fn(usize) -> T,
+        first: usize,
+        p: impl Fn(usize) -> &'a [T],
         out: &mut [T],
     ) {
         let rank = self.rank;
-        let matrix = &self.matrices[k * rank * rank..][..rank * rank];
-        let all: Vec<[f64; PARTS]> = (0..out.len()).map(|j| p(j).parts()).collect();
-        let mut sums = vec![[0.0; PARTS]; out.len()];
-        for part in 0..PARTS {
-            let own: Vec<f64> = all.iter().map(|p| p[part]).collect();
-            let (mut loads, mut moved) = (vec![0.0; rank], vec![0.0; rank]);
-            project(&self.shapes, &own, &mut loads);
-            product(matrix, &loads, &mut moved);
-            let mut displaced = vec![0.0; out.len()];
-            // Shape by shape, each along all cells.
-            product(&self.turned, &moved, &mut displaced);
-            sums.iter_mut().zip(displaced).for_each(|(sum, v)| sum[part] = v);
+        let ny = self.shapes.len() / rank;
+        let none = [0.0; LINES];
+        let mut fields: [_; PARTS] = std::array::from_fn(|_| vec![none; ny]);
+        for (part, field) in fields.iter_mut().enumerate() {
+            for (j, field) in field.iter_mut().enumerate() {
+                field.iter_mut().zip(p(j)).for_each(|(own, p)| *own = p.parts()[part]);
+            }
         }
-        out.iter_mut().zip(sums).for_each(|(out, sum)| out.add(sum));
+        let (mut loads, mut moved) = (vec![none; rank], vec![none; rank]);
+        let mut sums = vec![0.0; rank];
+        let matrices = self.matrices.chunks_exact(rank * rank).skip(first);
+        for field in &mut fields {
+            thin_product(&self.turned, field, &mut loads);
+            for (line, matrix) in matrices.clone().take(out.len() / ny).enumerate() {
+                sums.fill(0.0);
+                for (column, load) in matrix.chunks_exact(rank).zip(&loads) {
+                    sums.iter_mut().zip(column).for_each(|(sum, v)| *sum += load[line] * v);
+                }
+                moved.iter_mut().zip(&sums).for_each(|(moved, sum)| moved[line] = *sum);
+            }
+            thin_product(&self.shapes, &moved, field);
+        }
+        for (line, out) in out.chunks_exact_mut(ny).enumerate() {
+            for (part, field) in fields.iter().enumerate() {
+                out.iter_mut().zip(field).for_each(|(out, field)| out.add(part, field[line]));
+            }
+        }
     }
 }

@@ -30,6 +30,15 @@ impl Images {
     pub(super) fn shifts(&self) -> [(f64, f64); 2] {
         [1.0, -1.0].map(|side| (2.0 * (self.middle + side * self.half), self.weight))
     }
+
+    /// The shifts and weights whose sum is the even or the odd part in y of what a pressure
+    /// displaces that is mirrored in y = 0 and shifted to both faces.
+    fn parted(&self, parity: Parity) -> [(f64, f64); 4] {
+        let [one, other] = self.shifts();
+        let own = |(shift, weight): (f64, f64)| (shift, 0.5 * weight);
+        let opposite = |(shift, weight): (f64, f64)| (-shift, 0.5 * parity.sign() * weight);
+        [own(one), opposite(one), own(other), opposite(other)]
+    }
 }
 
 /// What a body's round surface adds to the displacement by every cell and its images.
@@ -92,9 +101,8 @@ impl Table {
         all
     }
 
-    /// The part that is even, or odd, in y of the displacements by a pressure that is mirrored in y
-    /// = 0 and shifted to both faces of every body. Without bodies off the cells' middle there is
-    /// no odd part.
+    /// The part that is even, or odd, in y of the displacements by all images. Without bodies off
+    /// the cells' middle there is no odd part.
     pub(super) fn images(
         grid: &Grid,
         [mx, my]: [usize; 2],
@@ -102,15 +110,11 @@ impl Table {
         round: &[RoundImages],
         parity: Parity,
     ) -> Self {
-        let both = |(shift, weight): (f64, f64)| {
-            [(shift, 0.5 * weight), (-shift, 0.5 * parity.sign() * weight)]
-        };
-        let shifts: Vec<_> = images.iter().flat_map(Images::shifts).flat_map(both).collect();
+        let shifts: Vec<_> = images.iter().flat_map(|own| own.parted(parity)).collect();
         let mut all = Self::sum(grid, mx, my, &shifts, influence);
         for body in round {
-            let shifts = body.images.shifts().map(both);
             let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
-            all.add(&Self::sum(grid, mx, my, shifts.as_flattened(), own));
+            all.add(&Self::sum(grid, mx, my, &body.images.parted(parity), own));
         }
         all
     }
@@ -118,12 +122,20 @@ impl Table {
     /// The displacement by an even pressure, whose images are shifted only.
     pub(super) fn even(
         grid: &Grid,
-        sides: [usize; 2],
+        [mx, my]: [usize; 2],
         images: &[Images],
         round: &[RoundImages],
     ) -> Self {
-        let mut all = Self::direct(grid, sides, round);
-        all.add(&Self::images(grid, sides, images, round, Parity::Even));
+        // In one sum, as the cell and its images share most distances.
+        let mut shifts = vec![(0.0, 1.0)];
+        shifts.extend(images.iter().flat_map(|own| own.parted(Parity::Even)));
+        let mut all = Self::sum(grid, mx, my, &shifts, influence);
+        for body in round {
+            let mut shifts = vec![(0.0, body.images.weight)];
+            shifts.extend(body.images.parted(Parity::Even));
+            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
+            all.add(&Self::sum(grid, mx, my, &shifts, own));
+        }
         all
     }
 

@@ -12,6 +12,8 @@ pub struct CellPressure {
     pub grid: Grid,
     /// Pressure of each cell (p0), x fastest.
     pub pressure: Vec<f64>,
+    /// The gap under them over each cell (C^2 / (2 R)), zero in the contact but for the residual.
+    pub gap: Vec<f64>,
     /// Approach of far points (C^2 / (2 R)).
     pub approach: f64,
     /// Tilt of far points (C / (2 R)): that which is held, or the one that the load's arm causes.
@@ -26,13 +28,26 @@ impl CellPressure {
     /// Pressures without a contact that they belong to.
     #[cfg(test)]
     pub(super) fn of(grid: Grid, pressure: Vec<f64>) -> Self {
-        Self { grid, pressure, approach: 0.0, tilt: 0.0, iterations: 0, residual: 0.0 }
+        let (approach, tilt, residual) = (0.0, 0.0, 0.0);
+        Self { grid, pressure, gap: Vec::new(), approach, tilt, iterations: 0, residual }
     }
 
     /// Real contact area (C^2): that of the cells under pressure.
     pub fn contact_area(&self) -> f64 {
         let (a, b) = self.grid.half_sides();
         4.0 * a * b * self.pressure.iter().filter(|p| **p > 0.0).count() as f64
+    }
+
+    /// Mean gap (C^2 / (2 R)) over the cells within C of the line x = 0, or over those next to it
+    /// if they are wider.
+    pub fn mean_gap(&self) -> f64 {
+        let grid = &self.grid;
+        let next = (0..grid.nx).map(|i| grid.x(i).abs()).fold(f64::INFINITY, f64::min);
+        let within = (next * (1.0 + 1e-9)).max(1.0);
+        let near = self.gap.iter().enumerate();
+        let near = near.filter(|(i, _)| grid.x(i % grid.nx).abs() <= within);
+        let (sum, count) = near.fold((0.0, 0), |(sum, n), (_, gap)| (sum + gap.max(0.0), n + 1));
+        sum / f64::from(count)
     }
 
     /// Shares of the contact area whose pressure lies in each of `bins` equal parts between zero

@@ -118,7 +118,7 @@ impl CellProblem {
         let level = Level { gap, symmetry, ends: self.free.as_deref(), progress };
         let first = first.filter(|first| first.grid == *grid).map(|first| &first.pressure[..]);
         let state = self.solve_level(&level, gaps, *grid, first, self.tolerance)?;
-        let State { pressure, motion, residual, iterations } = state;
+        let State { pressure, gap, motion, residual, iterations } = state;
         if residual.is_nan() || residual > self.tolerance {
             return Err(Error::NotConverged {
                 iterations,
@@ -126,14 +126,14 @@ impl CellProblem {
                 remedy: "give a larger --tolerance, or other --cells".into(),
             });
         }
-        let pressure = unfold(grid, symmetry, pressure);
+        let [pressure, gap] = [pressure, gap].map(|part| unfold(grid, symmetry, part));
         check_covered(grid, &pressure)?;
         let tilt = match self.tilt {
             CellTilt::Held(tilt) => tilt,
             CellTilt::Free(_) => motion.tilt,
         };
         let approach = motion.approach;
-        Ok(CellPressure { grid: *grid, pressure, approach, tilt, iterations, residual })
+        Ok(CellPressure { grid: *grid, pressure, gap, approach, tilt, iterations, residual })
     }
 
     /// The symmetry of a contact with these `gaps`.

@@ -38,6 +38,8 @@ impl Motion {
 pub(super) struct State {
     /// Pressures.
     pub(super) pressure: Vec<f64>,
+    /// The gap under them, zero in the contact but for the residual.
+    pub(super) gap: Vec<f64>,
     /// The motion that the load causes.
     pub(super) motion: Motion,
     /// What the conditions of contact are missed by, in parts of the displacement (both root mean
@@ -89,7 +91,7 @@ impl Complementarity<'_> {
             let tensile = pressure.iter().any(|p| *p < 0.0);
             if (relative <= tolerance && !tensile) || iterations >= most {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
-                return State { pressure, motion, residual: relative, iterations };
+                return State { pressure, gap: misfit, motion, residual: relative, iterations };
             }
             if line.last.is_none() {
                 looked_at = on_set;

@@ -117,9 +117,11 @@ impl Linear for WholeConvolution {
                     this.filter(k, line);
                     this.plans.backward_y.process_with_scratch(line, work);
                     filtered.copy_from_slice(&line[..ny]);
-                    if let Some(ends) = &this.ends {
-                        ends.add(k, |j| waves[j * count + k], filtered);
-                    }
+                }
+                if let Some(ends) = &this.ends {
+                    let first = block * LINES;
+                    let lines = filtered.len() / ny;
+                    ends.add(first, |j| &waves[j * count + first..][..lines], filtered);
                 }
             },
         );

@@ -6,8 +6,8 @@
 //! surface, x^2 / (2 R) thick (see [`crate::body::Skins`]). The skin's forces have no divergence
 //! but for that of its thickness: the flat body carries the tractions -(x / R) times the first and
 //! the last of these stresses. By Cerruti they displace it along z, in the transform over both
-//! directions with K^2 = k^2 + l^2, by (1 - 2 nu)^2 / (1 - nu) l^2 / K^4 times P / R in units of (1
-//! - nu^2) / E. The displacement along the tangent, (1 - 2 nu) / (2 pi (1 - nu)) x / r^2 towards
+//! directions with K^2 = k^2 + l^2, by (1 - 2 nu)^2 / (1 - nu) l^2 / K^4 times P / R in units of
+//! (1 - nu^2) / E. The displacement along the tangent, (1 - 2 nu) / (2 pi (1 - nu)) x / r^2 towards
 //! the load, gives x / R of itself along the normal, (1 - 2 nu) / (1 - nu) (l^2 - k^2) / K^4. The
 //! sum is the transform of
 //!

@@ -249,14 +249,12 @@ pub fn solve_on_cells(
     let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
     let setup = start.elapsed().as_secs_f64();
     let (pressure, motion) = covering(&mut contact, &region)?;
-    let mean_gap = contact.mean_gap(&pressure);
     let problem = contact.problem;
     let solved = start.elapsed().as_secs_f64();
     let stressed = Stressed::new(case, &scene, options, &problem, &pressure);
     let total = start.elapsed().as_secs_f64();
     let seconds = Seconds { setup, contact: solved - setup, stress: total - solved, total };
-    let found =
-        Found { case, scene: &scene, problem: &problem, pressure: &pressure, motion, mean_gap };
+    let found = Found { case, scene: &scene, problem: &problem, pressure: &pressure, motion };
     let solution = found.solution(stressed, seconds);
     Ok(CellSolution { solution, pressure, middle: scene.middle })
 }
@@ -313,7 +311,7 @@ pub fn loads_on_cells(
         Ok(LoadStep {
             force_n,
             approach_m: motion.approach * unit_m,
-            mean_gap_m: contact.mean_gap(&pressure) * unit_m,
+            mean_gap_m: pressure.mean_gap() * unit_m,
             contact_area_m2: pressure.contact_area() * c_m * c_m,
             p_max_pa: pressure.pressure.iter().fold(0.0, |m: f64, p| m.max(*p)) * p0_pa,
         })
@@ -345,8 +343,6 @@ struct Found<'a> {
     pressure: &'a CellPressure,
     /// The motion at the depth of the roller's radius.
     motion: DeepMotion,
-    /// Mean gap (C^2 / (2 R)).
-    mean_gap: f64,
 }
 
 impl Found<'_> {
@@ -420,7 +416,7 @@ impl Found<'_> {
             tolerance: self.problem.tolerance,
             residual: self.pressure.residual,
             contact_area_m2: self.pressure.contact_area() * c_m * c_m,
-            mean_gap_m: self.mean_gap * case.gap_unit_m(),
+            mean_gap_m: self.pressure.mean_gap() * case.gap_unit_m(),
             approach_reference_m: radius_m,
             roller_diametral_tension_pa: Shaping::of(case).roller_tension() * p0_pa,
         }

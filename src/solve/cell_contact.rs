@@ -112,12 +112,6 @@ impl<'a> CellContact<'a> {
         }
     }
 
-    /// The gaps (C^2 / (2 R)) under `pressure` over its cells.
-    fn gaps(&self, pressure: &CellPressure) -> Result<Vec<f64>> {
-        let problem = CellProblem { grid: pressure.grid, ..self.problem.clone() };
-        self.with_gap(&pressure.grid, |gap| problem.gaps(gap, pressure))
-    }
-
     /// Refuses a contact whose surfaces penetrate each other beyond the cells, as far as there are
     /// heights: asperities stand there on their own.
     fn check_beyond(&self, pressure: &CellPressure) -> Result<()> {
@@ -139,9 +133,11 @@ impl<'a> CellContact<'a> {
         let padded = CellPressure {
             grid: wide,
             pressure: pressure.pressure.chunks_exact(grid.nx).flat_map(row).collect(),
+            gap: Vec::new(),
             ..*pressure
         };
-        let gaps = self.gaps(&padded)?;
+        let problem = CellProblem { grid: wide, ..self.problem.clone() };
+        let gaps = self.with_gap(&wide, |gap| problem.gaps(gap, &padded))?;
         let beyond = |i: usize| !(more..more + grid.nx).contains(&(i % nx));
         let deep = |gap: f64| gap < -PENETRATION * closed;
         let touched = gaps.iter().enumerate().filter(|(i, gap)| beyond(*i) && deep(**gap));
@@ -158,22 +154,6 @@ impl<'a> CellContact<'a> {
             ),
             remedy: WIDER.into(),
         })
-    }
-
-    /// Mean gap (C^2 / (2 R)) under `pressure` over the cells within C of the line x = 0, or over
-    /// those next to it if they are wider.
-    pub fn mean_gap(&self, pressure: &CellPressure) -> f64 {
-        let grid = &pressure.grid;
-        let gaps = self.gaps(pressure).expect("the contact was solved with its heights");
-        let next = (0..grid.nx).map(|i| grid.x(i).abs()).fold(f64::INFINITY, f64::min);
-        let within = (next * (1.0 + 1e-9)).max(1.0);
-        let near: Vec<f64> = gaps
-            .iter()
-            .enumerate()
-            .filter(|(i, _)| grid.x(i % grid.nx).abs() <= within)
-            .map(|(_, gap)| gap.max(0.0))
-            .collect();
-        near.iter().sum::<f64>() / near.len() as f64
     }
 
     /// The contact on the cells of `problem` whose tilt at the depth is the `wanted` one, by
