@@ -1,5 +1,5 @@
-//! Materials, Hertz scales, profiles, the stress tensor, graded axes, wavenumbers, quadrature, the
-//! error type, and numbers as text.
+//! Materials, Hertz scales, profiles, the stress tensor, graded axes, wavenumbers, quadrature,
+//! splines, the error type, and numbers as text.
 
 mod bodies;
 mod error;
@@ -11,6 +11,7 @@ mod parity;
 pub mod profile;
 mod quadrature;
 mod scales;
+mod spline;
 pub mod stop;
 mod tensor;
 mod wavenumbers;
@@ -23,5 +24,6 @@ pub use parity::Parity;
 pub use profile::Profile;
 pub use quadrature::{crowded_legendre, gauss_legendre};
 pub use scales::HertzScales;
+pub use spline::spline;
 pub use tensor::StressTensor;
 pub use wavenumbers::Wavenumbers;

@@ -14,6 +14,7 @@ mod model;
 mod part;
 mod quarter_space;
 mod skin;
+mod skin_waves;
 mod stack;
 pub mod stencil;
 
@@ -25,5 +26,6 @@ pub use fold::Fold;
 pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;
 pub use part::Part;
-pub use skin::{Skin, SkinLine, Skins};
+pub use skin::{SkinLine, Skins};
+pub use skin_waves::Skin;
 pub use stack::{LoadedLine, Placed, Stack};
