@@ -161,8 +161,8 @@ impl Skins {
         }
     }
 
-    /// [`Skins::add_compliances`] less what the skin of the half-space adds on which the load is
-    /// mirrored in the planes of the end faces. What is left is smooth along the line: it is
+    /// [`Skins::add_compliances`] less the same of a half-space, on which the load is mirrored in
+    /// the planes of the end faces. What is left is smooth along the line: it is
     /// interpolated by a spline, so that nothing jumps from one panel to the next.
     pub fn add_compliances_of_ends(
         &self,

@@ -179,7 +179,7 @@ impl<'a> OnSurface<'a> {
         i: usize,
         freed: impl Fn(usize, DMatrix<f64>, DMatrix<f64>) -> Skin,
     ) -> SkinWave {
-        let (body, k) = (self.body, self.k[i]);
+        let k = self.k[i];
         let (first, places) = nearest(self.k, k);
         let (rows, columns) = self.waves[i].own.shape();
         let zeros = || [0; 3].map(|_| DMatrix::zeros(rows, columns));
@@ -193,8 +193,8 @@ impl<'a> OnSurface<'a> {
         }
         let [xx, yy, xy] = &twice;
         let mut tension = yy.clone();
-        for (mut row, y) in tension.row_iter_mut().zip(body.surface.axis.nodes()) {
-            let square = ((body.half - y) / NEAR_FACE).powi(2);
+        for (mut row, y) in tension.row_iter_mut().zip(self.body.surface.axis.nodes()) {
+            let square = ((self.body.half - y) / NEAR_FACE).powi(2);
             row *= square / (1.0 + square);
         }
         let apart = -0.5 * k * (tension + k * (&self.integral * xy));
@@ -423,7 +423,9 @@ fn slopes(axis: &Panels) -> DMatrix<f64> {
 }
 
 /// The integral of loads from the middle of the body to each node of its `axis`; of loads whose
-/// integral is even, `parity`, minus that from the node to the end.
+/// integral is even, `parity`, minus that from the node to the end. Both vanish at the end, as
+/// forces apart cannot do without: an odd one does so less its share of what all loads come to. A
+/// force at the corner itself would take the place of that.
 fn integrals(axis: &Panels, parity: Parity) -> DMatrix<f64> {
     let order = axis.order();
     let mut matrix = DMatrix::zeros(axis.len(), axis.len());
@@ -438,6 +440,10 @@ fn integrals(axis: &Panels, parity: Parity) -> DMatrix<f64> {
             matrix[(i, panel * order + j)] = sign * w;
         }
         others.for_each(|j| matrix[(i, j)] = sign * axis.weights()[j]);
+        if parity == Parity::Odd {
+            let share = y / axis.end();
+            (0..axis.len()).for_each(|j| matrix[(i, j)] -= share * axis.weights()[j]);
+        }
     }
     matrix
 }

@@ -2,8 +2,8 @@
 //!
 //! A point load P at a round surface, x across it, has the stresses c (x^2 - y^2) / r^4, minus that
 //! and 2 c x y / r^4, c = (1 - 2 nu) P / (2 pi), along its tangent plane (Johnson, Contact
-//! Mechanics, 1985, Eq. 3.19), of which the body has to do without the skin between plane and
-//! surface, x^2 / (2 R) thick (see [`crate::body::Skins`]). The skin's forces have no divergence
+//! Mechanics, 1985, Eq. 3.19). The body lacks the skin between plane and surface, x^2 / (2 R)
+//! thick, and with it these stresses (see [`crate::body::Skins`]). Their forces have no divergence
 //! but for that of its thickness: the flat body carries the tractions -(x / R) times the first and
 //! the last of these stresses. By Cerruti they displace it along z, in the transform over both
 //! directions with K^2 = k^2 + l^2, by (1 - 2 nu)^2 / (1 - nu) l^2 / K^4 times P / R in units of
@@ -24,8 +24,8 @@ const FAR: f64 = 16.0;
 
 /// What the surface of a body of Poisson's ratio `nu` moves at (`x`, `y`) from the centre of the
 /// rectangle |x'| <= `a`, |y'| <= `b` under the unit pressure there, per 1 / R, positive into the
-/// body, in units of (1 - nu^2) / E; at the distance `zero` from a force it is taken not to move
-/// but for the shape x^2 / r^2.
+/// body, in units of (1 - nu^2) / E. At the distance `zero` the logarithm of the distance is taken
+/// for zero.
 ///
 /// All lengths in one unit. Finite everywhere; to 1e-5 of its largest value far away, else to
 /// rounding.

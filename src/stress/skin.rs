@@ -20,6 +20,10 @@ const LEAST_DEPTH: f64 = 0.05;
 /// with.
 const NODES_PER_E: f64 = 1.3;
 
+/// Distance from an end face (C) within which stresses vary with that, where the contact ends
+/// farther from it.
+const BESIDE_FACE: f64 = 1.5;
+
 /// The field of a skin under a pressure.
 #[derive(Debug)]
 pub(super) struct SkinField<'a> {
@@ -134,7 +138,15 @@ impl<'a> SkinField<'a> {
         let mut stresses = vec![StressTensor::default(); ys.len()];
         for side in [1.0, -1.0] {
             let own = |y: f64| if side > 0.0 { y >= middle } else { y < middle };
-            let own: Vec<usize> = (0..ys.len()).filter(|i| own(ys[*i])).collect();
+            let own = (0..ys.len()).filter(|i| own(ys[*i]));
+            let face = self.skins.middle + side * self.skins.bodies[0].half;
+            let from_face = |y: f64| side * (face - y);
+            let open = from_face(middle + side * end) > BESIDE_FACE;
+            let beside = |i: &usize| open && from_face(ys[*i]) < BESIDE_FACE;
+            let (beside, own): (Vec<usize>, Vec<usize>) = own.partition(beside);
+            for i in beside {
+                stresses[i] = self.meeting(self.below(ys[i], depth, &[0.0])[0], ys[i], z);
+            }
             let place = |i: &usize| ((side * (ys[*i] - middle) - end) / depth).asinh();
             let places: Vec<f64> = own.iter().map(place).collect();
             let at = |t: f64| self.below(middle + side * (end + depth * t.sinh()), depth, &[0.0]);

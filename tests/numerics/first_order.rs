@@ -85,7 +85,7 @@ fn wide_cases() -> Vec<Case> {
     Study::built_in().cases().filter(wide).cloned().collect()
 }
 
-/// Errors against recorded finite elements, more than `edge` from the roller's corners: the root
+/// Errors against recorded finite elements, `edge` and more from the roller's corners: the root
 /// mean square of the worst component on a curve, and the largest error, of block and roller.
 fn errors(case: &Case, solution: &Curves, edge: f64) -> [[f64; 2]; 2] {
     assert!(case.accuracy.first_order);
@@ -126,8 +126,8 @@ fn round_rollers_have_the_stresses_of_finite_elements() {
     }
 }
 
-/// All corners of the study. The roller of the longest and widest one was off by 0.0124 without
-/// these terms; its cells are 0.1 C long, as far as the next corner of those that count.
+/// All cases of the study. The roller of the longest and widest one was off by 0.0124 without these
+/// terms. Its cells are 0.1 C long, so that a point at 0.15 C lies in the second one.
 #[test]
 fn round_rollers_on_cells_have_the_stresses_of_finite_elements() {
     let cells = CellOptions { counts: Some([256, 400]), ..CellOptions::default() };
