@@ -110,7 +110,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let stated = arguments.stated.statements()?;
     let thresholds = match &arguments.gates {
         Some(path) => gate::parse(&read(path)?, path)?,
-        None => Gates::built_in()?,
+        None => Gates::for_others()?,
     };
     let limits = match &arguments.gates {
         Some(_) => Limits::Given(&thresholds.gate),

@@ -13,9 +13,9 @@ use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 use std::process::Output;
 
-/// One flush case and one on a longer block, by the two most accurate models.
+/// One flush case and one on a longer block of the default study, by the two most accurate models.
 const STUDY: &str = "name = \"small\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
-[block]\nyoung_pa = 210e9\npoisson = 0.3\n[factors]\nW = [1e-3]\nS_l = [5.0]\nL_r = [0.5, 1.0]\n";
+[block]\nyoung_pa = 210e9\npoisson = 0.3\n[factors]\nW = [1e-3]\nS_l = [5.0]\nL_r = [0.5, 1.0]\n[accuracy]\nfirst_order = true\n";
 
 const METHODS: [EdgeModel; 2] = [EdgeModel::Guilbault, EdgeModel::QuarterSpace];
 

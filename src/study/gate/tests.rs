@@ -180,7 +180,7 @@ fn every_built_in_study_has_thresholds_and_accepted_numbers_of_its_own() {
         [words[0], words[1], words[2]].map(String::from)
     };
     assert_eq!(accepted.numbers.keys().map(of_numbers).collect::<BTreeSet<_>>(), places);
-    assert_eq!(Gates::built_in_for("any other").unwrap(), Gates::built_in().unwrap());
+    assert_eq!(Gates::built_in_for("any other").unwrap(), Gates::for_others().unwrap());
 }
 
 #[test]

@@ -16,6 +16,9 @@ pub(super) const BUILTIN_GATES: [(&str, &str); 3] = [
     ("scenes", include_str!("../gates/scenes.toml")),
 ];
 
+/// Those of cases in no built-in study.
+const OTHERS: (&str, &str) = ("others", include_str!("../gates/others.toml"));
+
 /// The thresholds file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -36,14 +39,26 @@ impl Gates {
         Self::built_in_for(BUILTIN_GATES[0].0)
     }
 
-    /// The thresholds that are built into the program for the built-in `study`, and the default
-    /// study's for any other.
+    /// The thresholds that are built into the program for the built-in `study`, and those of
+    /// [`Gates::for_others`] for any other.
     ///
     /// # Errors
     /// As [`parse`].
     pub fn built_in_for(study: &str) -> Result<Self> {
         let own = BUILTIN_GATES.iter().find(|(name, _)| *name == study);
-        let (name, text) = own.unwrap_or(&BUILTIN_GATES[0]);
+        Self::embedded(own.unwrap_or(&OTHERS))
+    }
+
+    /// The thresholds for cases in no built-in study, which may be without the terms of first order
+    /// that the default study has.
+    ///
+    /// # Errors
+    /// As [`parse`].
+    pub fn for_others() -> Result<Self> {
+        Self::embedded(&OTHERS)
+    }
+
+    fn embedded((name, text): &(&str, &str)) -> Result<Self> {
         parse(text, &Path::new("gates").join(name).with_extension("toml"))
     }
 
