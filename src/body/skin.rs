@@ -110,10 +110,7 @@ impl Skins {
             Body::new(fold.axis(), shape, end, part, &resolution)
         };
         let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
-        let of_body = |body: &Body| {
-            let own = OnSurface::new(body, k);
-            own.freed_skins(&tables)
-        };
+        let of_body = |body: &Body| OnSurface::new(body, k).skins(&tables);
         let (loads, compliances) = bodies.iter().map(of_body).unzip();
         let wavenumbers = Wavenumbers::new(coarse, resolution.k_step);
         Self { middle, line, fold, bodies, wavenumbers, tables, loads, compliances }
@@ -162,8 +159,8 @@ impl Skins {
     }
 
     /// [`Skins::add_compliances`] less the same of a half-space, on which the load is mirrored in
-    /// the planes of the end faces. What is left is smooth along the line: it is
-    /// interpolated by a spline, so that nothing jumps from one panel to the next.
+    /// the planes of the end faces. What is left is smooth along the line: it is interpolated by a
+    /// spline, so that nothing jumps from one panel to the next.
     pub fn add_compliances_of_ends(
         &self,
         k: &[f64],
@@ -174,23 +171,19 @@ impl Skins {
         let coarse = self.wavenumbers.coarse();
         let waves = &coarse.nodes()[coarse.order() - BEFORE..];
         let known = self.known();
+        let line = self.fold.axis();
         for (body, free) in self.bodies.iter().zip(&self.compliances) {
-            let mirrored = OnSurface::mirrored(body, waves).mirrored_compliances();
-            let line = self.fold.axis();
-            let onto = self.splines(axis, body.parity);
+            let (_, mirrored) = OnSurface::mirrored(body, waves).skins(&self.tables);
+            let back = self.splines(axis, body.parity);
             // Of the density of a load: an even or odd part carries half of what acts on a side.
             let share = if self.fold.parities().len() == 1 { factor } else { 0.5 * factor };
+            let onto = DMatrix::from_fn(line.len(), axis.len(), |i, j| {
+                share * back[(j, i)] * axis.weights()[j] / line.weights()[i]
+            });
             for (&k, total) in k.iter().zip(totals.iter_mut()) {
-                if k > known[known.len() - 1] {
-                    continue;
+                if k <= known[known.len() - 1] {
+                    *total += &back * ((free.at(known, k) - mirrored.at(known, k)) * &onto);
                 }
-                let mut kernel = share * (free.at(known, k) - mirrored.at(known, k));
-                let columns = kernel.column_iter_mut().zip(line.weights());
-                columns.for_each(|(mut column, weight)| column /= *weight);
-                let mut smooth = &onto * kernel * onto.transpose();
-                let columns = smooth.column_iter_mut().zip(axis.weights());
-                columns.for_each(|(mut column, weight)| column *= *weight);
-                *total += smooth;
             }
         }
     }

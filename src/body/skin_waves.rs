@@ -61,18 +61,24 @@ impl SkinCompliances {
 
 /// What one wavenumber of a body leads to, per contact pressure.
 struct Wave {
-    /// P at the surface nodes, and q at the face nodes.
+    /// P at the surface nodes.
     own: DMatrix<f64>,
-    q: DMatrix<f64>,
-    /// Normal stress on the faces per P, and on the surface per q; of no use where the load is
-    /// mirrored.
-    faces: [DMatrix<f64>; 2],
     /// (k / 2) e^(-k |u|) over the surface's loads at the offsets u from each of its nodes.
     spread: DMatrix<f64>,
-    /// Displacement at the contact nodes per P.
-    displacement: DMatrix<f64>,
     /// Stresses xx, yy and xy on the surface at its nodes.
     stresses: [DMatrix<f64>; 3],
+    /// What frees the end faces; none where the load is mirrored in them.
+    free: Option<FreeWave>,
+}
+
+/// What frees the end faces of a body at one wavenumber.
+struct FreeWave {
+    /// q at the face nodes per contact pressure.
+    q: DMatrix<f64>,
+    /// Normal stress on the faces per P, and on the surface per q.
+    faces: [DMatrix<f64>; 2],
+    /// Displacement at the contact nodes per P.
+    displacement: DMatrix<f64>,
 }
 
 /// A skin at one wavenumber.
@@ -105,66 +111,48 @@ pub(super) struct OnSurface<'a> {
 impl<'a> OnSurface<'a> {
     /// Those of a `body` at the ascending wavenumbers `k`.
     pub fn new(body: &'a Body, k: &'a [f64]) -> Self {
-        let mut own = Self::beside(body, k, Wave::new);
-        for (k, waves) in k.chunks(WAVES).zip(own.waves.chunks_mut(WAVES)) {
+        let mut all = Self::beside(body, k, |k| {
+            let (own, free) = FreeWave::new(body, k);
+            (own, Some(free))
+        });
+        for (k, waves) in k.chunks(WAVES).zip(all.waves.chunks_mut(WAVES)) {
             add_faces(body, k, waves);
         }
-        own
+        all
     }
 
     /// Those of the half-space on which the load on a `body` is mirrored in its end faces.
     pub fn mirrored(body: &'a Body, k: &'a [f64]) -> Self {
-        Self::beside(body, k, |body, _| Wave::mirrored(body))
+        Self::beside(body, k, |_| (pressed(body), None))
     }
 
-    /// Those that `wave` gives, with the stresses on the surface beside its loads.
-    fn beside(body: &'a Body, k: &'a [f64], wave: impl Fn(&Body, f64) -> Wave) -> Self {
+    /// Those under the loads on the surface that `loads` gives, with the stresses beside them.
+    fn beside(
+        body: &'a Body,
+        k: &'a [f64],
+        loads: impl Fn(f64) -> (DMatrix<f64>, Option<FreeWave>),
+    ) -> Self {
         let axis = &body.surface.axis;
         let stencils: Vec<Stencil> =
             axis.nodes().iter().map(|y| body.surface_stencil(*y, 0.0)).collect();
         let wave = |&k: &f64| {
-            let mut waves = wave(body, k);
-            let [even, odd] = spread(body, &stencils, k);
-            let free = 1.0 - 2.0 * body.nu;
-            let own = &waves.own;
-            let beside = free * &even * own;
-            waves.stresses = [-2.0 * body.nu * own - &beside, beside - own, free * odd * own];
-            waves.spread = even;
-            waves
+            let (own, free) = loads(k);
+            let [spread, odd] = spread(body, &stencils, k);
+            let softer = 1.0 - 2.0 * body.nu;
+            let beside = softer * &spread * &own;
+            let stresses = [-2.0 * body.nu * &own - &beside, beside - &own, softer * odd * &own];
+            Wave { own, spread, stresses, free }
         };
         let waves = k.iter().map(wave).collect();
         Self { body, k, waves, slope: slopes(axis), integral: integrals(axis, body.parity) }
     }
 
-    /// The skins whose loads free the end faces, and what they add to the compliance.
-    pub fn freed_skins(&self, tables: &[Arc<WaveTable>; 2]) -> (Vec<Skin>, SkinCompliances) {
-        self.skins(|i, along, apart| {
-            self.waves[i].freed(self.body, self.k[i], tables, along, apart)
-        })
-    }
-
-    /// What the skin adds to the compliance where no end face is to be freed.
-    pub fn mirrored_compliances(&self) -> SkinCompliances {
-        let none = DMatrix::zeros(self.body.surface.axis.len(), self.body.contact().len());
-        let (_, compliances) = self.skins(|_, along, apart| Skin {
-            along,
-            apart,
-            surface: none.clone(),
-            face: DMatrix::zeros(0, 0),
-        });
-        compliances
-    }
-
     /// The skins at all wavenumbers but the first [`BEFORE`], and what they add to the compliance.
-    /// `freed` makes a skin of the number of its wavenumber and its loads along and apart.
-    fn skins(
-        &self,
-        freed: impl Fn(usize, DMatrix<f64>, DMatrix<f64>) -> Skin,
-    ) -> (Vec<Skin>, SkinCompliances) {
+    pub fn skins(&self, tables: &[Arc<WaveTable>; 2]) -> (Vec<Skin>, SkinCompliances) {
         let (mut skins, mut own) = (Vec::new(), Vec::new());
         let mut longest = None;
         for i in BEFORE..self.k.len() {
-            let wave = self.skin(i, &freed);
+            let wave = self.skin(i, tables);
             own.push(self.compliance(&wave, Waves::Own));
             longest.get_or_insert_with(|| self.compliance(&wave, Waves::Longer));
             skins.push(wave.skin);
@@ -172,13 +160,8 @@ impl<'a> OnSurface<'a> {
         (skins, SkinCompliances { own, longest: longest.expect("a skin") })
     }
 
-    /// The skin at wavenumber number `i`, which `freed` makes of this number and of the loads along
-    /// and apart.
-    fn skin(
-        &self,
-        i: usize,
-        freed: impl Fn(usize, DMatrix<f64>, DMatrix<f64>) -> Skin,
-    ) -> SkinWave {
+    /// The skin at wavenumber number `i`.
+    fn skin(&self, i: usize, tables: &[Arc<WaveTable>; 2]) -> SkinWave {
         let k = self.k[i];
         let (first, places) = nearest(self.k, k);
         let (rows, columns) = self.waves[i].own.shape();
@@ -199,7 +182,10 @@ impl<'a> OnSurface<'a> {
         }
         let apart = -0.5 * k * (tension + k * (&self.integral * xy));
         let along = -0.5 * (k * xx - &self.slope * xy);
-        SkinWave { number: i, once, twice, skin: freed(i, along, apart) }
+        let freeing = self.waves[i].free.as_ref();
+        let freeing = freeing.map(|free| free.freeing(self.body, k, tables, [&along, &apart]));
+        let [surface, face] = freeing.unwrap_or_else(|| [0; 2].map(|_| DMatrix::zeros(0, 0)));
+        SkinWave { number: i, once, twice, skin: Skin { along, apart, surface, face } }
     }
 
     /// What a skin adds to the compliance at its own wavenumber or under longer waves.
@@ -221,9 +207,10 @@ impl<'a> OnSurface<'a> {
         };
         let shear = 0.5 * PI * (1.0 - 2.0 * nu) / (1.0 - nu);
         let dragged = 2.0 / k * (&wave.spread * (&skin.apart - &skin.along) - &skin.apart);
-        let mut all = PI / (1.0 - nu * nu) * beside
-            + shear * rows(&dragged)
-            + &wave.displacement * &skin.surface;
+        let mut all = PI / (1.0 - nu * nu) * beside + shear * rows(&dragged);
+        if let Some(free) = &wave.free {
+            all += &free.displacement * &skin.surface;
+        }
         // A displacement is smooth at the corner, where stresses need not be.
         let from_face: Vec<f64> =
             body.surface.axis.nodes()[contact].iter().map(|y| body.half - y).collect();
@@ -236,54 +223,32 @@ impl<'a> OnSurface<'a> {
     }
 }
 
-impl Wave {
-    /// The waves of a `body` at the wavenumber `k`, without the stresses on the surface.
-    fn new(body: &Body, k: f64) -> Self {
-        let pressed = pressed(body);
+impl FreeWave {
+    /// That of a `body` at the wavenumber `k`, with P at the surface nodes per contact pressure.
+    fn new(body: &Body, k: f64) -> (DMatrix<f64>, Self) {
         let to_face = body.surface_matrix(k, &body.kernel);
         let from_face = body.faces_matrix(k, to_face.nrows());
         let faces = [to_face, from_face];
-        let own = solved(&faces, pressed);
-        let none = || DMatrix::zeros(0, 0);
-        Self {
-            q: -(&faces[0] * &own),
-            own,
-            faces,
-            spread: none(),
-            displacement: body.displacement(k),
-            stresses: [none(), none(), none()],
-        }
+        let own = solved(&faces, pressed(body));
+        let q = -(&faces[0] * &own);
+        (own, Self { q, faces, displacement: body.displacement(k) })
     }
 
-    /// The same of the half-space on which the load is mirrored.
-    fn mirrored(body: &Body) -> Self {
-        let none = || DMatrix::zeros(0, 0);
-        let (n, contact) = (body.surface.axis.len(), body.contact().len());
-        Self {
-            own: pressed(body),
-            q: none(),
-            faces: [none(), none()],
-            spread: none(),
-            displacement: DMatrix::zeros(contact, n),
-            stresses: [none(), none(), none()],
-        }
-    }
-
-    /// The skin with the loads `along` and `apart`, and those that free the end faces of them.
-    fn freed(
+    /// P and q that free the end faces of the loads `along` and `apart`.
+    fn freeing(
         &self,
         body: &Body,
         k: f64,
         tables: &[Arc<WaveTable>; 2],
-        along: DMatrix<f64>,
-        apart: DMatrix<f64>,
-    ) -> Skin {
+        [along, apart]: [&DMatrix<f64>; 2],
+    ) -> [DMatrix<f64>; 2] {
         let [to_face, from_face] = &self.faces;
         // sin(k x) is a quarter of a wave behind: stresses across the contact are - cos(k x).
-        let own = body.surface_matrix(k, &tables[1]) * &apart
-            - body.surface_matrix(k, &tables[0]) * &along;
+        let own =
+            body.surface_matrix(k, &tables[1]) * apart - body.surface_matrix(k, &tables[0]) * along;
         let surface = solved(&self.faces, from_face * &own);
-        Skin { face: -(to_face * &surface + own), along, apart, surface }
+        let face = -(to_face * &surface + own);
+        [surface, face]
     }
 }
 
@@ -332,7 +297,10 @@ fn spread(body: &Body, stencils: &[Stencil], k: f64) -> [DMatrix<f64>; 2] {
 fn add_faces(body: &Body, k: &[f64], waves: &mut [Wave]) {
     let mut own = [f64::INFINITY; WAVES];
     own[..k.len()].copy_from_slice(k);
-    let of_wave = |wave: &Wave| [0; 3].map(|_| Rows::new(&body.face, wave.q.nrows()));
+    let of_wave = |wave: &Wave| {
+        let loads = wave.free.as_ref().map_or(0, |free| free.q.nrows());
+        [0; 3].map(|_| Rows::new(&body.face, loads))
+    };
     let mut rows: Vec<[Rows; 3]> = waves.iter().map(of_wave).collect();
     let (unit, reach) = ([[1.0; WAVES]], body.reach(1.0));
     for &y in body.surface.axis.nodes() {
@@ -362,10 +330,11 @@ fn add_faces(body: &Body, k: &[f64], waves: &mut [Wave]) {
         }
     }
     for ((rows, wave), &k) in rows.into_iter().zip(waves).zip(k) {
+        let Some(free) = &wave.free else { continue };
         let mut per_load = rows.map(Rows::finish);
         add_plate(body, k, &mut per_load);
         let sums = wave.stresses.iter_mut().zip(per_load);
-        sums.for_each(|(sum, per_load)| *sum += per_load * &wave.q);
+        sums.for_each(|(sum, per_load)| *sum += per_load * &free.q);
     }
 }
 

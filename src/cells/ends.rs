@@ -478,25 +478,11 @@ const ROWS: usize = 4;
 #[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
 fn thin_product(matrix: &[f64], columns: &[[f64; LINES]], out: &mut [[f64; LINES]]) {
     let n = columns.len();
-    let add = |sum: &mut [f64; LINES], factor: f64, column: &[f64; LINES]| {
-        sum.iter_mut().zip(column).for_each(|(sum, v)| *sum += factor * v);
-    };
     for (rows, out) in matrix.chunks(ROWS * n).zip(out.chunks_mut(ROWS)) {
         let mut sums = [[0.0; LINES]; ROWS];
-        if let [first, second, third, fourth] = &mut sums
-            && rows.len() == ROWS * n
-        {
-            let (front, back) = rows.split_at(2 * n);
-            let ((a, b), (c, d)) = (front.split_at(n), back.split_at(n));
-            for ((((column, a), b), c), d) in columns.iter().zip(a).zip(b).zip(c).zip(d) {
-                add(first, *a, column);
-                add(second, *b, column);
-                add(third, *c, column);
-                add(fourth, *d, column);
-            }
-        } else {
+        for (j, column) in columns.iter().enumerate() {
             for (sum, row) in sums.iter_mut().zip(rows.chunks_exact(n)) {
-                columns.iter().zip(row).for_each(|(column, v)| add(sum, *v, column));
+                sum.iter_mut().zip(column).for_each(|(sum, v)| *sum += row[j] * v);
             }
         }
         out.copy_from_slice(&sums[..out.len()]);

@@ -12,6 +12,12 @@ use std::f64::consts::PI;
 /// Distances along the line that differ by less than this part of a cell are one.
 const SAME: f64 = 1e-9;
 
+/// A place along y, and the weight of what acts there.
+type Shift = (f64, f64);
+
+/// The cell itself.
+const ITSELF: Shift = (0.0, 1.0);
+
 /// Images of every cell in the two end faces of a body.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Images {
@@ -27,16 +33,16 @@ pub struct Images {
 impl Images {
     /// Twice the places of both faces: the image in the face at H of what acts at y' is at 2 H -
     /// y'. Each with the weight.
-    pub(super) fn shifts(&self) -> [(f64, f64); 2] {
+    fn shifts(&self) -> [Shift; 2] {
         [1.0, -1.0].map(|side| (2.0 * (self.middle + side * self.half), self.weight))
     }
 
     /// The shifts and weights whose sum is the even or the odd part in y of what a pressure
     /// displaces that is mirrored in y = 0 and shifted to both faces.
-    fn parted(&self, parity: Parity) -> [(f64, f64); 4] {
+    fn parted(&self, parity: Parity) -> [Shift; 4] {
         let [one, other] = self.shifts();
-        let own = |(shift, weight): (f64, f64)| (shift, 0.5 * weight);
-        let opposite = |(shift, weight): (f64, f64)| (-shift, 0.5 * parity.sign() * weight);
+        let own = |(shift, weight): Shift| (shift, 0.5 * weight);
+        let opposite = |(shift, weight): Shift| (-shift, 0.5 * parity.sign() * weight);
         [own(one), opposite(one), own(other), opposite(other)]
     }
 }
@@ -53,6 +59,11 @@ pub(super) struct RoundImages {
 }
 
 impl RoundImages {
+    /// The cell itself.
+    fn itself(&self) -> Shift {
+        (0.0, self.images.weight)
+    }
+
     /// What is added by a cell of these half-sides at the distance (`x`, `y`) from its centre.
     fn influence(&self, x: f64, y: f64, (a, b): (f64, f64)) -> f64 {
         round::rectangle([x, y], [a, b], self.nu, self.zero)
@@ -92,64 +103,60 @@ pub(super) struct Table {
 
 impl Table {
     /// The displacement by the cell itself, between bodies of which some are `round`.
-    pub(super) fn direct(grid: &Grid, [mx, my]: [usize; 2], round: &[RoundImages]) -> Self {
-        let mut all = Self::sum(grid, mx, my, &[(0.0, 1.0)], influence);
-        for body in round {
-            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
-            all.add(&Self::sum(grid, mx, my, &[(0.0, body.images.weight)], own));
-        }
-        all
+    pub(super) fn direct(grid: &Grid, sides: [usize; 2], round: &[RoundImages]) -> Self {
+        Self::rounded(grid, sides, &[ITSELF], round, |body| vec![body.itself()])
     }
 
     /// The part that is even, or odd, in y of the displacements by all images. Without bodies off
     /// the cells' middle there is no odd part.
     pub(super) fn images(
         grid: &Grid,
-        [mx, my]: [usize; 2],
+        sides: [usize; 2],
         images: &[Images],
         round: &[RoundImages],
         parity: Parity,
     ) -> Self {
         let shifts: Vec<_> = images.iter().flat_map(|own| own.parted(parity)).collect();
-        let mut all = Self::sum(grid, mx, my, &shifts, influence);
-        for body in round {
-            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
-            all.add(&Self::sum(grid, mx, my, &body.images.parted(parity), own));
-        }
-        all
+        Self::rounded(grid, sides, &shifts, round, |body| body.images.parted(parity).to_vec())
     }
 
-    /// The displacement by an even pressure, whose images are shifted only.
+    /// The displacement by an even pressure, whose images are shifted only. In one sum, as the cell
+    /// and its images share most distances.
     pub(super) fn even(
         grid: &Grid,
-        [mx, my]: [usize; 2],
+        sides: [usize; 2],
         images: &[Images],
         round: &[RoundImages],
     ) -> Self {
-        // In one sum, as the cell and its images share most distances.
-        let mut shifts = vec![(0.0, 1.0)];
-        shifts.extend(images.iter().flat_map(|own| own.parted(Parity::Even)));
-        let mut all = Self::sum(grid, mx, my, &shifts, influence);
-        for body in round {
-            let mut shifts = vec![(0.0, body.images.weight)];
-            shifts.extend(body.images.parted(Parity::Even));
-            let own = |x: f64, y: f64, cell: (f64, f64)| body.influence(x, y, cell);
-            all.add(&Self::sum(grid, mx, my, &shifts, own));
-        }
-        all
+        let with = |itself, images: &[Images]| -> Vec<_> {
+            let images = images.iter().flat_map(|own| own.parted(Parity::Even));
+            [itself].into_iter().chain(images).collect()
+        };
+        let shifts = with(ITSELF, images);
+        Self::rounded(grid, sides, &shifts, round, |body| with(body.itself(), &[body.images]))
     }
 
-    /// Adds another table of the same distances.
-    fn add(&mut self, other: &Self) {
-        self.values.iter_mut().zip(&other.values).for_each(|(sum, own)| *sum += own);
+    /// The displacement by cells at `shifts`, and what round surfaces add by cells at their `own`.
+    fn rounded(
+        grid: &Grid,
+        sides: [usize; 2],
+        shifts: &[Shift],
+        round: &[RoundImages],
+        own: impl Fn(&RoundImages) -> Vec<Shift>,
+    ) -> Self {
+        let mut all = Self::sum(grid, sides, shifts, influence);
+        for body in round {
+            let added = Self::sum(grid, sides, &own(body), |x, y, cell| body.influence(x, y, cell));
+            all.values.iter_mut().zip(added.values).for_each(|(sum, own)| *sum += own);
+        }
+        all
     }
 
     /// The weighted sum of the influences, by `kernel`, of cells at `shifts` along y.
     fn sum(
         grid: &Grid,
-        mx: usize,
-        my: usize,
-        shifts: &[(f64, f64)],
+        [mx, my]: [usize; 2],
+        shifts: &[Shift],
         kernel: impl Fn(f64, f64, (f64, f64)) -> f64 + Sync,
     ) -> Self {
         let (a, b) = grid.half_sides();

@@ -9,7 +9,7 @@ use super::solved::wanted_curves;
 use crate::base::{HertzScales, PerBody, StressTensor};
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
-use crate::stress::round::{ContactEnds, LocalContact, rounded};
+use crate::stress::round::{ContactEnds, LocalContact, add_skins, rounded};
 use crate::stress::{
     BodyField, BodyKind, CurveSpec, FlatStress, LineLoad, RoundStress, StressCurve, Work,
 };
@@ -172,8 +172,7 @@ impl Summed<'_> {
         };
         let mut all = rounded(&xs, &[z], contact, sloped, flat).swap_remove(0);
         if let Some(ends) = self.ends.as_ref().filter(|_| !self.flat) {
-            let skin = ends.skin_at(y, z, &xs);
-            all.iter_mut().zip(skin).for_each(|(sum, skin)| sum.round.pressure += skin);
+            add_skins(&mut all, &ends.skin_at(y, z, &xs));
         }
         all
     }

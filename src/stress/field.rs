@@ -9,7 +9,7 @@
 
 use super::flat::FlatStress;
 use super::load::{Load, Traction};
-use super::round::{ContactEnds, LocalContact, RoundStress, STEP, rounded};
+use super::round::{ContactEnds, LocalContact, RoundStress, STEP, add_skins, rounded};
 use super::skin::SkinField;
 use super::target::{KeptPlates, Loaded, ON_FACE, Target, add_wave};
 use super::waves::{LongQuadrature, Waves};
@@ -242,9 +242,7 @@ impl<'a> Field<'a> {
         let contact = self.local_contact(y);
         let flat = |all: &[f64], places: &[f64]| vec![self.near_or_far(y, z, all, places)];
         let mut all = rounded(xs, &[z], &contact, off_middle, flat).swap_remove(0);
-        if let Some(skin) = &self.skin {
-            add_skins(&mut all, &skin.at(y, z, xs));
-        }
+        add_skins(&mut all, &self.skin_at(y, z, xs));
         all
     }
 
@@ -561,11 +559,6 @@ impl<'a> Field<'a> {
         };
         sums.into_iter().map(flat).collect()
     }
-}
-
-/// Adds what a skin makes of stresses.
-fn add_skins(stresses: &mut [RoundStress], skins: &[StressTensor]) {
-    stresses.iter_mut().zip(skins).for_each(|(s, skin)| s.round.pressure += *skin);
 }
 
 /// One side of a line of points along y, from the contact's middle.

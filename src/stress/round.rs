@@ -169,6 +169,11 @@ pub struct RoundStress {
     pub round: FlatStress,
 }
 
+/// Adds to `stresses` what a skin adds at their points, per C / R, if there is one.
+pub fn add_skins(stresses: &mut [RoundStress], skins: &[StressTensor]) {
+    stresses.iter_mut().zip(skins).for_each(|(s, skin)| s.round.pressure += *skin);
+}
+
 impl RoundStress {
     /// The stress at x and the depth `z` below the surface (C), where the flat body has the stress
     /// `flat` with the derivative `slope` along x, per C, under the pressure of `contact`.

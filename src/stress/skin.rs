@@ -98,7 +98,7 @@ impl<'a> SkinField<'a> {
     /// The loads of the fine ones of the wavenumbers `numbers` that have some.
     fn resolved(&self, numbers: &Wavenumbers) -> SkinWaves {
         let fine = numbers.fine().nodes();
-        let long = fine.partition_point(|k| *k < numbers.coarse().breaks()[1]);
+        let long = fine.partition_point(|k| *k < self.skins.longest());
         let k = fine[long..].to_vec();
         let weights = numbers.weights()[long..].iter().map(|w| w / PI).collect();
         let contact = transforms(self.pressure, &self.places, &k).transpose();
