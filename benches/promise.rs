@@ -253,6 +253,10 @@ impl Known {
         );
         let fine = Scene { tolerance: LIMIT_TOLERANCE, ..scene.clone() };
         match SolvedScene::with_resolution(&fine, kind.limit()) {
+            Ok(solved) if solved.contact.coarser.is_some() => {
+                println!("{name}: no limit: its contact is one of a later attempt");
+                None
+            }
             Ok(solved) => {
                 let limit = values(&solved, &places, stresses(&solved, &places.curves));
                 Some(Self { name, scene, places, limit, solved })
@@ -362,7 +366,7 @@ fn price(
         let stress = stresses(&solved, &known.places.curves);
         time += processor_time() - began;
         let found = values(&solved, &known.places, stress);
-        if solved.contact.spacing != resolution.spacing {
+        if solved.contact.coarser.is_some() {
             return None;
         }
         let (pressure, stress, _) = known.errors_of(&found);
@@ -446,7 +450,7 @@ fn hold(count: usize, kinds: &[Kind]) {
             match SolvedScene::new(&scene) {
                 Ok(solved) => {
                     let (pressure, stress, place) = known.errors(&solved);
-                    let same = solved.contact.spacing == solved.resolution.spacing;
+                    let same = solved.contact.coarser.is_none();
                     println!(
                         "{kind:?},{},{tolerance:e},{:.3},{:.3},{},{:.3},{place}",
                         known.name,
@@ -518,11 +522,11 @@ fn causes(kind: Kind, tolerance: f64, index: usize) {
             let (pressure, stress, place) = known.errors(&solved);
             let [pressure, stress] = [pressure, stress].map(|error| error / tolerance);
             println!(
-                "{what:12} {pressure:8.3} {stress:8.3} {place} ends {:.4?} of {:.4?}, {} {}",
+                "{what:12} {pressure:8.3} {stress:8.3} {place} ends {:.4?} of {:.4?}, {} {:?}",
                 solved.ends(),
                 known.solved.ends(),
                 solved.pressure.axis().len(),
-                solved.contact.spacing
+                solved.contact.coarser
             );
             solved.resolution
         }
@@ -552,8 +556,8 @@ fn limit(count: usize) {
                 match SolvedScene::with_resolution(&scene, &resolution) {
                     Ok(solved) => {
                         let (pressure, stress, place) = known.errors(&solved);
-                        let spacing = solved.contact.spacing;
-                        println!("{what:12} {pressure:.1e}, {stress:.1e} {place} {spacing}");
+                        let coarser = solved.contact.coarser;
+                        println!("{what:12} {pressure:.1e}, {stress:.1e} {place} {coarser:?}");
                     }
                     Err(error) => println!("{what:12} {error}"),
                 }

@@ -214,6 +214,9 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     more.extend(pictures(case, &found, None, arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     let names = solution::write(&found, &options, more, &arguments.out)?;
+    if let Some(warning) = found.summary.warning() {
+        say(&format!("warning: {warning}"));
+    }
     tell(case, &found, &names, arguments)
 }
 
@@ -323,9 +326,6 @@ fn tell<D: Serialize>(
     names: &[String],
     arguments: &Arguments,
 ) -> Result<Exit> {
-    if let Some(warning) = found.summary.warning() {
-        say(&format!("warning: {warning}"));
-    }
     if arguments.json {
         print_json(&found.summary)?;
     } else {

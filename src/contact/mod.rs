@@ -32,5 +32,5 @@ pub use operator::{Compliance, LineOperator, Operator};
 pub use problem::{Problem, Rotation};
 pub use settings::ContactSettings;
 pub use slices::Slices;
-pub use solution::ContactSolution;
+pub use solution::{Coarser, ContactSolution};
 pub use solver::solve;

@@ -2,6 +2,7 @@
 
 use crate::kernels::strip;
 use nalgebra::DVector;
+use serde::{Deserialize, Serialize};
 
 /// Contact pressure of the whole line.
 #[derive(Debug, Clone, PartialEq)]
@@ -19,12 +20,25 @@ pub struct ContactSolution {
     pub ends: [f64; 2],
     /// Number of iterations.
     pub iterations: usize,
-    /// [`super::ContactSettings::spacing`] with which it converged.
-    pub spacing: f64,
+    /// What a later attempt solved it with; none if the first one, with the settings, did.
+    pub coarser: Option<Coarser>,
     /// Remaining amplitude of the edge singularity (p0).
     pub residual: f64,
     /// |load - prescribed| / prescribed.
     pub load_error: f64,
+}
+
+/// What a contact was solved with that was not to be solved with the settings asked for. Errors
+/// beside its ends are then larger than those settings promise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
+pub struct Coarser {
+    /// Smallest distance of nodes with an independent half-width, in the resolution's unit.
+    pub spacing: f64,
+    /// Modes of the pressure across the contact.
+    pub modes: usize,
+    /// Most modes behind the last node with an independent half-width.
+    pub end_modes: usize,
 }
 
 impl ContactSolution {

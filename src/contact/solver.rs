@@ -6,7 +6,7 @@ use super::layout::Layout;
 use super::operator::LineOperator;
 use super::problem::{Problem, Rotation};
 use super::settings::ContactSettings;
-use super::solution::ContactSolution;
+use super::solution::{Coarser, ContactSolution};
 use crate::base::stop::go_on;
 use crate::base::{Error, Result};
 use crate::kernels::strip;
@@ -75,10 +75,10 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
     let operator = LineOperator::new(problem.compliance, problem.axis, negligible);
     let guess = first_guess(&operator, problem, settings)?;
     let mut answer = Err(not_converged(0, f64::INFINITY));
-    for attempt in attempts(settings) {
+    for (number, attempt) in attempts(settings).into_iter().enumerate() {
         answer = solve_once(&operator, problem, &attempt, guess.clone()).and_then(|solution| {
             check(&operator, problem, &solution, settings.soundness)?;
-            Ok(solution)
+            Ok(ContactSolution { coarser: (number > 0).then(|| attempt.coarser()), ..solution })
         });
         if answer.is_ok() {
             return answer;
@@ -95,6 +95,13 @@ struct Attempt {
     tail_modes: usize,
     /// Whether nodes take parts of Newton's steps, see [`ALTERNATES`].
     damped: bool,
+}
+
+impl Attempt {
+    fn coarser(&self) -> Coarser {
+        let ContactSettings { spacing, modes, .. } = self.settings;
+        Coarser { spacing, modes, end_modes: self.tail_modes }
+    }
 }
 
 /// The attempts, one after the other until one succeeds: a pressure that is singular at the end, as
@@ -187,7 +194,6 @@ fn solve_once(
             let solution = carrying(problem, &layout, half_widths, &unknowns);
             return Ok(ContactSolution {
                 iterations: iteration,
-                spacing: settings.spacing,
                 residual: worst,
                 ends,
                 ..solution
@@ -342,7 +348,7 @@ fn carrying(
         ends: [0.0; 2],
         load_error,
         iterations: 0,
-        spacing: 0.0,
+        coarser: None,
         residual: 0.0,
     }
 }

@@ -273,6 +273,7 @@ impl SolvedCase {
             edge_neg: (!solved.pressure.is_symmetric())
                 .then(|| edge_strength(solved, Side::Negative))
                 .flatten(),
+            coarser: solved.contact.coarser,
             edge_residual: solved.contact.residual,
             condition: solved.condition,
             bodies_shared: solved.bodies_shared(),

@@ -4,6 +4,7 @@ use super::edge::EdgeStrength;
 use super::solved_scene::Seconds;
 use crate::base::HertzScales;
 use crate::body::{EdgeModel, Resolution};
+use crate::contact::Coarser;
 use crate::stress::{BodyKind, Critical, Work};
 use serde::{Deserialize, Serialize};
 
@@ -49,19 +50,27 @@ pub struct Summary<D = Details> {
     pub details: D,
 }
 
-impl<D> Summary<D> {
+impl Summary {
     /// What to beware of, if anything.
     pub fn warning(&self) -> Option<String> {
-        let warning = || {
-            format!(
+        if !self.converged {
+            return Some(format!(
                 "the contact changed by more than its tolerance until the last of its {} iterations (`converged` \
                  in the summary); compare with a tighter tolerance",
                 self.iterations
-            )
-        };
-        (!self.converged).then(warning)
+            ));
+        }
+        let Coarser { spacing, modes, .. } = self.details.coarser?;
+        let Resolution { spacing: wanted, modes: all, .. } = self.details.resolution;
+        Some(format!(
+            "the contact was not to be solved with half-widths {wanted:.3} C apart and {all} modes, and is solved with \
+             {spacing:.3} C and {modes} (`coarser` in the summary's details); beside its ends errors may be many times \
+             the tolerance: compare with another tolerance, or with --engine cells"
+        ))
     }
+}
 
+impl<D> Summary<D> {
     /// The same with other details.
     pub fn map_details<E>(self, of: impl FnOnce(D) -> E) -> Summary<E> {
         Summary {
@@ -138,6 +147,9 @@ pub struct Details {
     /// The same at the -y end of a contact that is not symmetric.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub edge_neg: Option<EdgeStrength>,
+    /// What the contact was solved with, where the resolution was too fine for it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub coarser: Option<Coarser>,
     /// Remaining amplitude of the pressure's singularity across the contact (p0).
     pub edge_residual: f64,
     /// The largest condition number of the bodies' equations.

@@ -2,7 +2,7 @@
 
 use super::{Options, Point, SolvedCase, solve};
 use crate::body::EdgeModel;
-use crate::case::builtin_case;
+use crate::case::{Case, builtin_case};
 use crate::stress::{BodyKind, Grid};
 
 #[test]
@@ -65,4 +65,43 @@ fn bad_grids_are_refused() {
     assert!(refused(many).contains("5000 x 5000 x 1"));
     let said = solved.stress(BodyKind::Roller, &[[0.0, 0.0, beyond]]).unwrap_err().to_string();
     assert!(said.starts_with("z of point 1 (roller)"), "{said}");
+}
+
+/// A logarithmic roller, steep within 0.03 C of its ends, one of which is pressed into a longer
+/// block: half-widths as close as a tolerance of 1e-4 asks for are not found.
+const STEEP: &str = r#"
+name = "steep"
+[roller]
+radius_m = 10e-3
+length_m = 4.84826e-3
+young_pa = 210e9
+poisson = 0.353
+profile = { kind = "logarithmic", k = 0.98, amplitude_m = 5.415e-7 }
+[block]
+length_m = 7.8451e-3
+young_pa = 124.9e9
+poisson = 0.4495
+[load]
+force_n = 1607.3
+eccentricity_m = 2.5614e-4
+[pose]
+offset_m = 7.62e-5
+"#;
+
+#[test]
+fn a_contact_coarser_than_its_resolution_says_so() {
+    let summary = |tolerance: f64| {
+        let mut case = Case::from_toml(STEEP).unwrap();
+        case.accuracy.tolerance = tolerance;
+        let mut options = Options::new(EdgeModel::QuarterSpace);
+        options.curves.clear();
+        solve(&case, &options).unwrap().summary
+    };
+    let first = summary(5e-3);
+    assert_eq!((first.details.coarser, first.warning()), (None, None));
+    let later = summary(1e-4);
+    let (coarser, wanted) = (later.details.coarser.unwrap(), later.details.resolution);
+    assert!(coarser.spacing > 1.9 * wanted.spacing || coarser.modes < wanted.modes, "{coarser:?}");
+    let said = later.warning().unwrap();
+    assert!(later.converged && said.contains("`coarser`") && said.contains("0.028 C"), "{said}");
 }
