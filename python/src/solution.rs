@@ -187,7 +187,7 @@ impl Solution {
     fn warnings(&self) -> Vec<String> {
         match &self.solved {
             Solved::Line(line) => {
-                too_fine(&self.case).into_iter().chain(line.1.summary.warning()).collect()
+                too_fine(&self.case).into_iter().chain(line.1.summary.warnings()).collect()
             }
             Solved::Cells(_) => Vec::new(),
         }

@@ -214,7 +214,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     more.extend(pictures(case, &found, None, arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     let names = solution::write(&found, &options, more, &arguments.out)?;
-    if let Some(warning) = found.summary.warning() {
+    for warning in found.summary.warnings() {
         say(&format!("warning: {warning}"));
     }
     tell(case, &found, &names, arguments)

@@ -51,22 +51,27 @@ pub struct Summary<D = Details> {
 }
 
 impl Summary {
-    /// What to beware of, if anything.
-    pub fn warning(&self) -> Option<String> {
-        if !self.converged {
-            return Some(format!(
+    /// What to beware of.
+    pub fn warnings(&self) -> Vec<String> {
+        let unsettled = || {
+            format!(
                 "the contact changed by more than its tolerance until the last of its {} iterations (`converged` \
                  in the summary); compare with a tighter tolerance",
                 self.iterations
-            ));
-        }
-        let Coarser { spacing, modes, .. } = self.details.coarser?;
-        let Resolution { spacing: wanted, modes: all, .. } = self.details.resolution;
-        Some(format!(
-            "the contact was not to be solved with half-widths {wanted:.3} C apart and {all} modes, and is solved with \
-             {spacing:.3} C and {modes} (`coarser` in the summary's details); beside its ends errors may be many times \
-             the tolerance: compare with another tolerance, or with --engine cells"
-        ))
+            )
+        };
+        let wanted = self.details.resolution;
+        let coarser = |Coarser { spacing, modes, .. }| {
+            format!(
+                "the resolution was too fine for the contact, which is solved with half-widths {:.0} times as far \
+                 apart and {modes} of {} modes (`coarser` in the summary's details); beside its ends errors may be \
+                 many times the tolerance: compare with another tolerance, or with --engine cells",
+                spacing / wanted.spacing,
+                wanted.modes
+            )
+        };
+        let unsettled = (!self.converged).then(unsettled);
+        unsettled.into_iter().chain(self.details.coarser.map(coarser)).collect()
     }
 }
 
