@@ -67,8 +67,8 @@ fn bad_grids_are_refused() {
     assert!(said.starts_with("z of point 1 (roller)"), "{said}");
 }
 
-/// A logarithmic roller, steep within 0.1 C of its ends, of which the load presses one into a longer
-/// block: half-widths as close as a tolerance of 1e-4 asks for are not found.
+/// A logarithmic roller, steep within 0.1 C of its ends, of which the load presses one into a
+/// longer block: half-widths as close as a tolerance of 1e-4 asks for are not found.
 const STEEP: &str = r#"
 name = "steep"
 [roller]
