@@ -43,8 +43,8 @@ def solve(
     one, of another Python thread, it has one.
 
     Warns (`UserWarning`) where the program would: of a solution that is not
-    `converged` or is `coarser` than its resolution, and of a tolerance below the
-    finest.
+    `converged`, is `coarser` than its resolution or has a `profile_residual`, and
+    of a tolerance below the finest.
 
     Raises `edgeline.Error` for a case that cannot be solved, and `TypeError` for
     what is no case.

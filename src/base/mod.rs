@@ -21,7 +21,7 @@ pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::{Corner, Panels};
 pub use parity::Parity;
-pub use profile::Profile;
+pub use profile::{Kink, Profile};
 pub use quadrature::{crowded_legendre, gauss_legendre};
 pub use scales::HertzScales;
 pub use spline::spline;

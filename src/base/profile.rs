@@ -33,6 +33,15 @@ pub enum Profile {
     Table(Arc<Table>),
 }
 
+/// A place where a profile's curvature jumps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Kink {
+    /// The place along y.
+    pub at: f64,
+    /// The jump of the drop's second derivative.
+    pub jump: f64,
+}
+
 impl Profile {
     /// The drop at `y`; infinite where the profile has no limit.
     pub fn drop(&self, y: f64) -> f64 {
@@ -90,14 +99,24 @@ impl Profile {
     }
 
     /// Where the curvature jumps: the ends of a straight part. The many small jumps of a table are
-    /// none.
-    pub fn kinks(&self) -> Option<[f64; 2]> {
-        let at = match self {
-            Self::Arc { straight, .. } => *straight,
-            Self::Logarithm { start, .. } => *start,
-            Self::Table(_) => 0.0,
+    /// none, see [`Profile::points`].
+    pub fn kinks(&self) -> Vec<Kink> {
+        let (at, jump) = match self {
+            Self::Arc { straight, radius } => (*straight, 1.0 / radius),
+            Self::Logarithm { amplitude, k, start, span } => {
+                (*start, 2.0 * amplitude * k / (span * span))
+            }
+            Self::Table(_) => return Vec::new(),
         };
-        (at > 0.0).then_some([-at, at])
+        if at > 0.0 { [-at, at].map(|at| Kink { at, jump }).to_vec() } else { Vec::new() }
+    }
+
+    /// The points of a table.
+    pub fn points(&self) -> &[f64] {
+        match self {
+            Self::Table(table) => &table.y,
+            Self::Arc { .. } | Self::Logarithm { .. } => &[],
+        }
     }
 
     /// Whether both sides of the middle are alike.

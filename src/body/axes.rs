@@ -46,16 +46,9 @@ const BENDING: [f64; 3] = [0.1, 0.2, 0.45];
 /// Distance (C) from a corner within which panels grow by a ratio of their own.
 const STEEP: f64 = 0.02;
 
-/// Size of the panels beside a kink of the gap, in those at a corner: the pressure is smooth there
-/// but for s ln s.
-const KINK: f64 = 40.0;
-
-/// The narrowest panel between two features, as a part of those at a corner.
-const SLIVER: f64 = 0.5;
-
 /// Distance (C) from the contact's end within which the loads have the power of a singular
 /// pressure.
-const LAW: f64 = 1.0;
+pub(super) const LAW: f64 = 1.0;
 
 /// Depth (C) below which the load on an end face has no features of the contact's width.
 const FACE_TAIL: f64 = 8.0;
@@ -460,10 +453,10 @@ impl Resolution {
         Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
     }
 
-    /// The same for a contact that reaches an end of its bodies and whose `widest` half-width (C)
-    /// may be above 1. Its transform oscillates the faster, and a panel of wavenumbers with fewer
-    /// nodes than that turns by radians would leave noise in what nodes beside each other do to
-    /// each other, which half-widths beside the end follow.
+    /// The same for a contact that reaches an end of its bodies, or whose gap has a kink, and whose
+    /// `widest` half-width (C) may be above 1. Its transform oscillates the faster, and a panel of
+    /// wavenumbers with fewer nodes than that turns by radians would leave noise in what nodes
+    /// beside each other do to each other, which half-widths beside the end and the kink follow.
     #[must_use]
     pub fn across(self, widest: f64) -> Self {
         Self { k_step: self.k_step.min(self.k_order as f64 / widest), ..self }
@@ -523,7 +516,7 @@ impl Resolution {
 
     /// Distances from a corner: 0, `first`, and so on with the growth ratio up to `length`, the
     /// last.
-    fn graded(&self, first: f64, length: f64) -> Vec<f64> {
+    pub(super) fn graded(&self, first: f64, length: f64) -> Vec<f64> {
         let mut s = vec![0.0];
         let mut next = first;
         // Avoids a last panel that is much shorter than its neighbour.
@@ -535,11 +528,6 @@ impl Resolution {
         s
     }
 
-    /// Panels on [0, `half_length`] of the contact line, graded towards its end.
-    pub fn contact_axis(&self, half_length: f64) -> Panels {
-        self.between_features(&[0.0, half_length], Parity::Even)
-    }
-
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
     /// needs the finest panels; at a corner farther from the load the fields vary over that
     /// distance. Beside a ledge narrower than C they are large, and vanish at the corner itself,
@@ -548,58 +536,6 @@ impl Resolution {
     fn end_panel(&self, ledge: f64) -> f64 {
         let smallest = self.corner / 16.0;
         if ledge > 0.0 { (ledge * ledge.min(1.0) / 16.0).max(smallest) } else { self.corner }
-    }
-
-    /// The contact line between its `ends`, or one half of it if all is `symmetric`, with panels
-    /// graded towards the ends and the `kinks` of the gap; and the parity that its wavenumbers have
-    /// to serve. Loads grow with the `exponents`, if any, towards the ends.
-    pub fn contact_line(
-        &self,
-        ends: [f64; 2],
-        exponents: [Option<f64>; 2],
-        kinks: &[f64],
-        symmetric: bool,
-    ) -> (Panels, Parity) {
-        let parity = if symmetric { Parity::Even } else { Parity::Odd };
-        let from = if symmetric { 0.0 } else { ends[0] };
-        let mut features = vec![from];
-        let mut inner = kinks.to_vec();
-        inner.sort_by(f64::total_cmp);
-        // What lies closer together than the panels are wide is one feature.
-        let apart = SLIVER * self.corner;
-        for kink in inner {
-            if kink - features[features.len() - 1] > apart && ends[1] - kink > apart {
-                features.push(kink);
-            }
-        }
-        features.push(ends[1]);
-        let reach = LAW.min(0.5 * (ends[1] - ends[0]));
-        let [first, last] = [(0, 1.0), (1, -1.0)].map(|(i, side)| {
-            exponents[i].map(|exponent| Corner { at: ends[i], side, exponent, reach })
-        });
-        let corners: Vec<Corner> = first.filter(|_| !symmetric).into_iter().chain(last).collect();
-        (self.between_features(&features, parity).with_corners(&corners), parity)
-    }
-
-    /// Panels from the first of the ascending `features` to the last, graded towards all of them,
-    /// but not towards the first one of an even half.
-    fn between_features(&self, features: &[f64], parity: Parity) -> Panels {
-        let last = features.len() - 1;
-        let smallest =
-            |i: usize| if i == 0 || i == last { self.corner } else { KINK * self.corner };
-        let mut breaks = vec![features[0]];
-        for (i, ends) in features.windows(2).enumerate() {
-            let one_sided = i == 0 && parity == Parity::Even;
-            let reach = if one_sided { 1.0 } else { 0.5 } * (ends[1] - ends[0]);
-            if !one_sided {
-                breaks.extend(self.graded(smallest(i), reach)[1..].iter().map(|s| ends[0] + s));
-            }
-            let towards = self.graded(smallest(i + 1), reach);
-            // The features themselves are exact.
-            let inner = towards[1..towards.len() - 1].iter().rev().map(|s| ends[1] - s);
-            breaks.extend(inner.chain([ends[1]]));
-        }
-        Panels::new(breaks, self.order)
     }
 
     /// The `contact` on one side of a body's middle, continued by panels to the middle and to the

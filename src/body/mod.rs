@@ -2,6 +2,7 @@
 //! their [`End`].
 
 pub mod axes;
+mod contact_line;
 mod corner;
 mod end;
 mod finite;
@@ -19,6 +20,7 @@ mod stack;
 pub mod stencil;
 
 pub use axes::Resolution;
+pub use contact_line::Generatrix;
 pub use corner::corner_exponent;
 pub use end::End;
 pub use finite::{Body, Layer, Shape, TractionLayer};

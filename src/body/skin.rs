@@ -28,7 +28,7 @@ use super::fold::Fold;
 use super::part::Part;
 use super::skin_waves::{BEFORE, OnSurface, Skin, SkinCompliances};
 use super::stack::Placed;
-use crate::base::{Panels, Parity, Wavenumbers, spline};
+use crate::base::{Kink, Panels, Parity, Wavenumbers, spline};
 use crate::kernels::wave::{Direction, WaveTable};
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
@@ -64,7 +64,7 @@ pub struct SkinLine<'a> {
     /// The exponents of a pressure that grows towards them.
     pub exponents: [Option<f64>; 2],
     /// Kinks of the gap.
-    pub kinks: &'a [f64],
+    pub kinks: &'a [Kink],
     /// Whether it is one half of a contact that is symmetric about y = 0.
     pub symmetric: bool,
 }

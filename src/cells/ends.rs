@@ -32,7 +32,9 @@ use super::influence::{HalfTransform, Images, RoundImages};
 use super::means::means;
 use super::pressure::CellPressure;
 use crate::base::{Panels, Wavenumbers};
-use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack};
+use crate::body::{
+    EdgeModel, Generatrix, LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack,
+};
 use crate::stress::{Field, Load};
 use multiversion::multiversion;
 use nalgebra::{DMatrix, DVector};
@@ -57,6 +59,10 @@ pub struct FreeBody {
 
 /// Accuracy (p0) of the nodes that carry the free ends.
 const TOLERANCE: f64 = 5e-4;
+
+/// How closely their nodes follow a gap along the line (p0): stresses are those of the pressure at
+/// them.
+const FOLLOWS: f64 = 5e-3;
 
 /// Shapes along the line that displace less than this part of the largest one are left out.
 const NEGLIGIBLE: f64 = 1e-5;
@@ -96,16 +102,19 @@ pub struct FreeEnds {
 impl FreeEnds {
     /// For a contact of half-length `half_length` (C) between `bodies`, of which some have free
     /// ends, under pressures that are even in x and y if it is `symmetric`, and that go like s^-m
-    /// at the distance s (C) from its ends, m of `exponents`, zero where they are finite.
+    /// at the distance s (C) from its ends, m of `exponents`, zero where they are finite, and
+    /// follow the `gap` along it.
     pub fn new(
         half_length: f64,
         bodies: &[FreeBody],
         symmetric: bool,
         exponents: [f64; 2],
+        gap: &Generatrix,
     ) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
         let ends = [-half_length, half_length];
-        let (axis, parity) = resolution.contact_line(ends, [None; 2], &[], symmetric);
+        let (axis, parity) = resolution.contact_line(ends, [None; 2], gap.kinks, symmetric);
+        let axis = resolution.resolving(axis, gap, FOLLOWS);
         let halves: Vec<f64> = bodies.iter().map(|body| body.half).collect();
         let wavenumbers = resolution.wavenumbers_of(&halves, parity);
         let distinct = distinct(bodies);
@@ -128,7 +137,7 @@ impl FreeEnds {
             }
             let skins = (own.curvature != 0.0).then(|| {
                 let exponents = exponents.map(|m| (m != 0.0).then_some(m));
-                let line = SkinLine { ends, exponents, kinks: &[], symmetric };
+                let line = SkinLine { ends, exponents, kinks: gap.kinks, symmetric };
                 Skins::new(line, placed(EdgeModel::QuarterSpace), own.curvature)
             });
             if let Some(skins) = &skins {

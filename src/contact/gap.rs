@@ -1,6 +1,7 @@
 //! The gap between the bodies before they are loaded.
 
-use crate::base::Profile;
+use crate::base::{Kink, Profile};
+use crate::body::Generatrix;
 
 /// The gap between two unloaded bodies that touch at the origin, in units of C^2 / (2 R).
 pub trait Gap: Sync {
@@ -31,10 +32,34 @@ pub struct Shaped {
 const BESIDE: f64 = 0.05;
 
 impl Shaped {
+    /// The same gap with places along y that are counted from `origin`.
+    #[must_use]
+    pub fn from(mut self, origin: f64) -> Self {
+        self.profiles.iter_mut().for_each(|(middle, _)| *middle -= origin);
+        self
+    }
+
+    /// What `of` makes of the gap along the line x = 0.
+    pub fn along<T>(&self, of: impl FnOnce(&Generatrix) -> T) -> T {
+        let (drop, kinks, points) = (|y: f64| self.at(0.0, y), self.kinks(), self.points());
+        of(&Generatrix { drop: &drop, kinks: &kinks, points: &points })
+    }
+
     /// Where the gap's curvature along y jumps, see [`Profile::kinks`].
-    pub fn kinks(&self) -> Vec<f64> {
-        let of = |(middle, profile): &(f64, Profile)| Some(profile.kinks()?.map(|y| middle + y));
-        self.profiles.iter().filter_map(of).flatten().collect()
+    pub fn kinks(&self) -> Vec<Kink> {
+        let of = |(middle, profile): &(f64, Profile)| -> Vec<Kink> {
+            let placed = |Kink { at, jump }| Kink { at: middle + at, jump: self.steepness * jump };
+            profile.kinks().into_iter().map(placed).collect()
+        };
+        self.profiles.iter().flat_map(of).collect()
+    }
+
+    /// The points of measured profiles, see [`Profile::points`].
+    fn points(&self) -> Vec<f64> {
+        let of = |(middle, profile): &(f64, Profile)| -> Vec<f64> {
+            profile.points().iter().map(|y| middle + y).collect()
+        };
+        self.profiles.iter().flat_map(of).collect()
     }
 
     /// The length (C) within which the gap's slope along y grows by e towards the place `y`, from

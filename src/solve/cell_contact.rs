@@ -1,13 +1,12 @@
 //! The contact of a case on cells, with the tilt that its load or its pose asks for.
 
 use super::cell_deep::DeepMotion;
-use super::on_cells::Placed;
 use super::scene::{Scene, Tilt};
 use super::secants::Secants;
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap, WIDER};
-use crate::contact::Gap;
+use crate::contact::{Gap, Shaped};
 
 /// Most contacts that are solved until a tilt is reached that is held.
 const MOST_TRIALS: usize = 10;
@@ -26,7 +25,7 @@ pub(super) struct CellContact<'a> {
     /// The problem, with the tilt of far points.
     pub problem: CellProblem,
     scene: &'a Scene,
-    smooth: Placed,
+    smooth: Shaped,
     /// Heights with C and the unit of gaps (m).
     heights: Option<(Heights, [f64; 2])>,
     progress: &'a dyn Fn(usize, f64),

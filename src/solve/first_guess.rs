@@ -44,11 +44,9 @@ impl Scene {
             gap.turns_within(end, -outward)
         });
         let level = self.level(tolerance, slices.ends).following(turns[0].min(turns[1]));
-        if [0, 1].into_iter().any(|side| self.reaches(slices.ends, side)) {
-            level.across(slices.widest())
-        } else {
-            level
-        }
+        let reaches = [0, 1].into_iter().any(|side| self.reaches(slices.ends, side));
+        let is_steep = reaches || !gap.kinks().is_empty();
+        if is_steep { level.across(slices.widest()) } else { level }
     }
 
     /// Whether a contact that has about these `ends` reaches the end of its bodies on a side.

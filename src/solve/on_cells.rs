@@ -2,26 +2,15 @@
 
 use super::scene::{Scene, SceneBody, Tilt};
 use crate::base::BodyKind;
+use crate::body::Generatrix;
 use crate::cells::{
     CellField, CellPressure, CellProblem, CellTilt, FieldEnd, FreeBody, FreeEnds, Grid, Images,
 };
-use crate::contact::{Gap, Shaped};
+use crate::contact::Shaped;
 use std::sync::Arc;
 
 /// Most applications of the compliance.
 const MOST_ITERATIONS: usize = 1000;
-
-/// The smooth gap of a scene, from the overlap's middle.
-pub(super) struct Placed {
-    gap: Shaped,
-    middle: f64,
-}
-
-impl Gap for Placed {
-    fn at(&self, x: f64, y: f64) -> f64 {
-        self.gap.at(x, y + self.middle)
-    }
-}
 
 impl Scene {
     /// The scene's contact on the cells of `grid`, whose half-length is the scene's, to the
@@ -53,8 +42,10 @@ impl Scene {
             FreeBody { half, middle, nu, share, curvature }
         });
         let free: Vec<FreeBody> = free.collect();
-        let ends = || FreeEnds::new(self.half_length, &free, symmetric, self.end_exponents());
-        (!free.is_empty()).then(|| Arc::new(ends()))
+        let (gap, exponents) = (self.gap_on_cells(), self.end_exponents());
+        let ends =
+            |line: &Generatrix| FreeEnds::new(self.half_length, &free, symmetric, exponents, line);
+        (!free.is_empty()).then(|| Arc::new(gap.along(ends)))
     }
 
     /// The exponents m of the pressure s^-m at the overlap's ends, zero where it is finite.
@@ -62,9 +53,9 @@ impl Scene {
         self.corner_exponents().map(|exponent| exponent.unwrap_or(0.0))
     }
 
-    /// The smooth gap over cells.
-    pub(super) fn gap_on_cells(&self) -> Placed {
-        Placed { gap: self.gap(), middle: self.middle }
+    /// The smooth gap over cells, counted from the overlap's middle.
+    pub(super) fn gap_on_cells(&self) -> Shaped {
+        self.gap().from(self.middle)
     }
 
     /// A place along the contact, counted from the overlap's middle.

@@ -8,7 +8,7 @@ use super::trial::{
     touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
-use crate::body::{Resolution, Skins, Stack};
+use crate::body::{Generatrix, Resolution, Skins, Stack};
 use crate::contact::{self, Compliance, ContactSolution};
 use crate::stress::round::ContactEnds;
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
@@ -120,6 +120,16 @@ impl SolvedScene {
             check_length(slices.widest(), slices.ends[1] - slices.ends[0], WIDEST_GUESS)?;
         }
         first
+    }
+
+    /// What the nodes along the line leave out of the pressure, about (p0), where measured profiles
+    /// do more between them than they can follow.
+    pub fn profile_residual(&self) -> Option<f64> {
+        let (gap, line) = (self.scene.gap(), self.pressure.axis());
+        let largest = |gap: &Generatrix| {
+            (0..line.panel_count()).map(|i| gap.missed(line, i)).fold(0.0, f64::max)
+        };
+        gap.along(|gap| (!gap.points.is_empty()).then(|| largest(gap)))
     }
 
     /// Solves a scene at a given resolution.

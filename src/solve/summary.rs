@@ -71,7 +71,15 @@ impl Summary {
             )
         };
         let unsettled = (!self.converged).then(unsettled);
-        unsettled.into_iter().chain(self.details.coarser.map(coarser)).collect()
+        let shaped = self.details.profile_residual.map(|left_out| {
+            format!(
+                "the measured profile has details that {} nodes along the line cannot follow: they may change the \
+                 pressure by some {left_out:.2} p0 (`profile_residual` in the summary's details); smooth the profile, \
+                 or take --engine cells, with --cells no longer than the distance of its points",
+                self.details.contact_nodes
+            )
+        });
+        [unsettled, self.details.coarser.map(coarser), shaped].into_iter().flatten().collect()
     }
 }
 
@@ -155,6 +163,10 @@ pub struct Details {
     /// What the contact was solved with, where the resolution was too fine for it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub coarser: Option<Coarser>,
+    /// What the nodes along the line leave out of the pressure, about (p0), where a measured
+    /// profile does more between them than they can follow, and that is more than the tolerance.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub profile_residual: Option<f64>,
     /// Remaining amplitude of the pressure's singularity across the contact (p0).
     pub edge_residual: f64,
     /// The largest condition number of the bodies' equations.

@@ -107,6 +107,7 @@ fn summary(case: &Case, method: EdgeModel, p_centre: f64, p_max: (f64, f64)) -> 
             edge: None,
             edge_neg: None,
             coarser: None,
+            profile_residual: None,
             edge_residual: 1e-6,
             condition: 10.0,
             bodies_shared: false,
