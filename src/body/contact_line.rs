@@ -39,8 +39,8 @@ impl Generatrix<'_> {
         Generatrix { drop: &|_| 0.0, kinks: &[], points: &[] };
 
     /// What panel `i` of a line leaves out of the pressure (p0): a wave of the gap of the amplitude
-    /// e and the wavenumber k adds k e / 2, and what n nodes in the length l miss is taken for as
-    /// long as they are apart, k = 2 pi n / l.
+    /// e and the wavenumber k adds k e / 2 (Johnson 1985, section 13.2), and what n nodes in the
+    /// length l miss is taken for as long as they are apart, k = 2 pi n / l.
     pub fn missed(&self, line: &Panels, i: usize) -> f64 {
         let ([from, to], n) = (line.panel(i), line.order());
         let at_nodes: Vec<f64> =

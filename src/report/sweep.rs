@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 
 /// The columns of texts; all others but `row` are numbers.
 #[cfg(feature = "parquet")]
-pub(super) const TEXTS: [&str; 4] = ["name", "method", "critical_body", "err"];
+pub(super) const TEXTS: [&str; 5] = ["name", "method", "critical_body", "warnings", "err"];
 
 /// A number of a row's results.
 type Number = fn(&Case, &KeyResults) -> f64;
@@ -64,6 +64,10 @@ pub fn results(outcome: &Outcome) -> Vec<(String, Value)> {
     }));
     row.push(text("critical_body", solved.map_or("", |(_, found)| found.critical.body.name())));
     row.extend(CRITICAL.iter().map(|(name, of)| number(name, of)));
+    row.push(text(
+        "warnings",
+        &solved.map_or(String::new(), |(_, found)| found.warnings.join(" ")),
+    ));
     row.push(text("err", outcome.as_ref().err().map_or("", String::as_str)));
     row
 }

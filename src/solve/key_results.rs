@@ -37,6 +37,8 @@ pub struct KeyResults {
     pub p_at: [Option<f64>; END_DISTANCES.len()],
     /// The most stressed place of both bodies outside 0.1 C of the contact's ends.
     pub critical: Critical,
+    /// What to beware of, see [`SolvedScene::warnings`].
+    pub warnings: Vec<&'static str>,
 }
 
 /// A stress at a place, in units of C and p0.
@@ -61,6 +63,7 @@ pub struct KeySolution {
     /// Largest C / R of the cases whose critical stress is among the samples.
     curvature: f64,
     samples: Vec<Sample>,
+    warnings: Vec<&'static str>,
 }
 
 impl KeySolution {
@@ -95,6 +98,7 @@ impl KeySolution {
             p_at: END_DISTANCES.map(along),
             curvature,
             samples,
+            warnings: solved.warnings(),
         };
         Ok((case, own))
     }
@@ -115,6 +119,7 @@ impl KeySolution {
             p_max_at: self.p_max_at,
             p_at: self.p_at,
             critical: critical(&self.samples, &Shaping::of(case)),
+            warnings: self.warnings.clone(),
         }
     }
 

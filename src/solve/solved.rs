@@ -274,9 +274,7 @@ impl SolvedCase {
                 .then(|| edge_strength(solved, Side::Negative))
                 .flatten(),
             coarser: solved.contact.coarser,
-            profile_residual: solved
-                .profile_residual()
-                .filter(|left_out| *left_out > self.case.accuracy.tolerance),
+            profile_residual: solved.profile_residual(),
             edge_residual: solved.contact.residual,
             condition: solved.condition,
             bodies_shared: solved.bodies_shared(),

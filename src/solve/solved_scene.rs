@@ -123,13 +123,25 @@ impl SolvedScene {
     }
 
     /// What the nodes along the line leave out of the pressure, about (p0), where measured profiles
-    /// do more between them than they can follow.
+    /// do more between them than they can follow, and that is more than the tolerance.
     pub fn profile_residual(&self) -> Option<f64> {
         let (gap, line) = (self.scene.gap(), self.pressure.axis());
         let largest = |gap: &Generatrix| {
             (0..line.panel_count()).map(|i| gap.missed(line, i)).fold(0.0, f64::max)
         };
-        gap.along(|gap| (!gap.points.is_empty()).then(|| largest(gap)))
+        let left_out = gap.along(|gap| (!gap.points.is_empty()).then(|| largest(gap)));
+        left_out.filter(|left_out| *left_out > self.scene.tolerance)
+    }
+
+    /// What to beware of, in words: `not-converged`, `coarser` and `profile-residual`, by what the
+    /// summary of a case says of it.
+    pub fn warnings(&self) -> Vec<&'static str> {
+        let all = [
+            ("not-converged", !self.converged()),
+            ("coarser", self.contact.coarser.is_some()),
+            ("profile-residual", self.profile_residual().is_some()),
+        ];
+        all.into_iter().filter(|(_, holds)| *holds).map(|(word, _)| word).collect()
     }
 
     /// Solves a scene at a given resolution.

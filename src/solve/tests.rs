@@ -1,6 +1,6 @@
 //! A solved case gives the same results in all its ways.
 
-use super::{Options, Point, SolvedCase, solve};
+use super::{KeySolution, Options, Point, SolvedCase, solve};
 use crate::body::EdgeModel;
 use crate::case::{Case, builtin_case};
 use crate::stress::{BodyKind, Grid};
@@ -106,4 +106,10 @@ fn a_contact_coarser_than_its_resolution_says_so() {
     let times = format!("{:.0} times as far apart", coarser.spacing / wanted.spacing);
     assert!(later.converged && said.len() == 1 && said[0].contains("`coarser`"), "{said:?}");
     assert!(said[0].contains(&times) && said[0].contains("of 8 modes"), "{said:?}");
+    for (tolerance, want) in [(5e-3, vec![]), (1e-4, vec!["coarser"])] {
+        let mut case = Case::from_toml(STEEP).unwrap();
+        case.accuracy.tolerance = tolerance;
+        let (case, key) = KeySolution::new(&case, EdgeModel::QuarterSpace).unwrap();
+        assert_eq!(key.of(&case).warnings, want, "{tolerance}");
+    }
 }

@@ -5,7 +5,7 @@ use edgeline::base::Material;
 use edgeline::base::profile::Table;
 use edgeline::body::EdgeModel;
 use edgeline::case::{Case, Factors, ProfileKind, ProfileSpec};
-use edgeline::solve::{CellOptions, Options, Point, SolvedCase, solve_on_cells};
+use edgeline::solve::{CellOptions, KeySolution, Options, Point, SolvedCase, solve_on_cells};
 use edgeline::stress::BodyKind;
 use std::f64::consts::PI;
 use std::path::Path;
@@ -403,6 +403,10 @@ fn noise_that_nodes_cannot_follow_is_told() {
     let left_out = noisy.details.profile_residual.expect("nodes do not follow it");
     assert!((0.01..0.3).contains(&left_out), "{left_out}");
     assert!(noisy.warnings().iter().any(|warning| warning.contains("measured profile")));
+    // A row of a sweep says so, too.
+    let noisy = measured(0.0, 2e-8, 101).with_tolerance(5e-3);
+    let (noisy, key) = KeySolution::new(&noisy, EdgeModel::QuarterSpace).unwrap();
+    assert_eq!(key.of(&noisy).warnings, ["profile-residual"]);
     let smooth = summary(measured(0.0, 0.0, 101).with_tolerance(1e-3));
     assert_eq!(smooth.details.profile_residual, None);
     assert!(smooth.warnings().is_empty(), "{:?}", smooth.warnings());
