@@ -23,21 +23,16 @@ const SHORTEST: f64 = 0.35;
 const MOST_NODES: usize = 300;
 
 /// The gap along the line before it is loaded.
-#[derive(Clone, Copy)]
 pub struct Generatrix<'a> {
     /// The gap at a place (C^2 / (2 R)).
-    pub drop: &'a dyn Fn(f64) -> f64,
+    pub drop: Box<dyn Fn(f64) -> f64 + 'a>,
     /// Where its curvature jumps.
-    pub kinks: &'a [Kink],
+    pub kinks: Vec<Kink>,
     /// The points between which it is interpolated, if it is.
-    pub points: &'a [f64],
+    pub points: Vec<f64>,
 }
 
 impl Generatrix<'_> {
-    /// The same gap all along.
-    pub const STRAIGHT: Generatrix<'static> =
-        Generatrix { drop: &|_| 0.0, kinks: &[], points: &[] };
-
     /// What panel `i` of a line leaves out of the pressure (p0): a wave of the gap of the amplitude
     /// e and the wavenumber k adds k e / 2 (Johnson 1985, section 13.2), and what n nodes in the
     /// length l miss is taken for as long as they are apart, k = 2 pi n / l.
@@ -95,8 +90,8 @@ impl Resolution {
         let apart = SLIVER * self.corner;
         for Kink { at, jump } in inner {
             if at - features[features.len() - 1].0 > apart && ends[1] - at > apart {
-                let size = (SHARP / jump.abs()).clamp(1.0, KINK) * self.corner;
-                features.push((at, size.max(self.shortest().min(KINK * self.corner))));
+                let [sharp, most] = [SHARP / jump.abs(), KINK].map(|size| size * self.corner);
+                features.push((at, sharp.max(self.corner).max(self.shortest()).min(most)));
             }
         }
         features.push((ends[1], self.corner));
@@ -171,9 +166,12 @@ mod tests {
             ascending.collect()
         };
         let [own, mirrored] = [1.0, -1.0].map(points);
-        let gap = |drop, points| Generatrix { drop, kinks: &[], points };
-        let wave = |y: f64| 0.03 * (1.5 * y).cos();
-        let gap_of_wave = gap(&wave, &own);
+        let gap = |amplitude: f64, points: &[f64]| Generatrix {
+            drop: Box::new(move |y| amplitude * (1.5 * y).cos()),
+            kinks: Vec::new(),
+            points: points.to_vec(),
+        };
+        let gap_of_wave = gap(0.03, &own);
         let missed = |line: &Panels| -> f64 {
             (0..line.panel_count()).map(|i| gap_of_wave.missed(line, i)).fold(0.0, f64::max)
         };
@@ -187,10 +185,10 @@ mod tests {
             found.len()
         });
         assert!(line().len() < counts[0] && counts[0] < counts[1] && counts[1] < 300, "{counts:?}");
-        let straight = resolution.resolving(line(), &Generatrix::STRAIGHT, 1e-9);
+        let straight = resolution.resolving(line(), &gap(0.0, &[]), 1e-9);
         assert_eq!(straight.breaks(), line().breaks());
         let other = resolution.contact_line([-20.0, 18.0], [None; 2], &[], false).0;
-        let other = resolution.resolving(other, &gap(&wave, &mirrored), 1e-3);
+        let other = resolution.resolving(other, &gap(0.03, &mirrored), 1e-3);
         let found = resolution.resolving(line(), &gap_of_wave, 1e-3);
         for (y, image) in found.breaks().iter().zip(other.breaks().iter().rev()) {
             assert!((y + image).abs() < 1e-12, "{y} {image}");

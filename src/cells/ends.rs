@@ -113,7 +113,7 @@ impl FreeEnds {
     ) -> Self {
         let resolution = Resolution::for_tolerance(TOLERANCE);
         let ends = [-half_length, half_length];
-        let (axis, parity) = resolution.contact_line(ends, [None; 2], gap.kinks, symmetric);
+        let (axis, parity) = resolution.contact_line(ends, [None; 2], &gap.kinks, symmetric);
         let axis = resolution.resolving(axis, gap, FOLLOWS);
         let halves: Vec<f64> = bodies.iter().map(|body| body.half).collect();
         let wavenumbers = resolution.wavenumbers_of(&halves, parity);
@@ -137,7 +137,7 @@ impl FreeEnds {
             }
             let skins = (own.curvature != 0.0).then(|| {
                 let exponents = exponents.map(|m| (m != 0.0).then_some(m));
-                let line = SkinLine { ends, exponents, kinks: gap.kinks, symmetric };
+                let line = SkinLine { ends, exponents, kinks: &gap.kinks, symmetric };
                 Skins::new(line, placed(EdgeModel::QuarterSpace), own.curvature)
             });
             if let Some(skins) = &skins {

@@ -34,15 +34,15 @@ const BESIDE: f64 = 0.05;
 impl Shaped {
     /// The same gap with places along y that are counted from `origin`.
     #[must_use]
-    pub fn from(mut self, origin: f64) -> Self {
+    pub fn counted_from(mut self, origin: f64) -> Self {
         self.profiles.iter_mut().for_each(|(middle, _)| *middle -= origin);
         self
     }
 
-    /// What `of` makes of the gap along the line x = 0.
-    pub fn along<T>(&self, of: impl FnOnce(&Generatrix) -> T) -> T {
-        let (drop, kinks, points) = (|y: f64| self.at(0.0, y), self.kinks(), self.points());
-        of(&Generatrix { drop: &drop, kinks: &kinks, points: &points })
+    /// The gap along the line x = 0.
+    pub fn generatrix(&self) -> Generatrix<'_> {
+        let drop = Box::new(|y: f64| self.at(0.0, y));
+        Generatrix { drop, kinks: self.kinks(), points: self.points() }
     }
 
     /// Where the gap's curvature along y jumps, see [`Profile::kinks`].

@@ -125,7 +125,8 @@ impl KeySolution {
 
     /// Memory that it takes (bytes).
     pub fn bytes(&self) -> usize {
-        size_of::<Self>() + self.approaches.bytes() + size_of_val(self.samples.as_slice())
+        let lists = size_of_val(self.samples.as_slice()) + size_of_val(self.warnings.as_slice());
+        size_of::<Self>() + self.approaches.bytes() + lists
     }
 }
 

@@ -2,7 +2,6 @@
 
 use super::scene::{Scene, SceneBody, Tilt};
 use crate::base::BodyKind;
-use crate::body::Generatrix;
 use crate::cells::{
     CellField, CellPressure, CellProblem, CellTilt, FieldEnd, FreeBody, FreeEnds, Grid, Images,
 };
@@ -42,10 +41,11 @@ impl Scene {
             FreeBody { half, middle, nu, share, curvature }
         });
         let free: Vec<FreeBody> = free.collect();
-        let (gap, exponents) = (self.gap_on_cells(), self.end_exponents());
-        let ends =
-            |line: &Generatrix| FreeEnds::new(self.half_length, &free, symmetric, exponents, line);
-        (!free.is_empty()).then(|| Arc::new(gap.along(ends)))
+        let ends = || {
+            let (gap, exponents) = (self.gap_on_cells(), self.end_exponents());
+            FreeEnds::new(self.half_length, &free, symmetric, exponents, &gap.generatrix())
+        };
+        (!free.is_empty()).then(|| Arc::new(ends()))
     }
 
     /// The exponents m of the pressure s^-m at the overlap's ends, zero where it is finite.
@@ -55,7 +55,7 @@ impl Scene {
 
     /// The smooth gap over cells, counted from the overlap's middle.
     pub(super) fn gap_on_cells(&self) -> Shaped {
-        self.gap().from(self.middle)
+        self.gap().counted_from(self.middle)
     }
 
     /// A place along the contact, counted from the overlap's middle.

@@ -8,7 +8,7 @@ use super::trial::{
     touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
-use crate::body::{Generatrix, Resolution, Skins, Stack};
+use crate::body::{Resolution, Skins, Stack};
 use crate::contact::{self, Compliance, ContactSolution};
 use crate::stress::round::ContactEnds;
 use crate::stress::{BodyField, BodyKind, CurveSpec, Field, Load, Pressure};
@@ -126,11 +126,12 @@ impl SolvedScene {
     /// do more between them than they can follow, and that is more than the tolerance.
     pub fn profile_residual(&self) -> Option<f64> {
         let (gap, line) = (self.scene.gap(), self.pressure.axis());
-        let largest = |gap: &Generatrix| {
-            (0..line.panel_count()).map(|i| gap.missed(line, i)).fold(0.0, f64::max)
-        };
-        let left_out = gap.along(|gap| (!gap.points.is_empty()).then(|| largest(gap)));
-        left_out.filter(|left_out| *left_out > self.scene.tolerance)
+        let gap = gap.generatrix();
+        if gap.points.is_empty() {
+            return None;
+        }
+        let left_out = (0..line.panel_count()).map(|i| gap.missed(line, i)).fold(0.0, f64::max);
+        (left_out > self.scene.tolerance).then_some(left_out)
     }
 
     /// What to beware of, in words: `not-converged`, `coarser` and `profile-residual`, by what the

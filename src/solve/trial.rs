@@ -221,11 +221,9 @@ impl Trial<'_> {
         let symmetric = scene.is_symmetric();
         let known = scene.corner_exponents();
         let exponents = [0, 1].map(|side| known[side].filter(|_| self.powers && !line.open[side]));
-        let (axis, parity) = self.gap.along(|gap| {
-            let (axis, parity) =
-                resolution.contact_line(line.ends, exponents, gap.kinks, symmetric);
-            (resolution.resolving(axis, gap, self.accuracy.tolerance), parity)
-        });
+        let gap = self.gap.generatrix();
+        let (axis, parity) = resolution.contact_line(line.ends, exponents, &gap.kinks, symmetric);
+        let axis = resolution.resolving(axis, &gap, self.accuracy.tolerance);
         let halves = [scene.bodies.block.half, scene.bodies.roller.half];
         let wavenumbers = resolution.wavenumbers_of(&halves, parity);
         let coarse = wavenumbers.coarse();
@@ -243,13 +241,12 @@ impl Trial<'_> {
         let bodies: Vec<Stack> = distinct.iter().map(stack).collect();
         // While ends are sought all is coarser than what a round shape adds.
         let curvatures = scene.curvatures.map(|own| if self.powers { *own } else { 0.0 });
-        let kinks = self.gap.kinks();
         let skin = |&kind: &BodyKind| {
             let alike = distinct.len() == 1;
             let others = BodyKind::ALL.into_iter().filter(|other| alike || *other == kind);
             let sharper = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
             let curvature = others.map(|kind| curvatures[kind]).fold(0.0, sharper);
-            let line = SkinLine { ends: line.ends, exponents, kinks: &kinks, symmetric };
+            let line = SkinLine { ends: line.ends, exponents, kinks: &gap.kinks, symmetric };
             (curvature != 0.0).then(|| Skins::new(line, placed(kind), curvature))
         };
         let skins: Vec<Option<Skins>> = distinct.iter().map(skin).collect();

@@ -1,6 +1,6 @@
 //! Rollers with profiles: Hertz's point contact, and what a table can do.
 
-use crate::common::{apart, small};
+use crate::common::{apart, sequence, small};
 use edgeline::base::Material;
 use edgeline::base::profile::Table;
 use edgeline::body::EdgeModel;
@@ -335,19 +335,14 @@ fn measured(waves_m: f64, noise_m: f64, points: i32) -> Case {
     let factors = Factors { load: 4.3e-4, slenderness: 21.0, length_ratio: 0.8333 };
     let mut case = Case::from_factors("measured", 0.01, steel, steel, factors);
     let half = 0.5 * case.roller.length_m;
-    let mut seed = 7u64;
-    let mut noise = || {
-        // The sum of twelve even numbers is nearly normal.
-        let mut next = || {
-            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-            (seed >> 11) as f64 / (1u64 << 53) as f64
-        };
-        (0..12).map(|_| next()).sum::<f64>() - 6.0
-    };
+    // The sum of twelve even numbers is nearly normal.
+    let noise = |i: i32| sequence::<12>(i as usize).iter().sum::<f64>() - 6.0;
     let wave = |y: f64| 0.5 * waves_m * (1.0 - (2.0 * PI * (y + 0.2e-3) / 1e-3).cos());
-    let places = (0..points).map(|i| half * (2.0 * f64::from(i) / f64::from(points - 1) - 1.0));
-    let (y, drops): (Vec<f64>, Vec<f64>) =
-        places.map(|y| (y, 3e-6 * (y / half).powi(2) + wave(y) + noise_m * noise())).unzip();
+    let point = |i: i32| {
+        let y = half * (2.0 * f64::from(i) / f64::from(points - 1) - 1.0);
+        (y, 3e-6 * (y / half).powi(2) + wave(y) + noise_m * noise(i))
+    };
+    let (y, drops): (Vec<f64>, Vec<f64>) = (0..points).map(point).unzip();
     let mut spec = ProfileSpec::new(ProfileKind::Table);
     spec.file = Some("drops.csv".into());
     spec.table = Some(Arc::new(Table::new(y, drops)));
