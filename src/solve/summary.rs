@@ -62,19 +62,24 @@ impl Summary {
         };
         let wanted = self.details.resolution;
         let coarser = |Coarser { spacing, modes, .. }| {
+            let farther = spacing / wanted.spacing;
+            let given_up = [
+                (farther > 1.01).then(|| format!("half-widths {farther:.0} times as far apart")),
+                (modes < wanted.modes).then(|| format!("{modes} of {} modes", wanted.modes)),
+            ];
+            let given_up: Vec<String> = given_up.into_iter().flatten().collect();
             format!(
-                "the resolution was too fine for the contact, which is solved with half-widths {:.0} times as far \
-                 apart and {modes} of {} modes (`coarser` in the summary's details); beside its ends errors may be \
-                 many times the tolerance: compare with another tolerance, or with --engine cells",
-                spacing / wanted.spacing,
-                wanted.modes
+                "the resolution was too fine for the contact, which is solved with {} (`coarser` in the summary's \
+                 details); beside its ends errors may be many times the tolerance: compare with another tolerance, \
+                 or with --engine cells",
+                given_up.join(" and "),
             )
         };
         let unsettled = (!self.converged).then(unsettled);
         let shaped = self.details.profile_residual.map(|left_out| {
             format!(
                 "the measured profile has details that {} nodes along the line cannot follow: they may change the \
-                 pressure by some {left_out:.2} p0 (`profile_residual` in the summary's details); smooth the profile, \
+                 pressure by some {left_out:.0e} p0 (`profile_residual` in the summary's details); smooth the profile, \
                  or take --engine cells, with --cells no longer than the distance of its points",
                 self.details.contact_nodes
             )
