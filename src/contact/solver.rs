@@ -32,12 +32,19 @@ const NEAR_STEEPER: f64 = 2.0;
 /// released.
 const NEAR: f64 = 1e-3;
 
-/// From the node next to an end of the line half-widths are continued up to that end. Its singular
-/// mode then reacts to its half-width by up to more than twice what Newton's step expects, and
-/// changes sign from one iteration to the next. From this ratio of the two amplitudes on, such a
-/// node takes the part of the step that secants tell, and this one at least.
-const ALTERNATES: f64 = 0.3;
+/// A node's singular mode may not vanish with Newton's step. Next to an end of the line, from where
+/// half-widths are continued up to that end, it reacts to its half-width by up to more than twice
+/// what the step expects, and changes sign from one iteration to the next. Next to a steep end,
+/// where the limit [`STEEPER`] holds, it reacts by as little as a fifth. From this ratio of the
+/// amplitudes of two iterations on, a node takes the part of the step that secants tell, within
+/// limits.
+const STAYS: f64 = 0.3;
 const LEAST_PART: f64 = 0.2;
+const MOST_PART: f64 = 4.0;
+
+/// Amplitude of the edge singularity (p0) above which a node takes no more than the whole step: the
+/// other nodes change it as much as its own half-width does.
+const MOVED: f64 = 2e-2;
 
 /// Smallest half-width in the iteration (C), and that of a contact that ends at a tip.
 const NARROWEST: f64 = 0.05;
@@ -93,8 +100,8 @@ struct Attempt {
     settings: ContactSettings,
     /// Most modes behind the last free node.
     tail_modes: usize,
-    /// Whether nodes take parts of Newton's steps, see [`ALTERNATES`].
-    damped: bool,
+    /// Whether nodes take parts of Newton's steps, see [`STAYS`].
+    by_secants: bool,
 }
 
 impl Attempt {
@@ -109,18 +116,19 @@ impl Attempt {
 fn attempts(settings: &ContactSettings) -> Vec<Attempt> {
     let all = settings.modes;
     let short = ATTEMPT.min(settings.max_iterations);
-    let one = |damped: bool, times: f64, modes: usize, tail_modes: usize, max_iterations: usize| {
-        let spacing = times * settings.spacing;
-        let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
-        Attempt { settings, tail_modes, damped }
-    };
+    let one =
+        |by_secants: bool, times: f64, modes: usize, tail_modes: usize, max_iterations: usize| {
+            let spacing = times * settings.spacing;
+            let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
+            Attempt { settings, tail_modes, by_secants }
+        };
     let mut list = vec![one(true, 1.0, all, all, short)];
     if all > FEWER_MODES {
         list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, short));
     }
-    for damped in [true, false] {
-        list.extend([2.0, 4.0].map(|times| one(damped, times, all, all, short)));
-        list.push(one(damped, 8.0, all, FEW_TAIL_MODES, settings.max_iterations));
+    for by_secants in [true, false] {
+        list.extend([2.0, 4.0].map(|times| one(by_secants, times, all, all, short)));
+        list.push(one(by_secants, 8.0, all, FEW_TAIL_MODES, settings.max_iterations));
     }
     list
 }
@@ -144,7 +152,7 @@ fn first_guess(
         max_iterations: FIRST_ITERATIONS,
         ..*settings
     };
-    let fewer = Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, damped: true };
+    let fewer = Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, by_secants: true };
     match solve_once(operator, problem, &fewer, known.clone()) {
         Err(Error::Stopped) => Err(Error::Stopped),
         found => Ok(found.map_or(known, |first| first.half_widths)),
@@ -158,11 +166,11 @@ fn solve_once(
     attempt: &Attempt,
     mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
-    let Attempt { ref settings, tail_modes, damped } = *attempt;
+    let Attempt { ref settings, tail_modes, by_secants } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
     let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
-    let mut damping = Damping::new(n);
+    let mut secants = Secants::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
@@ -202,7 +210,7 @@ fn solve_once(
         let wanted = |(&j, singular): (&usize, &f64)| {
             // Beyond a factor of two the linearisation does not hold.
             let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
-            let part = if damped { damping.part(j, *singular) } else { 1.0 };
+            let part = if by_secants { secants.part(j, *singular) } else { 1.0 };
             half_widths[j] * grow.clamp(0.25, 4.0).sqrt().powf(part)
         };
         let wanted: Vec<f64> = layout.free.iter().zip(&singular).map(wanted).collect();
@@ -210,7 +218,9 @@ fn solve_once(
         if !settled {
             contact = shrunk;
             layout = Layout::new(problem, settings, tail_modes, contact.clone());
-            damping = Damping::new(n);
+        }
+        if !settled || released {
+            secants = Secants::new(n);
         }
     }
     Err(not_converged(settings.max_iterations, last))
@@ -222,26 +232,25 @@ fn not_converged(iterations: usize, residual: f64) -> Error {
     Error::NotConverged { iterations, residual, remedy: remedy.into() }
 }
 
-/// The parts of Newton's steps that the nodes take, see [`ALTERNATES`].
-struct Damping {
+/// The parts of Newton's steps that the nodes take, see [`STAYS`].
+struct Secants {
     /// The last amplitude of each node's singular mode, and the part of its last step.
     last: Vec<(f64, f64)>,
 }
 
-impl Damping {
+impl Secants {
     fn new(nodes: usize) -> Self {
-        Self { last: vec![(0.0, 1.0); nodes] }
+        Self { last: vec![(f64::NAN, 1.0); nodes] }
     }
 
     /// The part of the next step of node `j`, whose singular mode has now this amplitude.
     fn part(&mut self, j: usize, amplitude: f64) -> f64 {
         let (had, part) = &mut self.last[j];
-        let alternates = *had * amplitude < 0.0 && amplitude.abs() > ALTERNATES * had.abs();
-        if alternates || *part < 1.0 {
-            let secant = *part * *had / (*had - amplitude);
-            if secant > 0.0 {
-                *part = secant.clamp(LEAST_PART, 1.0);
-            }
+        let left = amplitude / *had;
+        if left.abs() > STAYS || *part != 1.0 {
+            let most = if amplitude.abs() <= MOVED { MOST_PART } else { 1.0 };
+            let secant = *part / (1.0 - left);
+            *part = if secant > 0.0 { secant.clamp(LEAST_PART, most) } else { part.min(1.0) };
         }
         *had = amplitude;
         *part
