@@ -155,3 +155,34 @@ fn steep_ends_are_found_as_closely_as_asked() {
         assert!((a - b).abs() < 2e-3 && b > 1.0, "{inside}: {a} {b}");
     }
 }
+
+/// A contact 25 C long to either side that ends 0.04 C before its roller does: coarser tolerances
+/// find no end so closely, and if it were taken for the roller's it would be left again, and again.
+#[test]
+fn an_end_beside_the_rollers_is_not_taken_for_it() {
+    let case = r#"
+name = "lundberg"
+[roller]
+radius_m = 17.59e-3
+length_m = 20.29e-3
+young_pa = 146.5e9
+poisson = 0.2997
+profile = { kind = "lundberg", design_force_n = 6354 }
+[block]
+length_m = 29.06e-3
+young_pa = 89.48e9
+poisson = 0.4137
+[load]
+force_n = 9421
+eccentricity_m = 1.48e-3
+"#;
+    let mut case = Case::from_toml(case).unwrap();
+    case.accuracy.tolerance = 1e-3;
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves.clear();
+    let solved = SolvedCase::new(&case, &options).unwrap();
+    let summary = &solved.solution().summary;
+    assert_eq!(summary.warnings(), Vec::<String>::new());
+    let inside = (0.5 * case.roller.length_m - summary.contact_y_m[1]) / solved.hertz().c_m;
+    assert!((0.02..0.06).contains(&inside), "{inside}");
+}

@@ -57,18 +57,20 @@ pub(super) struct Line {
 impl Line {
     /// A first guess.
     pub fn first(scene: &Scene, slices: Option<&Slices>) -> Self {
-        Self::reaching(scene, slices.map_or(scene.overlap(), |slices| slices.ends), MARGIN)
+        let ends = slices.map_or(scene.overlap(), |slices| slices.ends);
+        Self::reaching(scene, ends, MARGIN, END_ERROR)
     }
 
-    /// An axis up to `ends`, and at open ends a `margin` beyond them, in half-lengths.
-    fn reaching(scene: &Scene, ends: [f64; 2], margin: f64) -> Self {
+    /// An axis up to `ends`, which are known within an `error`, and at open ends a `margin` beyond
+    /// them, both in half-lengths.
+    fn reaching(scene: &Scene, ends: [f64; 2], margin: f64, error: f64) -> Self {
         let overlap = scene.overlap();
         let longest = scene.half_length;
         let [from, to] = ends.map(|end| end.clamp(overlap[0], overlap[1]));
         let beyond = margin * 0.5 * (to - from);
         let wanted = [from - beyond, to + beyond];
         // What all but reaches the end of the bodies ends there.
-        let near = |side: usize| (wanted[side] - overlap[side]).abs() <= END_ERROR * longest;
+        let near = |side: usize| (wanted[side] - overlap[side]).abs() <= error * longest;
         let past = [wanted[0] <= overlap[0] || near(0), wanted[1] >= overlap[1] || near(1)];
         Self {
             ends: [0, 1].map(|side| if past[side] { overlap[side] } else { wanted[side] }),
@@ -212,7 +214,7 @@ impl Trial<'_> {
         let limited = |found: f64, at: f64| found.clamp(at - most, at + most);
         let to = limited(to, line.ends[1]);
         from = if self.scene.is_symmetric() { -to } else { limited(from, line.ends[0]) };
-        Line::reaching(self.scene, [from, to], 0.0)
+        Line::reaching(self.scene, [from, to], 0.0, self.end_error())
     }
 
     /// The bodies on a line.
