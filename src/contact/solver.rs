@@ -116,12 +116,11 @@ impl Attempt {
 fn attempts(settings: &ContactSettings) -> Vec<Attempt> {
     let all = settings.modes;
     let short = ATTEMPT.min(settings.max_iterations);
-    let one =
-        |by_secants: bool, times: f64, modes: usize, tail_modes: usize, max_iterations: usize| {
-            let spacing = times * settings.spacing;
-            let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
-            Attempt { settings, tail_modes, by_secants }
-        };
+    let one = |by_secants, times: f64, modes, tail_modes, max_iterations| {
+        let spacing = times * settings.spacing;
+        let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
+        Attempt { settings, tail_modes, by_secants }
+    };
     let mut list = vec![one(true, 1.0, all, all, short)];
     if all > FEWER_MODES {
         list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, short));
@@ -170,7 +169,7 @@ fn solve_once(
     let n = problem.axis.len();
     let mut contact = 0..n;
     let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
-    let mut secants = Secants::new(n);
+    let mut parts = StepParts::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
     let mut last = f64::INFINITY;
@@ -210,7 +209,7 @@ fn solve_once(
         let wanted = |(&j, singular): (&usize, &f64)| {
             // Beyond a factor of two the linearisation does not hold.
             let grow = if slopes[j] > 0.0 { 1.0 + 2.0 * singular / slopes[j] } else { 0.25 };
-            let part = if by_secants { secants.part(j, *singular) } else { 1.0 };
+            let part = if by_secants { parts.part_of(j, *singular) } else { 1.0 };
             half_widths[j] * grow.clamp(0.25, 4.0).sqrt().powf(part)
         };
         let wanted: Vec<f64> = layout.free.iter().zip(&singular).map(wanted).collect();
@@ -220,7 +219,7 @@ fn solve_once(
             layout = Layout::new(problem, settings, tail_modes, contact.clone());
         }
         if !settled || released {
-            secants = Secants::new(n);
+            parts = StepParts::new(n);
         }
     }
     Err(not_converged(settings.max_iterations, last))
@@ -233,18 +232,18 @@ fn not_converged(iterations: usize, residual: f64) -> Error {
 }
 
 /// The parts of Newton's steps that the nodes take, see [`STAYS`].
-struct Secants {
+struct StepParts {
     /// The last amplitude of each node's singular mode, and the part of its last step.
     last: Vec<(f64, f64)>,
 }
 
-impl Secants {
+impl StepParts {
     fn new(nodes: usize) -> Self {
         Self { last: vec![(f64::NAN, 1.0); nodes] }
     }
 
     /// The part of the next step of node `j`, whose singular mode has now this amplitude.
-    fn part(&mut self, j: usize, amplitude: f64) -> f64 {
+    fn part_of(&mut self, j: usize, amplitude: f64) -> f64 {
         let (had, part) = &mut self.last[j];
         let left = amplitude / *had;
         if left.abs() > STAYS || *part != 1.0 {

@@ -67,6 +67,15 @@ fn bad_grids_are_refused() {
     assert!(said.starts_with("z of point 1 (roller)"), "{said}");
 }
 
+/// The case of a file, at a tolerance and without curves.
+fn solved(toml: &str, tolerance: f64) -> SolvedCase {
+    let mut case = Case::from_toml(toml).unwrap();
+    case.accuracy.tolerance = tolerance;
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves.clear();
+    SolvedCase::new(&case, &options).unwrap()
+}
+
 /// A roller with Fujiwara's profile under an eccentric load: its contact ends within 0.05 C of its
 /// own ends, where half-widths as close as a tolerance of 5e-3 asks for are not found.
 const STEEP: &str = r#"
@@ -88,13 +97,7 @@ eccentricity_m = -37.5e-6
 
 #[test]
 fn a_contact_coarser_than_its_resolution_says_so() {
-    let summary = |tolerance: f64| {
-        let mut case = Case::from_toml(STEEP).unwrap();
-        case.accuracy.tolerance = tolerance;
-        let mut options = Options::new(EdgeModel::QuarterSpace);
-        options.curves.clear();
-        solve(&case, &options).unwrap().summary
-    };
+    let summary = |tolerance| solved(STEEP, tolerance).solution().summary.clone();
     let first = summary(3e-2);
     assert_eq!((first.details.coarser, first.warnings()), (None, Vec::new()));
     let later = summary(5e-3);
@@ -140,14 +143,7 @@ offset_m = 7.62e-5
 /// as far apart were 0.043 p0 off.
 #[test]
 fn steep_ends_are_found_as_closely_as_asked() {
-    let solved = |tolerance: f64| {
-        let mut case = Case::from_toml(PRESSED).unwrap();
-        case.accuracy.tolerance = tolerance;
-        let mut options = Options::new(EdgeModel::QuarterSpace);
-        options.curves.clear();
-        SolvedCase::new(&case, &options).unwrap()
-    };
-    let (fine, finest) = (solved(1e-3), solved(1e-4));
+    let [fine, finest] = [1e-3, 1e-4].map(|tolerance| solved(PRESSED, tolerance));
     assert_eq!(finest.solution().summary.warnings(), Vec::<String>::new());
     let end = 0.5 * finest.case().roller.length_m / finest.hertz().c_m;
     for inside in [0.05, 0.1, 0.2, 0.5] {
@@ -156,11 +152,9 @@ fn steep_ends_are_found_as_closely_as_asked() {
     }
 }
 
-/// A contact 25 C long to either side that ends 0.04 C before its roller does: coarser tolerances
-/// find no end so closely, and if it were taken for the roller's it would be left again, and again.
-#[test]
-fn an_end_beside_the_rollers_is_not_taken_for_it() {
-    let case = r#"
+/// A roller with Lundberg's profile under an eccentric load, 25 C long to either side. The contact
+/// ends 0.04 C before it does.
+const BESIDE: &str = r#"
 name = "lundberg"
 [roller]
 radius_m = 17.59e-3
@@ -176,13 +170,15 @@ poisson = 0.4137
 force_n = 9421
 eccentricity_m = 1.48e-3
 "#;
-    let mut case = Case::from_toml(case).unwrap();
-    case.accuracy.tolerance = 1e-3;
-    let mut options = Options::new(EdgeModel::QuarterSpace);
-    options.curves.clear();
-    let solved = SolvedCase::new(&case, &options).unwrap();
+
+/// Coarser tolerances find no end so closely; if it were taken for the roller's it would be left
+/// again, and again.
+#[test]
+fn an_end_beside_the_rollers_is_not_taken_for_it() {
+    let solved = solved(BESIDE, 1e-3);
     let summary = &solved.solution().summary;
     assert_eq!(summary.warnings(), Vec::<String>::new());
-    let inside = (0.5 * case.roller.length_m - summary.contact_y_m[1]) / solved.hertz().c_m;
+    let inside =
+        (0.5 * solved.case().roller.length_m - summary.contact_y_m[1]) / solved.hertz().c_m;
     assert!((0.02..0.06).contains(&inside), "{inside}");
 }
