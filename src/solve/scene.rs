@@ -195,8 +195,10 @@ impl Scene {
     /// The scene with its tilt held at a `depth` (C), where the tilt counts.
     fn held_at(self, depth: f64) -> Self {
         match self.tilt {
-            // A load in the middle of what is symmetric leaves it parallel.
-            Tilt::Free(0.0) if self.is_aligned() => Self { tilt: Tilt::Held(0.0), ..self },
+            // A load in the middle of what is symmetric leaves it parallel; heights are not.
+            Tilt::Free(0.0) if self.is_aligned() && !self.rough => {
+                Self { tilt: Tilt::Held(0.0), ..self }
+            }
             Tilt::Held(_) if !self.is_symmetric() => Self { depth, ..self },
             _ => self,
         }

@@ -495,6 +495,36 @@ fn a_plane_of_heights_is_a_held_tilt() {
     }
 }
 
+/// A load in the middle of symmetric bodies that are free to tilt lies there on heights, too: those
+/// of a plane tilt the roller by their slope, and it presses as on smooth bodies.
+#[test]
+fn a_roller_that_is_free_lies_flat_on_a_plane_of_heights() {
+    let slope = 4e-4;
+    let smooth = builtin_case("flush-short").unwrap().unwrap();
+    let mut rough = smooth.clone();
+    rough.load.eccentricity_m = Some(0.0);
+    let c_m = smooth.hertz().c_m;
+    let steps = [4.0 * c_m / 59.0, smooth.roller.length_m / 79.0];
+    let plane = |k: usize| slope * ((k % 80) as f64 - 39.5) * steps[1];
+    rough.surface = Some(surface([60, 80], steps, (0..60 * 80).map(plane).collect()));
+    for model in EdgeModel::ALL {
+        let cells = CellOptions { counts: Some([48, 64]), ..CellOptions::default() };
+        let mut options = Options::new(model);
+        options.curves = vec!["depth-0.9".into()];
+        let solve = |case: &Case| solve_on_cells(case, &options, &cells, &|_, _| {}).unwrap();
+        let [want, got] = [&smooth, &rough].map(solve);
+        let pairs = got.pressure.pressure.iter().zip(&want.pressure.pressure);
+        let off = pairs.fold(0.0, |m: f64, (a, b)| m.max((a - b).abs()));
+        // Free ends are those of any pressure here, and of an even one on the smooth surface.
+        let limit = if model == EdgeModel::QuarterSpace { 1e-3 } else { 1e-5 };
+        small(&format!("free on a plane, {model}, pressure"), off, limit);
+        let summary = got.solution.summary;
+        near(&format!("free on a plane, {model}, tilt"), summary.tilt_rad / -slope, 1.0, 1e-5);
+        let centre = summary.centre_of_pressure_m[1] / c_m;
+        small(&format!("free on a plane, {model}, centre of pressure"), centre.abs(), 1e-6);
+    }
+}
+
 /// A bump beside the contact of smooth bodies, beyond the cells that this one needs: they reach
 /// farther, and where they may not the case is refused.
 #[test]
