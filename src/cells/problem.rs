@@ -101,7 +101,7 @@ impl CellProblem {
         check_memory(
             &format!("a contact on {} x {} cells", grid.nx, grid.ny),
             BYTES * 4.0 * grid.len() as f64 + ends,
-            "ask for fewer cells",
+            "ask for fewer cells, or for a [cells] half_width_m that just covers the contact",
         )?;
         let gap = &Tilted { gap, tilt: self.tilt };
         let gaps = grid.sample(|x, y| gap.at(x, y));

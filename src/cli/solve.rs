@@ -15,8 +15,9 @@ use crate::host::{Lock, check_memory};
 use crate::report::plots::PROGRAM;
 use crate::report::{cells, field, page, solution};
 use crate::solve::{
-    CellDetails, CellOptions, Lamina, MOST_GRID_POINTS, Options, Solution, SolvedCase, Summary,
-    check_cells, check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells, stiffness,
+    CellDetails, CellOptions, Lamina, MOST_CELLS, MOST_GRID_POINTS, Options, Solution, SolvedCase,
+    Summary, check_cells, check_layers, laminae, layers_on_cells, loads_on_cells, solve_on_cells,
+    stiffness,
 };
 use crate::stress::BodyKind;
 use crate::stress::curves::CURVE_NAMES;
@@ -54,8 +55,9 @@ pub(super) struct Arguments {
     /// method); line by default, cells for a case with a rough surface
     #[arg(long, value_enum)]
     engine: Option<Engine>,
-    /// Numbers of cells across and along the contact; by its shape if absent
-    #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = count("cells", 4..=65536))]
+    /// Numbers of cells across and along the contact; by its shape and the width of their region if
+    /// absent
+    #[arg(long, value_name = "NX,NY", value_delimiter = ',', value_parser = count("cells", 4..=MOST_CELLS))]
     cells: Vec<usize>,
     /// Also the contact under these forces (N), on cells: load, approach, mean gap, real contact
     /// area

@@ -35,6 +35,9 @@ const MOST_GROWTHS: usize = 8;
 /// Most cells in a direction where heights ask for as many as they have.
 const MOST_SAMPLES: usize = 1024;
 
+/// Most cells in a direction.
+pub const MOST_CELLS: usize = 65536;
+
 /// How a case was solved on cells.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
@@ -185,7 +188,10 @@ impl Region {
     /// Cells over the contact up to `half_width` (C), less where it is not given and the heights
     /// end before.
     fn grid(&self, half_width: f64) -> Result<Grid> {
-        let [nx, ny] = self.counts.unwrap_or_else(|| self.counts(half_width));
+        let [nx, ny] = match self.counts {
+            Some(counts) => counts,
+            None => self.counts(half_width)?,
+        };
         let covered = |([span, _], _): ([f64; 2], _)| span * nx as f64 / (nx as f64 - 1.0);
         let most = match self.given {
             Some(_) => f64::INFINITY,
@@ -212,21 +218,50 @@ impl Region {
 
     /// Even numbers of cells twice as long as wide, longer only where there would be too many; with
     /// heights as many as samples.
-    fn counts(&self, half_width: f64) -> [usize; 2] {
-        let even = |n: f64| 2 * (0.5 * n).ceil() as usize;
-        if let Some((_, steps)) = self.samples {
+    ///
+    /// # Errors
+    /// [`Error::Value`] where a given half-width takes too many.
+    fn counts(&self, half_width: f64) -> Result<[usize; 2]> {
+        let even = |n: f64| 2.0 * (0.5 * n).ceil();
+        let ratio = self.half_length / half_width;
+        let fewest = self.fewest(half_width);
+        let counts = if let Some((_, steps)) = self.samples {
             let sides = [half_width, self.half_length];
-            let [nx, ny] = [0, 1].map(|i| {
-                even((2.0 * sides[i] / steps[i]).clamp(ACROSS as f64, MOST_SAMPLES as f64)) as f64
-            });
+            let samples = |i: usize| (2.0 * sides[i] / steps[i]).min(MOST_SAMPLES as f64);
+            let (nx, ny) = (even(samples(0).max(fewest)), even(samples(1).max(ACROSS as f64)));
             // As many in each direction as the slenderest cells ask for.
-            let ratio = self.half_length / half_width;
             let across = nx.max(ny / (LONGEST * ratio));
-            return [even(across), even(ny.max(across * ratio / LONGEST))];
+            [across, ny.max(across * ratio / LONGEST)]
+        } else {
+            let square = fewest * ratio;
+            let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
+            [fewest, along.max(ACROSS as f64)]
+        };
+        let counts = counts.map(even);
+        if counts.iter().any(|n| *n > MOST_CELLS as f64) {
+            return Err(Error::Value {
+                key: "cells.half_width_m".into(),
+                value: stated(half_width * self.c_m),
+                reason: format!(
+                    "it takes {:.0} x {:.0} cells, more than {MOST_CELLS} in a direction",
+                    counts[0], counts[1]
+                ),
+                remedy: "give one that just covers the contact, none, or --cells".into(),
+            });
         }
-        let square = ACROSS as f64 * self.half_length / half_width;
-        let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
-        [ACROSS, even(along).max(ACROSS)]
+        Ok(counts.map(|n| n as usize))
+    }
+
+    /// Fewest cells across a region of this `half_width` (C). A region that follows the contact of
+    /// smooth bodies has as many whatever the width; in one that is given, or that heights widen,
+    /// the contact may be narrow, and cells are as wide as in the first region at most.
+    fn fewest(&self, half_width: f64) -> f64 {
+        let fine = ACROSS as f64 * (half_width / FIRST_WIDTH).max(1.0);
+        match (self.given, self.samples) {
+            (Some(_), _) => fine,
+            (None, Some(_)) => fine.min(MOST_SAMPLES as f64),
+            (None, None) => ACROSS as f64,
+        }
     }
 }
 
@@ -443,4 +478,45 @@ fn pressure_lines(scene: &Scene, pressure: &CellPressure) -> Vec<PressureLine> {
     };
     let p = |[x, y]: [f64; 2]| pressure.at(x, scene.off_middle(y));
     PressureLine::standard(along, across, span.centre(), p)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A region over a contact of half-length 5 C with samples that are 1 C apart, or smooth.
+    fn region(given: Option<f64>, rough: bool) -> Region {
+        let samples = rough.then_some(([100.0, 5.0], [1.0, 1.0]));
+        Region { half_length: 5.0, counts: None, given, samples, c_m: 1e-4 }
+    }
+
+    #[test]
+    fn cells_of_a_wider_region_are_no_wider() {
+        for rough in [false, true] {
+            let first = region(None, rough).first().unwrap();
+            for half_width in [0.5, FIRST_WIDTH, 10.0, 400.0] {
+                let grid = region(Some(half_width), rough).first().unwrap();
+                let (widest, across) = (first.half_sides().0, grid.half_sides().0);
+                assert!(across <= widest * (1.0 + 1e-12), "{half_width}: {across} {widest}");
+                assert!(grid.nx <= 64.max((51.2 * half_width) as usize + 2), "{grid:?}");
+                assert!(grid.ny >= first.ny && grid.half_width == half_width, "{grid:?}");
+            }
+            // Heights that touch far out take no more cells than fine heights do.
+            let touched = region(None, rough).grid(50.0).unwrap();
+            assert_eq!(touched.nx, if rough { MOST_SAMPLES } else { ACROSS });
+        }
+    }
+
+    #[test]
+    fn a_region_that_takes_too_many_cells_is_refused() {
+        for (half_width, counts) in [(1e5, "5120000 x 128"), (1e-5, "64 x 2000000")] {
+            let said = region(Some(half_width), false).first().unwrap_err().to_string();
+            let value = stated(half_width * 1e-4);
+            assert!(
+                said.starts_with(&format!("cells.half_width_m = {value} is not valid")),
+                "{said}"
+            );
+            assert!(said.contains(counts) && said.contains("--cells"), "{said}");
+        }
+    }
 }

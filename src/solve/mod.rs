@@ -35,8 +35,8 @@ mod trial;
 mod tests;
 
 pub use cell_case::{
-    CellDetails, CellOptions, CellSolution, LoadStep, check_cells, loads_on_cells, solve_on_cells,
-    stress_on_cells,
+    CellDetails, CellOptions, CellSolution, LoadStep, MOST_CELLS, check_cells, loads_on_cells,
+    solve_on_cells, stress_on_cells,
 };
 pub use cell_layers::{CellLayer, check_layers, layers_on_cells};
 pub use cell_stress::PEAK_CURVE;
