@@ -21,9 +21,9 @@ use std::path::PathBuf;
 /// over the length and the depth of both bodies: the range of tau_xz, the largest shear and von
 /// Mises stress and, with their numbers in the case's [fatigue] table, the measures of Dang Van and
 /// of Fatemi and Socie. Writes fatigue.csv (one row per place, the values by half-spaces beside the
-/// method's), fatigue-<body>.vtr for ParaView, a map of each measure with its largest value marked
-/// (fatigue-*.svg and .png), and summary.json with the critical places and how far half-spaces are
-/// off. Takes some seconds.
+/// method's), fatigue-<body>.vtr for ParaView (z < 0 in the roller), a map of each measure with its
+/// largest value marked (fatigue-*.svg and .png), and summary.json with the critical places and how
+/// far half-spaces are off. Takes some seconds.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists

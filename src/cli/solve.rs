@@ -76,7 +76,8 @@ pub(super) struct Arguments {
     /// Also write pictures of pressure and stresses, and a page about the case
     #[arg(long)]
     plots: bool,
-    /// Also write the stress fields of both bodies
+    /// Also write the stress fields of both bodies, field-<body>.vtr for ParaView, in the block's
+    /// axes: in the roller z, sigma_xz and sigma_yz have the opposite sign of those in curves.csv
     #[arg(long, conflicts_with = "points")]
     field: bool,
     /// Numbers of points of a quarter of a body: across, along and into it

@@ -288,6 +288,8 @@ mod tests {
         assert_eq!([nx, ny, nz], [9, 13, 6]);
         assert!(grid.axes_m.iter().all(|a| a.windows(2).all(|w| w[0] < w[1])));
         assert_eq!(grid.axes_m[2][5], 0.0, "the roller lies above the surface");
+        let c_m = case.hertz().c_m;
+        assert_eq!(grid.axes_m[2][3], -z[2] * c_m);
         let array = |name: &str| &grid.arrays.iter().find(|(n, _)| n == name).unwrap().1;
         let at = |i: usize, j: usize, k: usize| (k * ny + j) * nx + i;
         for (name, odd_x, odd_y) in [
@@ -301,6 +303,14 @@ mod tests {
             assert!(here != 0.0, "{name}");
             assert_eq!(a[at(2, 9, 3)], odd_x * here, "{name}");
             assert_eq!(a[at(6, 3, 3)], odd_y * here, "{name}");
+        }
+        // Shears across z are those of the block's axes.
+        let own = solved.stress(BodyKind::Roller, &[[x[2], y[3], z[2]]]).unwrap()[0];
+        for (name, own) in
+            [("sigma_yz_pa", -own.yz), ("sigma_xz_pa", -own.xz), ("sigma_xy_pa", own.xy)]
+        {
+            let here = f64::from(array(name)[at(6, 9, 3)]) / case.hertz().p0_pa;
+            assert!((here - own).abs() < 1e-3 && here * own > 0.0, "{name}: {here} {own}");
         }
     }
 
