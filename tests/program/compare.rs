@@ -150,26 +150,53 @@ fn records_solutions_and_given_limits_are_taken() {
     let load =
         "[[gate]]\nname = \"load\"\nmethod = \"quarter-space\"\nquantity = \"load\"\nlimit = 1\n";
     fs::write(folder.path().join("load.toml"), load).unwrap();
-    for (arguments, wanted) in [
-        ([&*pressure, "--exclude-pressure", "0.1"], "add 0.2 to --exclude-pressure"),
-        (["/dev/null", "--gates", "/dev/null"], ": holds no gate; add [[gate]] tables"),
-        (["si.csv", "--gates", "load.toml"], "no gate of quarter-space takes any of its curves"),
-    ] {
-        let all = [&["compare", "case.toml", "--out", "no"], &arguments[..]].concat();
-        let message = refused(&mut edgeline(folder.path(), &all));
-        assert!(message.contains(wanted) && message.contains(arguments[0]), "{message}");
-    }
-    // Given limits are not widened, and one that selects nothing fails.
     let gate = |measure: &str, limit: f64| {
         format!(
             "[[gate]]\nname = \"{measure}\"\nmethod = \"quarter-space\"\nquantity = \"stress\"\n\
                  measure = \"{measure}\"\ncurves = [\"depth-centre\"]\nlimit = {limit}\n"
         )
     };
+    let misspelt = gate("rms", 0.02).replace("centre", "center");
+    let pressures =
+        gate("max", 0.02).replace("\"stress\"", "\"pressure\"").replace("depth-centre", "*");
+    for (name, text) in [
+        ("misspelt", misspelt.clone()),
+        ("pressure", pressures),
+        ("farther", gate("rms", 0.02) + "excluded_c = 0.5\n"),
+        ("nowhere", gate("rms", 0.02) + "excluded_c = -1\n"),
+    ] {
+        fs::write(folder.path().join(format!("{name}.toml")), text).unwrap();
+    }
+    let none = "no gate of quarter-space takes any of its curves";
+    for (arguments, wanted) in [
+        ([&*pressure, "--exclude-pressure", "0.1"], "add 0.2 to --exclude-pressure"),
+        (["/dev/null", "--gates", "/dev/null"], ": holds no gate; add [[gate]] tables"),
+        (["si.csv", "--gates", "load.toml"], none),
+        (["si.csv", "--gates", "misspelt.toml"], none),
+        (["si.csv", "--gates", "pressure.toml"], none),
+        (
+            ["si.csv", "--gates", "farther.toml"],
+            "outside 0.5 C of the edge, and it is compared outside 0.1 C; give such a distance to --exclude",
+        ),
+    ] {
+        let all = [&["compare", "case.toml", "--out", "no"], &arguments[..]].concat();
+        let message = refused(&mut edgeline(folder.path(), &all));
+        assert!(message.contains(wanted) && message.contains(arguments[0]), "{message}");
+    }
+    let all = ["compare", "case.toml", "si.csv", "--out", "no", "--gates", "nowhere.toml"];
+    let message = refused(&mut edgeline(folder.path(), &all));
+    assert!(
+        message.contains("nowhere.toml: gate \"rms\": excluded_c = -1 is no distance"),
+        "{message}"
+    );
+    let (code, text) =
+        run(&["compare", "case.toml", "si.csv", "--gates", "farther.toml", "--exclude", "0.5"]);
+    assert_eq!(code, Some(0), "{text}");
+    // Given limits are not widened, and one that selects nothing beside others fails.
     for (text, wanted) in [
         (gate("rms", 0.02), Some(0)),
         (gate("rms", 1e-6), Some(1)),
-        (gate("rms", 0.02).replace("centre", "center"), Some(1)),
+        (gate("rms", 0.02) + &misspelt.replace("\"rms\"\nmethod", "\"other\"\nmethod"), Some(1)),
     ] {
         fs::write(folder.path().join("gates.toml"), text).unwrap();
         let (code, text) = run(&["compare", "case.toml", "si.csv", "--gates", "gates.toml"]);

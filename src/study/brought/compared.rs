@@ -51,11 +51,8 @@ impl Comparison {
             files.into_iter().map(|file| beside.file(file, references)).collect::<Result<_>>()?;
         let held = Held { limits, load_error_rel: beside.load_error_rel() };
         let mut outcomes: Vec<GateOutcome> = files.iter().flat_map(|f| held.gates(f)).collect();
-        let idle = held.idle_gates(&outcomes);
-        if idle.is_empty() {
-            files.iter().try_for_each(|file| held.check(file))?;
-        }
-        outcomes.extend(idle);
+        files.iter().try_for_each(|file| held.check(file))?;
+        outcomes.extend(held.idle_gates(&outcomes));
         Ok(Self { case: case.clone(), range: range.clone(), files, outcomes })
     }
 }
@@ -91,7 +88,8 @@ impl Held<'_> {
         let mut outcomes: Vec<GateOutcome> = chosen.map(evaluate).collect();
         if numbers.len() == 1 {
             // A file none of whose points count must not look like a pass.
-            outcomes.push(nothing_compared(&format!("{}: curves", file.name)));
+            let note = "no curve was compared, or all points are next to an edge";
+            outcomes.push(nothing_compared(&format!("{}: curves", file.name), note));
         }
         outcomes
     }
@@ -101,26 +99,33 @@ impl Held<'_> {
     fn check(&self, run: &FileRun) -> Result<()> {
         let numbers = of_curves(run);
         let of_curves = || self.gated().filter(|gate| gate.selected != LOAD);
-        if numbers.is_empty() || of_curves().any(|gate| numbers.iter().any(|n| gate.takes(n))) {
+        let takes = |gate: &Gate| numbers.iter().any(|n| gate.takes(n));
+        if numbers.is_empty() || of_curves().any(takes) {
             return Ok(());
         }
-        let same = |gate: &&Gate| numbers.iter().any(|n| gate.selected.takes(&n.of));
-        let wanted = distances(of_curves().filter(same).filter_map(|gate| gate.excluded_c));
+        // Those that would, were the numbers of other points.
+        let elsewhere = |gate: &&Gate| takes(&Gate { excluded_c: None, ..(*gate).clone() });
+        let wanted = distances(of_curves().filter(elsewhere).filter_map(|gate| gate.excluded_c));
         let [message, remedy] = if wanted.is_empty() {
             [
                 "no gate of quarter-space takes any of its curves".to_string(),
-                "add a gate for what the file has, or leave the file out".to_string(),
+                "give one that does, of its quantity, curves and body, or leave the file out"
+                    .to_string(),
             ]
         } else {
             let own = distances(numbers.iter().filter_map(|n| n.of.excluded_c()));
+            let (of, option) = match run.file.curves.stress.is_empty() {
+                true => ("pressure", format!("add {wanted} to --exclude-pressure")),
+                false => ("stress", "give such a distance to --exclude".to_string()),
+            };
             [
                 format!(
-                    "nothing of it is held to a limit: those of pressure are for points outside \
+                    "nothing of it is held to a limit: those of {of} are for points outside \
                      {wanted} C of the edge, and it is compared outside {own} C"
                 ),
                 format!(
-                    "add {wanted} to --exclude-pressure, and points further from the edge, or give \
-                     limits of your own by --gates"
+                    "{option}, with points further from the edge in the file, or give other \
+                     limits by --gates"
                 ),
             ]
         };
@@ -143,7 +148,8 @@ impl Held<'_> {
             let ending = format!(": {}", gate.name);
             !met.iter().any(|outcome| outcome.name.ends_with(&ending))
         };
-        self.gated().filter(idle).map(|gate| nothing_compared(&gate.name)).collect()
+        let note = "nothing was compared: it takes no number of any file";
+        self.gated().filter(idle).map(|gate| nothing_compared(&gate.name, note)).collect()
     }
 }
 
@@ -163,7 +169,6 @@ fn distances(all: impl Iterator<Item = f64>) -> String {
 /// The gates of the load.
 const LOAD: Selected = Selected::Whole(Whole::Load);
 
-fn nothing_compared(name: &str) -> GateOutcome {
-    let note = "nothing was compared: no curve, or all points next to an edge";
+fn nothing_compared(name: &str, note: &str) -> GateOutcome {
     GateOutcome::nothing(name, Some(GATED), Kind::Coverage, note)
 }

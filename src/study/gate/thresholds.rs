@@ -158,7 +158,8 @@ pub struct Drift {
 ///
 /// # Errors
 /// [`Error::File`] with the line when it is not TOML, or has an unknown key, an unknown name, a
-/// limit that is not a positive number, or nothing to be held to.
+/// limit that is not a positive number, a distance that is not zero or more, or nothing to be held
+/// to.
 pub fn parse(text: &str, path: &Path) -> Result<Gates> {
     let refuse = |line: Option<usize>, message: String, remedy: &str| Error::File {
         path: path.to_path_buf(),
@@ -184,7 +185,8 @@ pub fn parse(text: &str, path: &Path) -> Result<Gates> {
                 Some(format!("measure = {measure:?} means nothing for {name}"))
             }
             (Selected::Error(_), None) => Some("has no measure: max, rms or l1".to_string()),
-            _ => None,
+            _ => (gate.excluded_c.filter(|c| !c.is_finite() || *c < 0.0))
+                .map(|c| format!("excluded_c = {c} is no distance, zero or more")),
         };
         if let Some(problem) = problem {
             return Err(refuse(
