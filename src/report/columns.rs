@@ -81,8 +81,8 @@ impl Columns {
         self
     }
 
-    /// The table as CSV; the numbers have as many digits as it takes to read them back exactly.
-    /// Texts are names and need no quotes.
+    /// The table as CSV; the numbers have as many digits as it takes to read them back exactly, and
+    /// a missing one is an empty cell. Texts are names and need no quotes.
     pub fn to_csv(&self) -> String {
         let names: Vec<&str> = self.columns.iter().map(|(name, _)| name.as_str()).collect();
         let mut text = names.join(",") + "\n";
@@ -97,6 +97,7 @@ impl Columns {
                 let from = text.len();
                 match values {
                     Values::Texts(values) => text.push_str(&values[row]),
+                    Values::Numbers(values) if values[row].is_nan() => {}
                     // Many stresses vanish by symmetry.
                     Values::Numbers(values) if values[row] == 0.0 => text.push('0'),
                     Values::Numbers(values) if row > 0 && values[row] == values[row - 1] => {

@@ -31,6 +31,8 @@ fn a_design_writes_a_case_that_sees_what_it_says() {
     ];
     assert_eq!(files(&out).iter().filter(|f| !f.starts_with('.')).collect::<Vec<_>>(), wanted);
     let (loads, history) = (rows(&out.join("loads.csv")), rows(&out.join("history.csv")));
+    // A load without its place has an empty cell.
+    assert_eq!(loads[0]["eccentricity_m"], "");
     let objective = summary["objective_pa"].as_f64().unwrap();
     let largest = loads.iter().map(|row| number(row, "von_mises_pa")).fold(0.0, f64::max);
     assert!((largest / objective - 1.0).abs() < 1e-6, "{summary}");
