@@ -2,8 +2,10 @@ use super::thresholds::BUILTIN_GATES;
 use super::*;
 use crate::body::EdgeModel;
 use crate::case::{Case, Study};
+use crate::stress::Variable;
+use crate::study::measure::Measure;
 use crate::study::synthetic::{self, Twist};
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 const GATES: &str = r#"
@@ -195,4 +197,66 @@ fn numbers_of_another_study_and_of_other_models_do_not_count() {
     let drifts = outcomes.iter().filter(|o| o.kind == Kind::Drift);
     let titles: Vec<String> = drifts.map(|o| format!("{}, {}", o.title(), o.method)).collect();
     assert_eq!(titles, ["factorial: drift from the accepted numbers, quarter-space"]);
+}
+
+/// The accepted numbers of the model in a study, by their places in the file.
+fn accepted_numbers(study: &str) -> Vec<Number> {
+    let accepted = Baseline::built_in().unwrap().of_model(study, EdgeModel::QuarterSpace);
+    let of_place = |(place, values): (&String, &BTreeMap<String, f64>)| {
+        let [_, case, _, body, curve, excluded] = place.split(' ').collect::<Vec<_>>()[..] else {
+            panic!("{place}");
+        };
+        let number = |(name, value): (&String, &f64)| {
+            let (variable, measure) = name.rsplit_once('_').unwrap();
+            let of = NumberOf::Curve {
+                body: body.into(),
+                curve: curve.into(),
+                variable: Variable::from_name(variable).unwrap(),
+                excluded_c: excluded.parse().unwrap(),
+                measure: Measure::ALL.into_iter().find(|m| m.name() == measure).unwrap(),
+            };
+            Number { case: case.into(), method: EdgeModel::QuarterSpace, of, value: *value }
+        };
+        values.iter().map(number).collect::<Vec<_>>()
+    };
+    accepted.numbers.iter().flat_map(of_place).collect()
+}
+
+/// The decimal numbers of a text.
+fn numbers_in(text: &str) -> Vec<String> {
+    let words = text.split(|c: char| !c.is_ascii_digit() && c != '.');
+    words
+        .map(|word| word.trim_end_matches('.'))
+        .filter(|w| w.contains('.'))
+        .map(String::from)
+        .collect()
+}
+
+/// The page about gates has the limits of each study and the accepted numbers beside them.
+#[test]
+fn the_page_has_the_limits_and_the_accepted_numbers() {
+    let page = include_str!("../../../docs/methodology.md");
+    for (study, of, row) in [
+        ("scenes", "sliding", "| sliding |"),
+        ("scenes", "materials", "| other materials |"),
+        ("scenes", "real rollers", "| real rollers |"),
+        ("profiled", "", "| `profiled` |"),
+    ] {
+        let line = page.lines().find(|line| line.starts_with(row)).unwrap();
+        let (limits, accepted) = line.split('|').nth(2).unwrap().split_once("accepted").unwrap();
+        let all = accepted_numbers(study);
+        let gates = Gates::built_in_for(study).unwrap().gate;
+        let gates = gates.iter().filter(|g| g.name.starts_with(of));
+        let gates: Vec<&Gate> =
+            gates.filter(|g| matches!(g.selected, Selected::Error(_))).collect();
+        let sorted = |mut numbers: Vec<String>| {
+            numbers.sort();
+            numbers
+        };
+        let own = gates.iter().map(|gate| gate.limit.to_string());
+        assert_eq!(sorted(numbers_in(limits)), sorted(own.collect()), "{row}");
+        let worst = |gate: &&Gate| format!("{:.4}", gate.evaluate(&all, &[]).value.unwrap());
+        let worst = gates.iter().map(worst);
+        assert_eq!(sorted(numbers_in(accepted)), sorted(worst.collect()), "{row}");
+    }
 }
