@@ -44,7 +44,8 @@ pub(super) struct Arguments {
     /// Models to run, separated by commas; all by default
     #[arg(long, value_delimiter = ',', value_parser = source())]
     methods: Vec<Source>,
-    /// Tolerances of the models as fractions of p0; the tightest gives the limit of each model
+    /// Tolerances of the models as fractions of p0; at the tightest quarter-space is the limit that
+    /// errors are taken against beside FEM's finest mesh
     #[arg(
         long,
         value_delimiter = ',',
