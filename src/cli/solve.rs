@@ -116,8 +116,8 @@ enum Engine {
     Cells,
 }
 
-/// Why stiffnesses and laminae are refused on cells.
-const NOT_ON_CELLS: &str = "the engine on cells does not compute them";
+/// Why the engine on cells refuses stiffnesses and laminae.
+const NOT_ON_CELLS: &str = "does not compute them";
 
 impl Arguments {
     /// The engine that is asked for; without, the one that takes the case.
@@ -141,30 +141,30 @@ impl Arguments {
         Ok(())
     }
 
-    /// Refuses options of the engine along a line.
-    fn check_cells_alone(&self) -> Result<()> {
-        let remedy = "leave it out, or take --engine line";
-        let laminae = self.laminae.map_or_else(String::new, |count| count.to_string());
-        for (flag, is_given, reason) in [
-            ("field", self.field, "the engine on cells writes no fields"),
+    /// Refuses options of the engine along a line, which takes no rough `case`.
+    fn check_cells_alone(&self, case: &Case) -> Result<()> {
+        let (key, value, engine, instead) = match &case.surface {
+            Some(surface) => (
+                "surface.heights",
+                format!("{:?}", surface.heights.display()),
+                "the engine on cells, which alone carries heights,",
+                "remove [surface]",
+            ),
+            None => ("--engine", "cells".into(), "the engine on cells", "take --engine line"),
+        };
+        for (option, is_given, reason) in [
+            ("field", self.field, "writes no fields"),
             ("stiffness", self.stiffness, NOT_ON_CELLS),
+            ("laminae", self.laminae.is_some(), NOT_ON_CELLS),
+            ("uncertain", self.uncertain.is_given(), "is too slow for many solutions"),
         ] {
             if is_given {
-                let reason = format!("--{flag} is given, and {reason}");
-                let remedy = format!("leave out --{flag}, or take --engine line");
-                return Err(unsuited(("engine", "cells"), &reason, &remedy));
-            }
-        }
-        for (option, given, reason) in [
-            ("laminae", laminae, NOT_ON_CELLS),
-            (
-                "uncertain",
-                self.uncertain.given(),
-                "the engine on cells is too slow for many solutions",
-            ),
-        ] {
-            if !given.is_empty() {
-                return Err(unsuited((option, &given), reason, remedy));
+                return Err(Error::Value {
+                    key: key.into(),
+                    value,
+                    reason: format!("--{option} is given, and {engine} {reason}"),
+                    remedy: format!("leave out --{option}, or {instead}"),
+                });
             }
         }
         Ok(())
@@ -246,7 +246,7 @@ fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
 
 /// The same on uniform cells.
 fn run_on_cells(case: &Case, options: &Options, arguments: &Arguments) -> Result<Exit> {
-    arguments.check_cells_alone()?;
+    arguments.check_cells_alone(case)?;
     let mut cells = CellOptions::default();
     match arguments.cells[..] {
         [] => {}

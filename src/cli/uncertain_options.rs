@@ -31,11 +31,6 @@ impl UncertainOptions {
         !self.uncertain.is_empty()
     }
 
-    /// The inputs as they are given; empty without one.
-    pub(super) fn given(&self) -> String {
-        self.uncertain.join(", ")
-    }
-
     /// The uncertain numbers of `case`.
     ///
     /// # Errors

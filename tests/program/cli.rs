@@ -645,6 +645,19 @@ fn a_measured_surface_is_pressed_on_cells() {
             refused(folder.path(), &[&["solve", "rough.toml", "--out", "no"], &more[..]].concat());
         assert!(said.contains(wanted), "{said}");
     }
+    // No other engine takes the case.
+    for option in [
+        &["--field"][..],
+        &["--stiffness"],
+        &["--laminae", "30"],
+        &["--uncertain", "dimensionless.W=5%"],
+    ] {
+        let all = [&["solve", "rough.toml", "--out", "no"], option].concat();
+        let said = refused(folder.path(), &all);
+        let wanted =
+            format!("surface.heights = \"waves.npy\" is not valid: {} is given", option[0]);
+        assert!(said.contains(&wanted) && said.contains("or remove [surface]"), "{said}");
+    }
     for arguments in [
         &["solve", "rough.toml", "--engine", "line", "--out", "no"][..],
         &["sweep", "rough.toml", "--out", "no"],
