@@ -227,9 +227,10 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
 fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
     let ratio = |lamina: &Lamina| lamina.load_n / lamina.standard_load_n;
     let [first, last] = [&all[0], &all[all.len() - 1]].map(ratio);
-    let shown = |ratio: f64| match ratio.is_finite() {
-        true => format!("{ratio:.3} times"),
-        false => "a load where the standard has none, not finite times".into(),
+    let shown = |ratio: f64| match (ratio.is_finite(), ratio.is_nan()) {
+        (true, _) => format!("{ratio:.3} times its load"),
+        (false, false) => "a load where it has none".to_string(),
+        (false, true) => "no load, as there".to_string(),
     };
     let steel = |young_pa: f64| (195e9..=220e9).contains(&young_pa);
     let own = [case.roller.material.young_pa, case.block.material.young_pa];
@@ -238,7 +239,7 @@ fn what_laminae_miss(case: &Case, all: &[Lamina]) -> String {
         false => "; the standard's constant is that of steel, which these bodies are not",
     };
     format!(
-        "note: laminae: the outermost slices carry {} and {} the load of ISO/TS 16281{material}",
+        "note: laminae: beside ISO/TS 16281 the first slice carries {}, and the last {}{material}",
         shown(first),
         shown(last)
     )

@@ -198,7 +198,7 @@ fn stiffness_and_laminae_are_there_on_demand() {
     assert!((1e8..1e9).contains(&force), "{found}");
     assert!(stiffness["moment_by_tilt_nm_per_rad"].as_f64().unwrap() > 0.0);
     let note = String::from_utf8(run.stderr).unwrap();
-    assert!(note.contains("the outermost slices carry"), "{note}");
+    assert!(note.contains("beside ISO/TS 16281 the first slice carries"), "{note}");
     let rows = rows(&path.join("out/laminae.csv"));
     assert_eq!(rows.len(), 40);
     for column in ["load_n", "iso_load_n"] {
@@ -213,7 +213,18 @@ fn stiffness_and_laminae_are_there_on_demand() {
         arguments.extend(option);
         let said = refused(path, &arguments);
         assert!(said.contains("the engine on cells does not compute them"), "{said}");
+        assert!(said.contains("or take --engine line"), "{said}");
     }
+    // A roller that has lifted off at one end, by the standard, too.
+    let steel = "young_pa = 210e9\npoisson = 0.3\nlength_m = 6e-3\n";
+    let lifted = format!(
+        "name = \"lifted\"\n[roller]\nradius_m = 10e-3\n{steel}[block]\n{steel}\
+         [load]\nforce_n = 300.0\neccentricity_m = 2e-3\n"
+    );
+    std::fs::write(path.join("lifted.toml"), lifted).unwrap();
+    let run = edgeline(path, &["solve", "lifted.toml", "--laminae", "40"]).output().unwrap();
+    let note = String::from_utf8(run.stderr).unwrap();
+    assert!(note.contains("the first slice carries no load, as there, and the last 0."), "{note}");
     assert!(
         refused(path, &["solve", "flush-short", "--laminae", "29"])
             .contains("a number of slices between 30 and 2000")
