@@ -48,13 +48,24 @@ pub(super) enum Rows {
 /// Why a sweep takes no rough surface.
 pub(super) const SMOOTH: &str = "a sweep solves contacts along a line, which are smooth";
 
+/// Why a number makes no difference to a sweep; `None` if it may make one.
+pub(super) fn without_effect(key: &Key) -> Option<&'static str> {
+    match key.table() {
+        "surface" => Some(SMOOTH),
+        "cells" => Some("a sweep solves contacts along a line, not on cells"),
+        "fatigue" => Some("a sweep tells nothing of fatigue"),
+        _ => None,
+    }
+}
+
 impl Sweep {
     /// Reads a sweep from a TOML file or, if its name ends in `.csv`, from a table. `base` gives
     /// the values that a table has no column for; a TOML file must contain all values.
     ///
     /// # Errors
     /// [`Error::Io`] when the file cannot be read; [`Error::File`] with the line when it is not
-    /// TOML or CSV, has an unknown or missing key or column, or a value of the wrong type;
+    /// TOML or CSV, has an unknown or missing key or column, a column or a list of numbers that no
+    /// row depends on, or a value of the wrong type;
     /// [`Error::Value`] if the base has a rough surface. Values out of their range are no errors
     /// here: see [`Sweep::case`].
     pub fn read(path: &Path, base: Option<&Draft>) -> Result<Sweep> {

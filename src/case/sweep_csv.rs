@@ -3,7 +3,7 @@
 use super::document::did_you_mean;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
-use super::sweep::{Column, Rows, Sweep};
+use super::sweep::{Column, Rows, Sweep, without_effect};
 use super::sweep_table::Table;
 use crate::base::{Error, Result};
 use crate::host::read_text;
@@ -86,11 +86,15 @@ fn column(name: &str) -> Finding<Column> {
         return Ok(Column::Numbers(KEYS.iter().filter(|key| key.leaf() == name).collect()));
     }
     if let Some(key) = KEYS.iter().find(|key| key.path == name || key.column == name) {
-        return Ok(Column::Numbers(vec![key]));
+        return match without_effect(key) {
+            None => Ok(Column::Numbers(vec![key])),
+            Some(reason) => Err((format!("column {name}: {reason}"), "remove the column".into())),
+        };
     }
     let mut known = vec!["name"];
     known.extend(BOTH);
-    known.extend(KEYS.iter().map(|key| key.column));
+    let columns = KEYS.iter().filter(|key| without_effect(key).is_none());
+    known.extend(columns.map(|key| key.column));
     let remedy = format!("{}The columns are {}", did_you_mean(name, &known), known.join(", "));
     Err((format!("unknown column {name}"), remedy))
 }

@@ -6,7 +6,7 @@ use super::document::{Document, Entry, Table, read_text};
 use super::draft::Draft;
 use super::keys::Key;
 use super::levels::{Levels, MAX_ROWS, levels};
-use super::sweep::{Column, Rows, SMOOTH, Sweep};
+use super::sweep::{Column, Rows, SMOOTH, Sweep, without_effect};
 use crate::base::Result;
 use std::path::Path;
 
@@ -51,7 +51,10 @@ impl Sweep {
         for (key, entry) in entries(&root, &keys_of(form))? {
             match levels(&entry)? {
                 Levels::One(value) => key.set(&mut base, value),
-                levels => varying.push(Varying { key, entry, levels }),
+                levels => match without_effect(key) {
+                    None => varying.push(Varying { key, entry, levels }),
+                    Some(reason) => return Err(entry.refuse(reason, "give one value, or none")),
+                },
             }
         }
         // The columns have the order of the file.

@@ -85,6 +85,11 @@ fn what_is_wrong_with_the_file_is_an_error() {
         ("[block]", "[sweep]\ncombine = \"zip\"\n[block]", "lists are combined in one of two"),
         ("[block]", "[blok]", "unknown key blok; did you mean block"),
         (
+            "[block]",
+            "[cells]\nhalf_width_m = [1e-3, 2e-3]\n[block]",
+            "cells.half_width_m = [1e-3, 2e-3] is not valid: a sweep solves contacts along a line",
+        ),
+        (
             "radius_m = 10e-3",
             "radius_m = 10e-3\nlength_m = 1",
             "s.toml:3: roller.length_m = 1 is not valid: the lengths follow",
@@ -136,10 +141,16 @@ fn broken_tables_are_errors() {
         ("poisson,block_poisson\n0.3,0.3\n", "block.poisson is given by two columns"),
         ("name,name\na,b\n", "two columns name"),
         ("W,force_n\n1e-4,1\n", "gives the load twice"),
+        ("surface_dx_m\n1e-6\n", "s.csv:1: column surface_dx_m: a sweep solves contacts along"),
+        ("cells.half_width_m\n1e-3\n", "a line, not on cells; remove the column"),
+        ("yield_pa\n1e9\n", "column yield_pa: a sweep tells nothing of fatigue"),
     ] {
         let said = table(text, Some("flush-short")).unwrap_err().to_string();
         assert!(said.contains(wanted), "{text}: {said}");
     }
+    // What is offered in place of an unknown column may be used.
+    let said = table("Lr\n1\n", Some("flush-short")).unwrap_err().to_string();
+    assert!(said.contains("friction") && !said.contains("cells_half_width_m"), "{said}");
 }
 
 /// A text with one slice replaced by another text.
