@@ -7,6 +7,7 @@ use super::model::{Case, Load, Pose};
 use super::objective::Objective;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::study_file::listed_case;
+use crate::base::number::significant;
 use crate::base::{BodyKind, Error, Result};
 use std::path::Path;
 
@@ -117,9 +118,31 @@ impl Design {
         let middle: Vec<f64> = design.parameters.iter().map(|p| p.at(0.5)).collect();
         let listed = root.table_entries("loads")?;
         for (i, entry) in listed.iter().enumerate() {
-            entry.checked(design.loaded(&middle, i))?;
+            let shaped = design.loaded(&middle, i);
+            entry.checked(shaped.map_err(|e| design.blamed_on_bounds(e, &middle, &root)))?;
         }
         Ok(design)
+    }
+
+    /// The `error` of a load with the values in the `middle` of the bounds; at the bounds, if it is
+    /// one of a profile, which no load mends.
+    fn blamed_on_bounds(&self, error: Error, middle: &[f64], root: &Table) -> Error {
+        let (key, value, reason, remedy) = match error {
+            Error::Value { key, value, reason, remedy } if key.contains(".profile.") => {
+                (key, value, reason, remedy)
+            }
+            other => return other,
+        };
+        let values = self.parameters.iter().zip(middle);
+        let values = values.map(|(p, value)| format!("{} = {}", p.name, significant(*value, 4)));
+        let values = values.collect::<Vec<_>>().join(", ");
+        let message = format!(
+            "in the middle of the bounds, {values}, {key} = {value} is not legal: {reason}"
+        );
+        match root.table("bounds") {
+            Ok(bounds) => bounds.error(message, remedy),
+            Err(error) => error,
+        }
     }
 
     /// The case with the profile of these `values` of the parameters, under its own load.

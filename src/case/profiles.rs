@@ -150,11 +150,17 @@ impl Case {
         let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
         if deepest >= DEEPEST * self.roller.radius_m {
             let (radius, value) = (stated(self.roller.radius_m), format!("{kind:?}"));
-            let reason = format!(
-                "the profile drops by {} m at the body's end, which no small slope allows \
-                 (the roller's radius is {radius} m)",
-                significant(deepest, 4)
-            );
+            let reason = match deepest.is_finite() {
+                true => format!(
+                    "the profile drops by {} m at the body's end, which no small slope allows \
+                     (the roller's radius is {radius} m)",
+                    significant(deepest, 4)
+                ),
+                false => format!(
+                    "the profile ends before the body does, {} m from its middle",
+                    significant(half, 4)
+                ),
+            };
             return refuse("kind", value, reason, "check the units of the profile (m, N)".into());
         }
         Ok(())

@@ -83,6 +83,12 @@ fn bad_designs_exit_with_two_and_leave_nothing() {
         ),
         ("kind = \"relief\"", "kind = \"relief\"\nbody = \"race\"", "there is no such body"),
         ("straight_m = 1e-3", "straight_m = 1.0", "the straight part is as long as the body"),
+        (
+            "radius_m = [0.05, 5.0]",
+            "radius_m = [1e-6, 1e-5]",
+            "d.toml:5: in the middle of the bounds, radius_m = 3.162e-6, roller.profile.kind = \"relief\" is \
+             not legal: the profile ends before the body does, 0.001262 m from its middle",
+        ),
         ("case = \"flush-short\"", "case = \"nowhere.toml\"", "there is no file"),
         ("case = \"flush-short\"", "case = \"sliding-flush\"", "designed without friction"),
         ("[profile]", "objective = \"stress\"\n[profile]", "there is no such objective"),
