@@ -114,6 +114,7 @@ fn compliance_and_contact(c: &mut Criterion) {
             rotation: Rotation::Held(0.0),
             open: [false; 2],
             recedes: [false; 2],
+            turns: [f64::INFINITY; 2],
             guess: None,
         };
         let settings = ContactSettings {

@@ -79,11 +79,10 @@ pub(super) fn check(
 
 /// Whether `y` lies so close to an end of the contact that its gap says nothing about the rest.
 fn near_end(problem: &Problem, solution: &ContactSolution, y: f64) -> bool {
-    let [from, to] = solution.ends;
-    let length = to - from;
-    let before = if problem.both_ends { (y - from).abs() } else { f64::INFINITY };
+    let [from, to] = solution.ends.map(|end| end.at);
+    let length = if problem.both_ends { to - from } else { to };
     let tip = if problem.may_end() { TIP * length } else { 0.0 };
-    before.min((to - y).abs()) < END.max(tip) || problem.distance_to_end(y) < END
+    (y - from).abs().min((to - y).abs()) < END.max(tip) || problem.distance_to_end(y) < END
 }
 
 /// Gaps between the loaded bodies (C^2 / (2 R)) at the nodes along the line, at the distances
@@ -148,6 +147,7 @@ mod tests {
             rotation: Rotation::Held(0.0),
             open: [false; 2],
             recedes: [false; 2],
+            turns: [f64::INFINITY; 2],
             guess: None,
         };
         let solution = solve(&problem, &settings).unwrap();

@@ -22,7 +22,8 @@ const ENDLESS_EXPONENT: f64 = 0.5;
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
-/// Part of a contact's half-length at a tip in which the square of the half-width is linear.
+/// Part of a contact's half-length, or of the length within which the gap turns if that is shorter,
+/// in which the square of the half-width is linear at a tip.
 const TIP_LENGTH: f64 = 0.003;
 
 /// Fewest free nodes in contact.
@@ -66,13 +67,15 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
     let last = [nodes[contact.start], nodes[contact.end - 1]];
     let breaks = problem.axis.breaks();
     let ends = [breaks[0], problem.axis.end()];
-    let tip = TIP_LENGTH * 0.5 * (last[1] - last[0]) * if problem.both_ends { 1.0 } else { 2.0 };
+    let half = 0.5 * (last[1] - last[0]) * if problem.both_ends { 1.0 } else { 2.0 };
+    let tips = problem.turns.map(|turns| TIP_LENGTH * half.min(turns));
     let near = |side: usize, y: f64| {
         if side == 0 && !problem.both_ends {
             return false;
         }
         let end = if receded[side] { last[side] } else { ends[side] };
-        let apart = if receded[side] || problem.open[side] { tip.max(spacing) } else { spacing };
+        let apart =
+            if receded[side] || problem.open[side] { tips[side].max(spacing) } else { spacing };
         (y - end).abs() < apart
     };
     let middle = match problem.both_ends {

@@ -17,6 +17,7 @@
 
 mod check;
 mod collocation;
+mod ends;
 mod gap;
 mod layout;
 mod operator;
@@ -32,5 +33,5 @@ pub use operator::{Compliance, LineOperator, Operator};
 pub use problem::{Problem, Rotation};
 pub use settings::ContactSettings;
 pub use slices::Slices;
-pub use solution::{Coarser, ContactSolution};
+pub use solution::{Coarser, ContactEnd, ContactSolution};
 pub use solver::solve;

@@ -43,6 +43,9 @@ pub struct Problem<'a> {
     pub open: [bool; 2],
     /// Whether the contact may end before the axis does.
     pub recedes: [bool; 2],
+    /// The length (C) within which the gap turns at each end of the axis, see
+    /// [`super::Shaped::turns_within`].
+    pub turns: [f64; 2],
     /// A first guess of the half-widths; one everywhere without.
     pub guess: Option<&'a Slices>,
 }

@@ -106,7 +106,7 @@ impl Slices {
 
     /// Those of a contact that is solved, on its `axis`; none where it has fewer than two nodes.
     pub fn of_solution(axis: &Panels, contact: &ContactSolution) -> Option<Self> {
-        let ends = contact.ends;
+        let ends = contact.ends.map(|end| end.at);
         let nodes = axis.nodes().iter().zip(&contact.half_widths).zip(&contact.coefficients);
         // Nodes without a pressure have a half-width of those beside them.
         let inside =

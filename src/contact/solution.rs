@@ -16,8 +16,8 @@ pub struct ContactSolution {
     pub approach: f64,
     /// Tilt in units of C / (2 R): the growth of the approach per C along y.
     pub tilt: f64,
-    /// The contact's ends along the axis (C).
-    pub ends: [f64; 2],
+    /// The contact's ends: both of the whole line, also on an axis over one half of it.
+    pub ends: [ContactEnd; 2],
     /// Number of iterations.
     pub iterations: usize,
     /// What a later attempt solved it with; none if the first one, with the settings, did.
@@ -41,6 +41,36 @@ pub struct Coarser {
     pub end_modes: usize,
 }
 
+/// An end of a contact, by its line load: towards an end that is not the bodies' it falls linearly,
+/// as the load of an elliptical contact does. The half-widths there, which are interpolated, change
+/// it much less than the pressure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ContactEnd {
+    /// Where the pressure ends along the axis (C): where the axis does, or before, if its last
+    /// nodes carry none.
+    pub at: f64,
+    /// How much farther along y (C), or less far, it would go: what is left of the line load at the
+    /// axis's end, over the slope with which it would fall to zero there. Zero if the axis ends
+    /// where the bodies do, or if its last nodes carry none.
+    pub beyond: f64,
+    /// The length (C) over which it would rise to that of a contact of half-width C and pressure
+    /// p0; infinite where the bodies end.
+    pub rise: f64,
+}
+
+impl ContactEnd {
+    /// The same in units of length and of pressure that are 1 / `factor` of the present ones.
+    fn scaled(self, factor: f64) -> Self {
+        let Self { at, beyond, rise } = self;
+        Self { at: factor * at, beyond: factor * beyond, rise: rise / factor }
+    }
+
+    /// The other end of a contact that is symmetric about y = 0.
+    pub(super) fn mirrored(self) -> Self {
+        Self { at: -self.at, beyond: -self.beyond, ..self }
+    }
+}
+
 impl ContactSolution {
     /// The same solution in units of length and of pressure that are 1 / `factor` of the present
     /// ones; displacements are in units of C^2 / (2 R).
@@ -52,7 +82,7 @@ impl ContactSolution {
             coefficients: self.coefficients.iter().map(scale).collect(),
             approach: factor * factor * self.approach,
             tilt: factor * self.tilt,
-            ends: self.ends.map(|y| factor * y),
+            ends: self.ends.map(|end| end.scaled(factor)),
             residual: factor * self.residual,
             ..self.clone()
         }

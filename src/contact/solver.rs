@@ -2,6 +2,7 @@
 
 use super::check::check;
 use super::collocation::LinearProblem;
+use super::ends::ends;
 use super::layout::Layout;
 use super::operator::LineOperator;
 use super::problem::{Problem, Rotation};
@@ -16,7 +17,7 @@ use std::ops::Range;
 /// What may be neglected of an entry's sum over the wavenumbers, in tolerances of the singularity.
 const NEGLIGIBLE: f64 = 0.4;
 
-/// Free nodes from which the end of a contact that narrows is found.
+/// Fewest free nodes of a contact that narrows.
 const TIP_NODES: usize = 3;
 
 /// Iterations of an attempt that is not the last.
@@ -197,14 +198,8 @@ fn solve_once(
         let released = near && layout.release(problem.both_ends, &unknowns);
         if settled && worst <= settings.tolerance && !released {
             check_nodes(problem, settings, &layout, &contact)?;
-            let ends = ends(problem, &layout, &contact, &half_widths);
             let solution = carrying(problem, &layout, half_widths, &unknowns);
-            return Ok(ContactSolution {
-                iterations: iteration,
-                residual: worst,
-                ends,
-                ..solution
-            });
+            return Ok(ContactSolution { iterations: iteration, residual: worst, ..solution });
         }
         let wanted = |(&j, singular): (&usize, &f64)| {
             // Beyond a factor of two the linearisation does not hold.
@@ -343,6 +338,7 @@ fn carrying(
         own.iter_mut().for_each(|c| *c *= constant + slope * y);
     }
     let load_error = (carried(&coefficients)[0] / problem.load - 1.0).abs();
+    let ends = ends(problem, layout, &half_widths, &coefficients);
     let motions = &unknowns.as_slice()[layout.len()..];
     let tilt = match problem.rotation {
         Rotation::Held(tilt) => tilt,
@@ -353,54 +349,10 @@ fn carrying(
         coefficients,
         approach: motions[0],
         tilt,
-        ends: [0.0; 2],
+        ends,
         load_error,
         iterations: 0,
         coarser: None,
         residual: 0.0,
     }
-}
-
-/// Where the contact ends: at the axis's ends, or, where the bodies go on, where the square of the
-/// half-width, continued from the last three free nodes, is zero; far beyond the axis if it does
-/// not fall.
-fn ends(
-    problem: &Problem,
-    layout: &Layout,
-    contact: &Range<usize>,
-    half_widths: &[f64],
-) -> [f64; 2] {
-    let (axis, free) = (problem.axis, &layout.free);
-    let square = |j: usize| (axis.nodes()[j], half_widths[j].powi(2));
-    // By a line through two nodes, corrected to the parabola through three.
-    let zero = |[near, next, far]: [usize; 3]| {
-        let [(y0, s0), (y1, s1), (y2, s2)] = [near, next, far].map(square);
-        let outward = (y0 - y1).signum();
-        let first = (s0 - s1) / (y0 - y1);
-        let second = (first - (s1 - s2) / (y1 - y2)) / (y0 - y2);
-        if first * outward >= 0.0 {
-            return outward * f64::INFINITY;
-        }
-        let mut at = y0 - s0 / first;
-        for _ in 0..4 {
-            let value = s0 + (at - y0) * (first + second * (at - y1));
-            let slope = first + second * (2.0 * at - y0 - y1);
-            if slope * outward < 0.0 {
-                at -= value / slope;
-            }
-        }
-        at
-    };
-    let before = contact.start > 0 || problem.open[0];
-    let after = contact.end < axis.len() || problem.open[1];
-    let last = free.len().max(TIP_NODES) - 1;
-    let enough = free.len() >= TIP_NODES;
-    [
-        if before && enough { zero([free[0], free[1], free[2]]) } else { axis.breaks()[0] },
-        if after && enough {
-            zero([free[last], free[last - 1], free[last - 2]])
-        } else {
-            axis.end()
-        },
-    ]
 }

@@ -10,6 +10,7 @@ mod cell_stress;
 mod cells;
 mod deep;
 pub mod edge;
+mod end_search;
 mod extent;
 mod first_guess;
 mod grid;

@@ -3,12 +3,18 @@
 /// Most of a step in steps before it.
 const LONGEST_STEP: f64 = 8.0;
 
+/// The slope of what falls, and its limits: it may fall in a jump, and be flat beside it.
+const FALLING: f64 = -2.0;
+const FALLS: [f64; 2] = [-8.0, -1.0];
+
 /// The search for the zero of a function whose slope is about 1, or at least of one sign: by
 /// secants, and within two arguments whose values are of different signs as soon as both are known.
 #[derive(Debug)]
 pub(super) struct Secants {
     /// The slope that is known.
     slope: f64,
+    /// Its limits.
+    slopes: [f64; 2],
     /// The argument and the value before.
     last: Option<[f64; 2]>,
     /// The last arguments with a value below zero, and above.
@@ -19,17 +25,22 @@ pub(super) struct Secants {
 impl Secants {
     /// A search that begins with a slope of 1.
     pub fn new() -> Self {
-        Self::with_slope(1.0)
+        Self::with_slope(1.0, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
-    fn with_slope(slope: f64) -> Self {
-        Self { slope, last: None, below: None, above: None }
+    /// A search for the zero of a function that falls, at least as fast as its argument grows.
+    pub fn falling() -> Self {
+        Self::with_slope(FALLING, FALLS)
+    }
+
+    fn with_slope(slope: f64, slopes: [f64; 2]) -> Self {
+        Self { slope, slopes, last: None, below: None, above: None }
     }
 
     /// A search for the zero of a function that is nearly this one: the slope is known, but no
     /// value.
     pub fn of_another(&self) -> Self {
-        Self::with_slope(self.slope)
+        Self::with_slope(self.slope, self.slopes)
     }
 
     /// Distance of two arguments with values of different signs; infinite as long as one is
@@ -48,9 +59,21 @@ impl Secants {
         let mut longest = f64::INFINITY;
         if let Some([before, was]) = self.last.replace([at, value]) {
             longest = LONGEST_STEP * (at - before).abs();
-            self.slope = if value == was { 1.0 } else { (value - was) / (at - before) };
+            let slope = if value == was { 1.0 } else { (value - was) / (at - before) };
+            self.slope = slope.clamp(self.slopes[0], self.slopes[1]);
         }
-        let wanted = at + (-value / self.slope).clamp(-longest, longest);
+        self.inside(at + (-value / self.slope).clamp(-longest, longest))
+    }
+
+    /// The next argument to try, `wanted`, after one at which the value is not known, but below
+    /// zero.
+    pub fn next_below(&mut self, at: f64, wanted: f64) -> f64 {
+        self.below = Some(at);
+        self.inside(wanted)
+    }
+
+    /// The argument `wanted`, or the middle of those between which the zero is known to be.
+    fn inside(&self, wanted: f64) -> f64 {
         match (self.below, self.above) {
             (Some(a), Some(b)) if !(a.min(b)..a.max(b)).contains(&wanted) => 0.5 * (a + b),
             _ => wanted,

@@ -4,8 +4,7 @@ use super::deep;
 use super::lines::{self, Stresses};
 use super::scene::Scene;
 use super::trial::{
-    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, own_ends, part_of, problem,
-    touch,
+    Accuracy, CONTACT_TOLERANCE, Known, Line, Parts, Settled, Trial, part_of, problem, touch,
 };
 use crate::base::{Error, Result, Wavenumbers};
 use crate::body::{Resolution, Skins, Stack};
@@ -179,7 +178,8 @@ impl SolvedScene {
             let coarse = scene.resolution(SEARCH, known.slices.as_ref());
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
             let search = Trial { scene, resolution: &coarse, powers: false, accuracy, gap: &gap };
-            Settled { line, known, .. } = search.settled(line, known)?;
+            let found = search.settled(line, known)?;
+            (line, known) = (found.line.longer(scene), found.known);
         }
         let of_tolerance = || scene.resolution(scene.tolerance, known.slices.as_ref());
         let resolution = given.copied().unwrap_or_else(of_tolerance);
@@ -187,13 +187,13 @@ impl SolvedScene {
         let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
         let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
         let Parts { axis, wavenumbers, bodies, skins, compliances, condition } = parts;
-        let ends = own_ends(scene, &line, &axis, &contact);
-        let open = ends.map(|(open, _)| open);
-        let contact = ContactSolution { ends: ends.map(|(_, at)| at), ..contact };
+        // Before its bodies do it ends also where the last nodes of a line up to their end carry
+        // nothing.
+        let open = [0, 1].map(|side| line.open[side] || contact.ends[side].at != line.ends[side]);
         if soundness.is_finite() && open.contains(&true) {
             let widest = contact.half_widths.iter().copied().fold(0.0, f64::max);
-            let [from, to] = contact.ends;
-            check_length(widest, to - if scene.is_symmetric() { -to } else { from }, WIDEST)?;
+            let [from, to] = contact.ends.map(|end| end.at);
+            check_length(widest, to - from, WIDEST)?;
         }
         let pressure = Pressure::new(
             axis,
@@ -270,11 +270,7 @@ impl SolvedScene {
 
     /// The contact's ends along y (C).
     pub fn ends(&self) -> [f64; 2] {
-        let [from, to] = self.contact.ends;
-        let ends = if self.scene.is_symmetric() { [-to, to] } else { [from, to] };
-        // Where a contact all but reaches the bodies' end, its own end may be found beyond.
-        let [first, last] = self.scene.overlap();
-        ends.map(|y| y.clamp(first, last))
+        self.contact.ends.map(|end| end.at)
     }
 
     /// The compliance of both bodies together.

@@ -2,6 +2,7 @@
 //! that is held at a depth is sought.
 
 use super::deep::{self, Touch};
+use super::end_search::EndSearch;
 use super::first_guess::MARGIN;
 use super::scene::{Scene, SceneBody, Tilt};
 use super::secants::Secants;
@@ -9,7 +10,8 @@ use crate::base::stop::go_on;
 use crate::base::{BodyKind, Error, Panels, Result, Wavenumbers};
 use crate::body::{LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack};
 use crate::contact::{
-    self, Compliance, ContactSettings, ContactSolution, Problem, Rotation, Shaped, Slices,
+    self, Compliance, ContactEnd, ContactSettings, ContactSolution, Problem, Rotation, Shaped,
+    Slices,
 };
 use crate::stress::{Field, Load, Pressure};
 use nalgebra::DMatrix;
@@ -26,15 +28,19 @@ pub(super) const CONTACT_TOLERANCE: f64 = 1e-2;
 /// Most contacts that are solved until the ends are found, or the tilt that is held.
 const MOST_TRIALS: usize = 10;
 
-/// Trials after which ends that still alternate are sought by secants. They mostly stay before, and
-/// secants over what differs little more than by its error would take longer.
-const ALTERNATE: usize = 4;
-
 /// How closely an end is found (half-lengths of the contact) at [`Resolution::COARSE`] and coarser
 /// tolerances. Below, it falls with the tolerance, as the pressure is steep beside an end, to the
-/// part `CLOSEST` of this.
+/// part `CLOSEST` of this. An elliptical contact's half-length is about `ELLIPTICAL` times
+/// [`ContactEnd::rise`], and where that is shorter it takes the half-length's place. Nodes tell an
+/// end no closer than within the part `BY_NODES` of the panel next to it.
 const END_ERROR: f64 = 2e-3;
 const CLOSEST: f64 = 0.1;
+const ELLIPTICAL: f64 = 2.4;
+const BY_NODES: f64 = 0.05;
+
+/// How much longer (C) a line up to ends that were found at low cost is made: on one that is too
+/// long the nodes tell the end better than on one that is too short.
+const LONGER: f64 = 4e-3;
 
 /// Tolerance of a contact whose tilt is sought, in those of others.
 const FOLLOWS: f64 = 0.1;
@@ -49,7 +55,7 @@ const PATIENCE: usize = 10;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Line {
     /// Its ends along y.
-    ends: [f64; 2],
+    pub ends: [f64; 2],
     /// Whether the contact may end before the axis does.
     pub open: [bool; 2],
 }
@@ -57,38 +63,26 @@ pub(super) struct Line {
 impl Line {
     /// A first guess.
     pub fn first(scene: &Scene, slices: Option<&Slices>) -> Self {
-        let ends = slices.map_or(scene.overlap(), |slices| slices.ends);
-        Self::reaching(scene, ends, MARGIN, END_ERROR)
+        let [from, to] = slices.map_or(scene.overlap(), |slices| slices.ends);
+        let beyond = MARGIN * 0.5 * (to - from);
+        Self::reaching(scene, [from - beyond, to + beyond], [END_ERROR * scene.half_length; 2])
     }
 
-    /// An axis up to `ends`, which are known within an `error`, and at open ends a `margin` beyond
-    /// them, both in half-lengths.
-    fn reaching(scene: &Scene, ends: [f64; 2], margin: f64, error: f64) -> Self {
+    /// An axis up to `ends`, which are known within these `errors`.
+    fn reaching(scene: &Scene, ends: [f64; 2], errors: [f64; 2]) -> Self {
         let overlap = scene.overlap();
-        let longest = scene.half_length;
-        let [from, to] = ends.map(|end| end.clamp(overlap[0], overlap[1]));
-        let beyond = margin * 0.5 * (to - from);
-        let wanted = [from - beyond, to + beyond];
         // What all but reaches the end of the bodies ends there.
-        let near = |side: usize| (wanted[side] - overlap[side]).abs() <= error * longest;
-        let past = [wanted[0] <= overlap[0] || near(0), wanted[1] >= overlap[1] || near(1)];
+        let past = [ends[0] <= overlap[0] + errors[0], ends[1] >= overlap[1] - errors[1]];
         Self {
-            ends: [0, 1].map(|side| if past[side] { overlap[side] } else { wanted[side] }),
+            ends: [0, 1].map(|side| if past[side] { overlap[side] } else { ends[side] }),
             open: past.map(|past| !past),
         }
     }
 
-    /// The line to try after two, each with the one that was found on it: where the contact ends
-    /// alternates between them, the end at which secants say that it will stay.
-    fn between([before, had]: [Self; 2], [line, found]: [Self; 2]) -> Self {
-        let end = |side: usize| {
-            let [moved, followed] =
-                [[line, before], [found, had]].map(|[to, from]| to.ends[side] - from.ends[side]);
-            let alternates = found.open[side] && line.open[side] && moved * followed < 0.0;
-            let slope = if alternates { followed / moved } else { 0.0 };
-            line.ends[side] + (found.ends[side] - line.ends[side]) / (1.0 - slope)
-        };
-        Self { ends: [0, 1].map(end), ..found }
+    /// The line that is [`LONGER`].
+    pub fn longer(&self, scene: &Scene) -> Self {
+        let [from, to] = self.ends;
+        Self::reaching(scene, [from - LONGER, to + LONGER], [0.0; 2])
     }
 
     /// Half of the line's length.
@@ -175,46 +169,50 @@ impl Trial<'_> {
     /// The contact from a first guess of its `line`, and from what else is known of it.
     pub fn settled(&self, mut line: Line, mut known: Known) -> Result<Settled> {
         let mut setup = 0.0;
-        let mut last: Option<[Line; 2]> = None;
+        let mut searches = [EndSearch::new(-1.0), EndSearch::new(1.0)];
         for trial in 1.. {
             go_on()?;
             let start = Instant::now();
             let parts = self.parts(&line)?;
             setup += start.elapsed().as_secs_f64();
             let contact = self.contact(&parts, &line, &mut known)?;
-            let found = self.found(&line, &contact);
-            let close = |(a, b): (&f64, &f64)| (a - b).abs() <= self.end_error() * line.half();
-            let same = found.open == line.open && found.ends.iter().zip(&line.ends).all(close);
-            if same || trial == MOST_TRIALS {
-                return Ok(Settled { line, parts, contact, known, is_settled: same, setup });
+            let errors = contact.ends.map(|end| self.end_error(&line, end));
+            let next = self.next(&line, &contact, errors, &mut searches);
+            let stays = |side: usize| (next.ends[side] - line.ends[side]).abs() <= errors[side];
+            let is_settled = next.open == line.open && stays(0) && stays(1);
+            if is_settled || trial == MOST_TRIALS {
+                return Ok(Settled { line, parts, contact, known, is_settled, setup });
             }
-            let next = match last {
-                Some(last) if trial >= ALTERNATE => Line::between(last, [line, found]),
-                _ => found,
-            };
-            last = Some([line, found]);
             line = next;
         }
         unreachable!("the trials end")
     }
 
-    /// How closely an end is found, in half-lengths of the contact.
-    fn end_error(&self) -> f64 {
-        END_ERROR * (self.accuracy.tolerance / Resolution::COARSE).clamp(CLOSEST, 1.0)
+    /// How closely an end is found (C).
+    fn end_error(&self, line: &Line, end: ContactEnd) -> f64 {
+        let part = END_ERROR * (self.accuracy.tolerance / Resolution::COARSE).clamp(CLOSEST, 1.0);
+        let steep = part * line.half().min(ELLIPTICAL * end.rise);
+        steep.max(BY_NODES * self.resolution.corner)
     }
 
-    /// The line that ends where the contact was found to end.
-    fn found(&self, line: &Line, contact: &ContactSolution) -> Line {
+    /// The line to try after this one, whose ends the contact told within these `errors`.
+    fn next(
+        &self,
+        line: &Line,
+        contact: &ContactSolution,
+        errors: [f64; 2],
+        searches: &mut [EndSearch; 2],
+    ) -> Line {
         if !self.scene.may_end() {
             return *line;
         }
-        let [mut from, to] = contact.ends;
-        // An end that was not found lies farther out.
-        let most = 0.2 * line.half();
-        let limited = |found: f64, at: f64| found.clamp(at - most, at + most);
-        let to = limited(to, line.ends[1]);
-        from = if self.scene.is_symmetric() { -to } else { limited(from, line.ends[0]) };
-        Line::reaching(self.scene, [from, to], 0.0, self.end_error())
+        let [before, after] = searches;
+        let to = after.next(line.ends[1], contact.ends[1]);
+        let from = match self.scene.is_symmetric() {
+            true => -to,
+            false => before.next(line.ends[0], contact.ends[0]),
+        };
+        Line::reaching(self.scene, [from, to], errors)
     }
 
     /// The bodies on a line.
@@ -375,50 +373,9 @@ impl Trial<'_> {
 /// Where the bodies touch on the axis of a pressure, and their load.
 pub(super) fn touch(pressure: &Pressure, contact: &ContactSolution) -> Touch {
     let [from, to] = pressure.ends();
-    let [first, last] = contact.ends.map(|end| end.clamp(from, to));
-    let first = if pressure.is_symmetric() { -last } else { first };
+    let [first, last] = contact.ends.map(|end| end.at);
     let ends = if first < last { [first, last] } else { [from, to] };
     Touch::new(ends, &pressure.whole_line())
-}
-
-/// Whether the contact ends before its bodies do, at either end, and where: its axis does, or the
-/// last nodes carry no load.
-pub(super) fn own_ends(
-    scene: &Scene,
-    line: &Line,
-    axis: &Panels,
-    contact: &ContactSolution,
-) -> [(bool, f64); 2] {
-    let nodes = || axis.nodes().iter().copied().zip(&contact.coefficients);
-    let last = lifted(nodes().rev());
-    let first = if scene.is_symmetric() { last.map(|y| -y) } else { lifted(nodes()) };
-    let found = [first, last];
-    [0, 1].map(|side| match found[side] {
-        Some(at) if scene.may_end() && !line.open[side] => (true, at),
-        _ => (line.open[side], contact.ends[side]),
-    })
-}
-
-/// Where the pressure ends if the outermost of some `nodes`, which come with their modes from the
-/// end inwards, carry none: its square goes linearly to zero, from the last two that carry some.
-fn lifted<'a>(nodes: impl Iterator<Item = (f64, &'a Vec<f64>)>) -> Option<f64> {
-    let mut empty = None;
-    let mut last: Option<(f64, f64)> = None;
-    for (y, modes) in nodes {
-        match (modes.first(), empty, last) {
-            (None, ..) => empty = Some(y),
-            (Some(_), None, _) => return None,
-            (Some(first), _, None) => last = Some((y, first * first)),
-            (Some(first), Some(empty), Some((outer, square))) => {
-                let most = (empty - outer).abs();
-                let falls_in = (outer - y).abs() * square / (first * first - square);
-                // A pressure that does not fall tells nothing.
-                let beyond = if falls_in > 0.0 { falls_in.min(most) } else { most };
-                return Some(outer + (empty - outer).signum() * beyond);
-            }
-        }
-    }
-    empty
 }
 
 /// The largest condition number of the bodies' equations, refused if rounding would not be
@@ -458,6 +415,7 @@ pub(super) fn problem<'a>(
         rotation,
         open: [open[0] && !symmetric, open[1]],
         recedes: [scene.may_end() && !symmetric, scene.may_end()],
+        turns: [(axis.breaks()[0], 1.0), (axis.end(), -1.0)].map(|(y, to)| gap.turns_within(y, to)),
         guess: None,
     }
 }
