@@ -11,6 +11,10 @@ const OUT: f64 = 0.1;
 /// are next to the end also on longer lines.
 const LONG: f64 = 0.1;
 
+/// Ends are tried in steps of this (C), far below their error: secants multiply rounding, and
+/// mirror images of a contact are to have mirror images of its ends.
+const STEP: f64 = 1.0 / 1048576.0;
+
 /// The search for one end of a contact over lines that are tried.
 pub(super) struct EndSearch {
     /// 1 at the end of larger y, else -1.
@@ -33,7 +37,7 @@ impl EndSearch {
         } else {
             self.secants.next(tried, beyond)
         };
-        self.outward * next
+        self.outward * (next / STEP).round() * STEP
     }
 }
 
