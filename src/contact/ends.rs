@@ -11,20 +11,25 @@ pub(super) fn ends(
     half_widths: &[f64],
     coefficients: &[Vec<f64>],
 ) -> [ContactEnd; 2] {
-    let (axis, count, free) = (problem.axis, problem.axis.len(), &layout.free);
+    let (axis, last) = (problem.axis, problem.axis.len() - 1);
     let load = |j: usize| coefficients[j].first().map_or(0.0, |c| c.max(0.0) * half_widths[j]);
-    let end = |side: usize, outwards: &mut dyn Iterator<Item = usize>, free: usize, at: f64| {
+    let end = |side: usize| {
+        // The first side is that of the mirror image.
+        let (outward, at) = if side == 0 { (-1.0, -axis.breaks()[0]) } else { (1.0, axis.end()) };
         if !problem.recedes[side] {
-            return ContactEnd { at, beyond: 0.0, rise: f64::INFINITY };
+            return ContactEnd::of_bodies(at);
         }
-        let nodes = outwards.map(|j| (axis.nodes()[j], axis.weights()[j], load(j)));
-        Side { nodes: nodes.collect(), free }.end(problem.open[side], at)
+        let node = |j: usize| (outward * axis.nodes()[j], axis.weights()[j], load(j));
+        let mut nodes: Vec<_> = (0..=last).map(node).collect();
+        let mut free = layout.free[layout.free.len() - 1];
+        if side == 0 {
+            nodes.reverse();
+            free = last - layout.free[0];
+        }
+        Side { nodes, free }.end(problem.open[side], at)
     };
-    let after = end(1, &mut (0..count), free[free.len() - 1], axis.end());
-    if !problem.both_ends {
-        return [after.mirrored(), after];
-    }
-    [end(0, &mut (0..count).rev(), count - 1 - free[0], axis.breaks()[0]), after]
+    let after = end(1);
+    [if problem.both_ends { end(0) } else { after }.mirrored(), after]
 }
 
 /// The nodes, ascending towards an end.
@@ -46,7 +51,7 @@ impl Side {
             return ContactEnd { at, beyond: 0.0, rise: rise(at) };
         }
         if !open || inner == 0.0 {
-            return ContactEnd { at: end, beyond: 0.0, rise: f64::INFINITY };
+            return ContactEnd::of_bodies(end);
         }
         // Of the lines through the first of these loads that which is closest to the others,
         // against the one that falls to zero at the axis's end.
@@ -69,8 +74,7 @@ impl Side {
             (last - y) * outer / (inner - outer)
         });
         // A pressure that does not fall tells nothing.
-        let falls = beyond / most > 0.0;
-        last + if falls && beyond.abs() < most.abs() { beyond } else { most }
+        last + if beyond > 0.0 { beyond.min(most) } else { most }
     }
 }
 

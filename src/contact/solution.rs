@@ -59,6 +59,11 @@ pub struct ContactEnd {
 }
 
 impl ContactEnd {
+    /// That of bodies, if the pressure reaches it.
+    pub(super) fn of_bodies(at: f64) -> Self {
+        Self { at, beyond: 0.0, rise: f64::INFINITY }
+    }
+
     /// The same in units of length and of pressure that are 1 / `factor` of the present ones.
     fn scaled(self, factor: f64) -> Self {
         let Self { at, beyond, rise } = self;
