@@ -41,8 +41,8 @@ pub struct Corner {
 /// The least distance from a corner, in the panel's lengths: loads are bounded there.
 const NEAREST: f64 = 1e-9;
 
-/// Distance beside an axis, as a part of its largest coordinate, that is rounding.
-const BESIDE: f64 = 1e-12;
+/// Distance, as a part of an axis's largest coordinate, that is rounding.
+const ROUNDING: f64 = 1e-12;
 
 /// Nodes beyond a panel's own, and the power of the map that crowds them, for integrals at a
 /// corner.
@@ -140,17 +140,19 @@ impl Panels {
     /// outermost one. Beside the axis, but for rounding, there is no load and no node.
     pub fn load_interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
         let [first, end] = [self.breaks[0], self.end()];
-        let rounding = BESIDE * first.abs().max(end.abs());
+        let rounding = self.rounding();
         let is_loaded = (first - rounding..=end + rounding).contains(&x);
-        let panel = self.panel_of(x);
-        let own = &self.nodes[panel * self.order..(panel + 1) * self.order];
-        let bounded = match self.corner_of(panel) {
-            Some(corner) if corner.at < own[0] => x.max(own[0]),
-            Some(_) => x.min(own[self.order - 1]),
-            None => x,
-        };
-        let nodes = (panel * self.order..).zip(self.loads(panel, bounded));
-        nodes.take(if is_loaded { self.order } else { 0 })
+        let panels = self.panels_at(x).filter(move |_| is_loaded);
+        panels.flat_map(move |(panel, share)| {
+            let own = &self.nodes[panel * self.order..(panel + 1) * self.order];
+            let bounded = match self.corner_of(panel) {
+                Some(corner) if corner.at < own[0] => x.max(own[0]),
+                Some(_) => x.min(own[self.order - 1]),
+                None => x,
+            };
+            let loads = self.loads(panel, bounded).map(move |load| share * load);
+            (panel * self.order..).zip(loads)
+        })
     }
 
     /// The same axis in units of length that are 1 / `factor` of the present ones.
@@ -247,11 +249,33 @@ impl Panels {
         self.breaks[1..self.breaks.len() - 1].partition_point(|&b| b <= x)
     }
 
-    /// The interpolation at `x`: the nodes of its panel, each with its weight (an extrapolation if
-    /// `x` lies outside the axis).
-    pub fn interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
+    /// The panels that stand for `x`, with their shares: its own; at a break, but for rounding, both
+    /// alike. What an integral over the axis tends to there is the mean of both, too.
+    fn panels_at(&self, x: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
         let panel = self.panel_of(x);
-        (panel * self.order..).zip(self.polynomials(panel, x))
+        let rounding = self.rounding();
+        let [starts, ends] = self.panel(panel).map(|end| (x - end).abs() <= rounding);
+        let beside = match (starts, ends) {
+            (true, _) => panel.checked_sub(1),
+            (_, true) => Some(panel + 1).filter(|next| *next < self.panel_count()),
+            _ => None,
+        };
+        let share = if beside.is_some() { 0.5 } else { 1.0 };
+        [Some(panel), beside].into_iter().flatten().map(move |panel| (panel, share))
+    }
+
+    /// Distance that is rounding.
+    pub fn rounding(&self) -> f64 {
+        ROUNDING * self.breaks[0].abs().max(self.end().abs())
+    }
+
+    /// The interpolation at `x`: the nodes of its panel, each with its weight (an extrapolation if
+    /// `x` lies outside the axis); at a break the mean of both panels' polynomials.
+    pub fn interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
+        self.panels_at(x).flat_map(move |(panel, share)| {
+            let values = self.polynomials(panel, x).map(move |value| share * value);
+            (panel * self.order..).zip(values)
+        })
     }
 
     /// Values at `x` of the Lagrange polynomials of panel `i`, by the barycentric formula.
@@ -362,6 +386,10 @@ mod tests {
             let got: f64 = axis.load_interpolation(x).map(|(node, w)| w * values[node]).sum();
             assert!((got - f(x)).abs() < 1e-10 * f(x).abs(), "{x}: {got} {}", f(x));
         }
+        // Where panels meet it is the mean of both.
+        let mean: f64 = axis.load_interpolation(1.9).map(|(node, w)| w * values[node]).sum();
+        let sides = 0.5 * (g(1.9) + 1.1f64.powf(-0.3) * g(1.9));
+        assert!((mean - sides).abs() < 1e-10 * sides, "{mean} {sides}");
         // At the corner itself it is bounded.
         let end: f64 = axis.load_interpolation(3.0).map(|(node, w)| w * values[node]).sum();
         assert!((end - values[values.len() - 1]).abs() < 1e-10 * end, "{end}");

@@ -1,6 +1,6 @@
 //! The loads of all wavenumbers on the superposed bodies, and their influence on a target.
 
-use crate::base::Panels;
+use crate::base::{Panels, Parity};
 use crate::body::stencil::Stencil;
 use crate::body::{Body, Layer, Stack};
 use crate::kernels::line_load::WaveStress;
@@ -304,8 +304,15 @@ impl Influence {
     pub fn of_surface(body: &Body, lowest: f64, shears: bool, y: f64, z: f64) -> Self {
         let mut strips = Vec::with_capacity(body.most_strips());
         body.for_strips(lowest, y, z, |u, w| strips.push((u, w as f32)));
-        let stencil = body.surface_stencil(y, z);
-        Self::new(Side::Surface, stencil, &strips, &body.surface.axis, y, z, shears)
+        let (stencil, axis) = (body.surface_stencil(y, z), &body.surface.axis);
+        let mut own = Self::new(Side::Surface, stencil, &strips, axis, y, z, shears);
+        // In the body's middle, where the line's halves meet, the mean of an odd load is zero.
+        if let (Position::Upon(_, shares), Parity::Odd) = (&mut own.target, body.parity)
+            && y.abs() <= axis.rounding()
+        {
+            shares.clear();
+        }
+        own
     }
 
     /// q on the end faces at +H and -H, `depths` from them, from (`y`, `z`).
@@ -417,7 +424,6 @@ fn upon(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Parity;
     use crate::body::{EdgeModel, LoadedLine, Placed, Resolution, Shape};
 
     #[test]
