@@ -249,8 +249,8 @@ impl Panels {
         self.breaks[1..self.breaks.len() - 1].partition_point(|&b| b <= x)
     }
 
-    /// The panels that stand for `x`, with their shares: its own; at a break, but for rounding, both
-    /// alike. What an integral over the axis tends to there is the mean of both, too.
+    /// The panels that stand for `x`, with their shares: its own, and at a break, but for rounding,
+    /// both alike. What an integral over the axis tends to there is the mean of both, too.
     fn panels_at(&self, x: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
         let panel = self.panel_of(x);
         let rounding = self.rounding();

@@ -98,7 +98,7 @@ const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Largest distance between half-widths that follow a gap, in the length within which it turns, and
 /// the least one (C): nearer to each other than the shortest waves are long they would be noise.
-const TURN: f64 = 0.2;
+const TURN: f64 = 0.1;
 const NARROWEST: f64 = 0.02;
 
 /// A share this small is rounding.
@@ -217,7 +217,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.29,
         ratio: 2.7,
         modes: 3,
-        spacing: 0.187,
+        spacing: 0.13,
         k_max: 60.0,
         k_order: 4,
         k_step: 4.0,
@@ -233,7 +233,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.0,
         ratio: 2.8,
         modes: 4,
-        spacing: 0.115,
+        spacing: 0.06,
         k_max: 70.0,
         k_order: 5,
         k_step: 4.0,
@@ -249,7 +249,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 5.8,
         ratio: 2.4,
         modes: 7,
-        spacing: 0.08,
+        spacing: 0.04,
         k_max: 200.0,
         k_order: 6,
         k_step: 5.5,
@@ -451,6 +451,14 @@ impl Resolution {
     #[must_use]
     pub fn following(self, length: f64) -> Self {
         Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
+    }
+
+    /// The same for a contact that narrows to a tip at an end, for a `tolerance`: panels grow as
+    /// slowly as those of [`Resolution::for_tips`]. Between their nodes the pressure's transform is
+    /// followed up to the shorter waves the less the half-width changes over a panel.
+    #[must_use]
+    pub fn narrowing(self, tolerance: f64) -> Self {
+        Self { ratio: self.ratio.min(Self::for_tips(tolerance).ratio), ..self }
     }
 
     /// The same for a contact that reaches an end of its bodies, or whose gap has a kink, and whose

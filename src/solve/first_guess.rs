@@ -44,8 +44,9 @@ impl Scene {
             gap.turns_within(end, -outward)
         });
         let level = self.level(tolerance, slices.ends).following(turns[0].min(turns[1]));
-        let reaches = [0, 1].into_iter().any(|side| self.reaches(slices.ends, side));
-        let is_steep = reaches || !gap.kinks().is_empty();
+        let reaches = [0, 1].map(|side| self.reaches(slices.ends, side));
+        let level = if reaches == [true; 2] { level } else { level.narrowing(tolerance) };
+        let is_steep = reaches.contains(&true) || !gap.kinks().is_empty();
         if is_steep { level.across(slices.widest()) } else { level }
     }
 

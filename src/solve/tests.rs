@@ -44,6 +44,28 @@ fn a_grid_is_what_points_are() {
     }
 }
 
+/// Where panels meet, in the middle of an eccentric line, the stresses on the surface are the mean
+/// of those on both sides, whatever the polynomials on either side leave between them.
+#[test]
+fn where_panels_meet_stresses_are_those_of_both_sides() {
+    for name in ["eccentric-flush", "offset-flush-end"] {
+        let case = builtin_case(name).unwrap().unwrap().with_tolerance(1e-2);
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+        let breaks = solved.scene().pressure.axis().breaks();
+        let middle = breaks[breaks.len() / 2];
+        for (body, x) in [(BodyKind::Block, 0.95), (BodyKind::Roller, 0.3)] {
+            let places = [-1e-7, 0.0, 1e-7].map(|beside| [x, middle + beside, 0.0]);
+            let [before, at, after] =
+                solved.stress(body, &places).unwrap().try_into().expect("three places");
+            let sides = before.components().into_iter().zip(after.components());
+            for (got, (before, after)) in at.components().into_iter().zip(sides) {
+                let off = (got - 0.5 * (before + after)).abs();
+                assert!(off < 2e-5, "{name} {body:?}: {got} between {before} and {after}");
+            }
+        }
+    }
+}
+
 #[test]
 fn bad_grids_are_refused() {
     let case = builtin_case("flush-short").unwrap().unwrap();
@@ -69,36 +91,43 @@ fn bad_grids_are_refused() {
 
 /// The case of a file, at a tolerance and without curves.
 fn solved(toml: &str, tolerance: f64) -> SolvedCase {
+    solved_by(EdgeModel::QuarterSpace, toml, tolerance)
+}
+
+/// The same by another model.
+fn solved_by(model: EdgeModel, toml: &str, tolerance: f64) -> SolvedCase {
     let mut case = Case::from_toml(toml).unwrap();
     case.accuracy.tolerance = tolerance;
-    let mut options = Options::new(EdgeModel::QuarterSpace);
+    let mut options = Options::new(model);
     options.curves.clear();
     SolvedCase::new(&case, &options).unwrap()
 }
 
-/// A logarithmic roller on a longer block, shorter than C is wide...
+/// A roller with Lundberg's profile, light and short, under a load beside its middle, at whose ends
+/// half-spaces press each other steeply.
 const STEEP: &str = r#"
 name = "steep"
 [roller]
-radius_m = 19.9942e-3
-length_m = 0.609643e-3
-young_pa = 211.42e9
-poisson = 0.3031
-profile = { kind = "logarithmic", k = 0.9248, amplitude_m = 3.8958e-8 }
+radius_m = 0.00205633
+length_m = 0.000102598
+young_pa = 9.1069e+10
+poisson = 0.145
+profile = { kind = "lundberg", design_force_n = 0.0903 }
 [block]
-length_m = 1.16404e-3
-young_pa = 294.87e9
-poisson = 0.1379
+length_m = 0.000168772
+young_pa = 9.065e+10
+poisson = 0.1428
 [load]
-force_n = 27.1473
-eccentricity_m = -18.179e-6
+force_n = 0.417567
+eccentricity_m = -2.072e-06
 [pose]
-offset_m = -27.531e-6
+offset_m = 1.9846e-06
 "#;
 
 #[test]
 fn a_contact_coarser_than_its_resolution_says_so() {
-    let summary = |tolerance| solved(STEEP, tolerance).solution().summary.clone();
+    let model = EdgeModel::HalfSpace;
+    let summary = |tolerance| solved_by(model, STEEP, tolerance).solution().summary.clone();
     let first = summary(3e-2);
     assert_eq!((first.details.coarser, first.warnings()), (None, Vec::new()));
     let later = summary(5e-3);
@@ -114,7 +143,7 @@ fn a_contact_coarser_than_its_resolution_says_so() {
     for (tolerance, want) in [(3e-2, vec![]), (5e-3, vec!["coarser"])] {
         let mut case = Case::from_toml(STEEP).unwrap();
         case.accuracy.tolerance = tolerance;
-        let (case, key) = KeySolution::new(&case, EdgeModel::QuarterSpace).unwrap();
+        let (case, key) = KeySolution::new(&case, model).unwrap();
         assert_eq!(key.of(&case).warnings, want, "{tolerance}");
     }
 }
