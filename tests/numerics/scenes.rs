@@ -1,9 +1,9 @@
 //! Scenes over the whole legal range and beyond it: each has a solution that satisfies every law of
 //! contact or, only outside that range, is refused.
 //!
-//! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes -- --nocapture` runs 20,000
-//! and writes `results/scenes/`; with `5000..6000` those run, without the variable a few hundred,
-//! and nothing is written.
+//! `EDGELINE_SCENES=20000 cargo test --release --test numerics scenes::every -- --nocapture` runs
+//! 20,000 and writes `results/scenes/`; with `5000..6000` those run, without the variable a few
+//! hundred, and nothing is written.
 
 use crate::common::{apart, sequence, wanted_scenes, worse};
 use edgeline::base::{Error, Material, StressTensor};
