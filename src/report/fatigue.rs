@@ -187,7 +187,7 @@ fn place(
         measure: measure.column(),
         value,
         at_m: at_m(passage, found.at),
-        x_m: instant.map(|i| passage.x[i] * hertz.c_m),
+        x_m: instant.map(|i| passage.instants(found.at)[i] * hertz.c_m),
         over_limit: dang_van_beta_pa
             .filter(|_| measure.name == "dang_van")
             .map(|limit| value / limit),
@@ -237,16 +237,21 @@ fn table(hertz: &HertzScales, own: &Passages, half_space: Option<&Passages>) -> 
         ("y_m".into(), Values::Numbers(y)),
         ("z_m".into(), Values::Numbers(z)),
     ];
-    let all = |passages: &Passages, of: &dyn Fn(&Passage, &Measures) -> Option<f64>| {
+    let all = |passages: &Passages, of: &dyn Fn(&Passage, usize) -> Option<f64>| {
         let bodies = passages.bodies.iter();
-        let values = bodies.flat_map(|p| p.measures.iter().map(move |m| of(p, m)));
+        let values = bodies.flat_map(|p| (0..p.measures.len()).map(move |place| of(p, place)));
         values.collect::<Option<Vec<f64>>>()
     };
     for measure in &MEASURES {
-        let value = |_: &Passage, m: &Measures| Some(measure.in_si(measure.value(m)?, hertz));
+        let value = |p: &Passage, place: usize| {
+            Some(measure.in_si(measure.value(&p.measures[place])?, hertz))
+        };
         let Some(values) = all(own, &value) else { continue };
         columns.push((measure.column(), Values::Numbers(values)));
-        let instant = |p: &Passage, m: &Measures| Some(p.x[(measure.of)(m)?.1?] * hertz.c_m);
+        let instant = |p: &Passage, place: usize| {
+            let (_, at) = (measure.of)(&p.measures[place])?;
+            Some(p.instants(place)[at?] * hertz.c_m)
+        };
         if let Some(places) = all(own, &instant) {
             columns.push((format!("{}_x_m", measure.name), Values::Numbers(places)));
         }

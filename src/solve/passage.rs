@@ -18,6 +18,11 @@ const REACH: f64 = 10.0;
 const STEP: f64 = 0.025;
 const BEYOND: i32 = 20;
 
+/// Distances from the contact's edge of further steps, in its half-width there: on the surface
+/// under a traction sigma_xx has its largest value at the edge, with a vertical tangent beside it
+/// (Johnson, Contact Mechanics, 1985, Fig. 7.4).
+const BESIDE: [f64; 4] = [3e-4, 1e-3, 3e-3, 9e-3];
+
 /// Largest depth of the places, and distance beyond the other body's end, in half-widths of the
 /// contact.
 const DEPTH: f64 = 3.0;
@@ -27,8 +32,8 @@ const DEPTH: f64 = 3.0;
 pub struct Passage {
     /// The body.
     pub body: BodyKind,
-    /// The places' distances from the contact's middle during the passage, ascending (C).
-    pub x: Vec<f64>,
+    /// The distances from the contact's middle during the passage, ascending (C), for each y.
+    x: Vec<Vec<f64>>,
     /// Places along the body, ascending (C); of a contact that is symmetric about y = 0 those from
     /// there on.
     pub y: Vec<f64>,
@@ -36,6 +41,8 @@ pub struct Passage {
     pub z: Vec<f64>,
     /// The measures (p0) at all places, y running fastest.
     pub measures: Vec<Measures>,
+    /// The contact's largest half-width (C).
+    width: f64,
     ends: [f64; 2],
 }
 
@@ -46,9 +53,6 @@ impl Passage {
         let scene = solved.scene();
         let lines = scene.pressure.line_loads();
         let width = lines.iter().map(|line| line.half_width).fold(0.0, f64::max);
-        let ahead = positive_steps(width);
-        let x: Vec<f64> =
-            ahead[1..].iter().rev().map(|x| -x).chain(ahead.iter().copied()).collect();
         let own = Extent::of(solved.case(), body).ends_m().map(|y| y / solved.hertz().c_m);
         let y = along(
             scene.scene.overlap(),
@@ -59,33 +63,36 @@ impl Passage {
         );
         let share = |i: usize| i as f64 / (counts[1] - 1) as f64;
         let z: Vec<f64> = (0..counts[1]).map(|i| DEPTH * width * share(i).powi(2)).collect();
-        Self::at(solved, body, [x, y, z])
+        Self::at(solved, body, width, [y, z])
     }
 
     /// The passage of the same body at the same places of the same case, as another model has
     /// solved it.
     #[must_use]
     pub fn by(&self, solved: &SolvedCase) -> Self {
-        Self::at(solved, self.body, [&self.x, &self.y, &self.z].map(Clone::clone))
+        Self::at(solved, self.body, self.width, [&self.y, &self.z].map(Clone::clone))
     }
 
-    /// The passage of `body` at the places of a grid, and at x of both signs alike.
-    fn at(solved: &SolvedCase, body: BodyKind, [x, y, z]: [Vec<f64>; 3]) -> Self {
+    /// The passage of `body` at the places of a grid, past a contact of the largest half-width
+    /// `width`.
+    fn at(solved: &SolvedCase, body: BodyKind, width: f64, [y, z]: [Vec<f64>; 2]) -> Self {
         let (case, hertz) = (solved.case(), *solved.hertz());
         let scene = solved.scene();
-        let ahead = x[x.len() / 2..].to_vec();
+        let edge = |y: &f64| scene.pressure.modes(*y).map_or(0.0, |(half_width, _)| half_width);
+        let ahead: Vec<Vec<f64>> = y.iter().map(|y| positive_steps(width, edge(y))).collect();
         let place = Place {
             field: scene.field(body),
             body,
             shaping: Shaping::of(case),
             turn: solved.curvature(body),
-            ahead,
             parameters: parameters(&case.fatigue, &hertz, body_modulus(solved, body)),
         };
         let count = y.len() * z.len();
         let measures = (0..count).into_par_iter();
-        let measures = measures.map(|i| place.measures(y[i % y.len()], z[i / y.len()])).collect();
-        Self { body, x, y, z, measures, ends: scene.scene.overlap() }
+        let of = |i: usize| place.measures(y[i % y.len()], z[i / y.len()], &ahead[i % y.len()]);
+        let measures = measures.map(of).collect();
+        let x = ahead.iter().map(|ahead| both_ways(ahead)).collect();
+        Self { body, x, y, z, measures, width, ends: scene.scene.overlap() }
     }
 
     /// Whether a place counts: not within 0.1 C of the overlap's edges, where stresses may have no
@@ -98,6 +105,12 @@ impl Passage {
     /// y and z of a place (C).
     pub fn place(&self, place: usize) -> [f64; 2] {
         [self.y[place % self.y.len()], self.z[place / self.y.len()]]
+    }
+
+    /// The distances from the contact's middle while it passes a place, ascending (C): the instants
+    /// of the history.
+    pub fn instants(&self, place: usize) -> &[f64] {
+        &self.x[place % self.y.len()]
     }
 
     /// The place with the largest value of a measure, among those that count; none without the
@@ -130,11 +143,24 @@ fn parameters(given: &Fatigue, hertz: &HertzScales, modulus: f64) -> Parameters 
     }
 }
 
-/// x >= 0 of a passage (C) over a contact of half-width `width`.
-fn positive_steps(width: f64) -> Vec<f64> {
+/// x >= 0 of a passage (C) over a contact of half-width up to `width`, whose edge is at `edge`;
+/// zero without contact.
+fn positive_steps(width: f64, edge: f64) -> Vec<f64> {
     let near = (0..=60).map(|i| STEP * f64::from(i));
     let far = (1..=BEYOND).map(|i| 1.5 * (REACH / 1.5).powf(f64::from(i) / f64::from(BEYOND)));
-    near.chain(far).map(|x| width * x).collect()
+    let mut x: Vec<f64> = near.chain(far).map(|x| width * x).collect();
+    if edge > 0.0 {
+        x.extend(BESIDE.iter().flat_map(|off| [edge * (1.0 - off), edge * (1.0 + off)]));
+        x.push(edge);
+        x.sort_by(f64::total_cmp);
+        x.dedup();
+    }
+    x
+}
+
+/// The places of both signs whose distances from zero, the first of them, are these.
+fn both_ways(ahead: &[f64]) -> Vec<f64> {
+    ahead[1..].iter().rev().map(|x| -x).chain(ahead.iter().copied()).collect()
 }
 
 /// Places along a body with the ends `own`: `count` on the overlap, from its middle if it is
@@ -172,18 +198,17 @@ struct Place<'a> {
     shaping: Shaping,
     /// C / R: the material turns with a round surface.
     turn: f64,
-    ahead: Vec<f64>,
     parameters: Parameters,
 }
 
 impl Place<'_> {
-    fn measures(&self, y: f64, z: f64) -> Measures {
-        let ahead = self.field.round_at(y, z, &self.ahead);
+    /// The measures of the history at these `distances` from x = 0 on either side of it.
+    fn measures(&self, y: f64, z: f64, distances: &[f64]) -> Measures {
+        let ahead = self.field.round_at(y, z, distances);
         let behind = ahead[1..].iter().rev().map(|s| s.mirrored_in_x());
-        let x = self.ahead[1..].iter().rev().map(|x| -x).chain(self.ahead.iter().copied());
         let history: Vec<StressTensor> = behind
             .chain(ahead.iter().copied())
-            .zip(x)
+            .zip(both_ways(distances))
             .map(|(s, x)| turned(&self.shaping.stress(self.body, &s), self.turn * x))
             .collect();
         Measures::of(&history, &self.parameters)
@@ -229,7 +254,8 @@ mod tests {
         let shear = passage.critical(|m| Some(m.tau_max.value)).unwrap();
         // On the surface sigma_yy = 0 stands against the pressure.
         assert!((shear.value - 0.5).abs() < 5e-3, "{shear:?}");
-        assert!(passage.x[passage.measures[shear.at].tau_max.at].abs() < 0.03);
+        let instant = passage.instants(shear.at)[passage.measures[shear.at].tau_max.at];
+        assert!(instant.abs() < 0.03);
     }
 
     #[test]
@@ -243,14 +269,53 @@ mod tests {
             .map(|model| SolvedCase::new(&case, &Options::new(model)).unwrap());
         let passage = Passage::new(&own, BodyKind::Block, [4, 4]);
         let beside = passage.by(&other);
-        assert_eq!((&passage.x, &passage.y, &passage.z), (&beside.x, &beside.y, &beside.z));
+        assert_eq!((&passage.y, &passage.z), (&beside.y, &beside.z));
         for place in [1, 6, 10] {
             let [y, z] = passage.place(place);
-            let at: Vec<[f64; 3]> = passage.x.iter().map(|x| [*x, y, z]).collect();
+            let at: Vec<[f64; 3]> = beside.instants(place).iter().map(|x| [*x, y, z]).collect();
             let history = other.stress(BodyKind::Block, &at).unwrap();
             let shear = crate::fatigue::shear_range(&history);
             let found = beside.measures[place].shear_range;
             assert!((found - shear).abs() < 2e-3, "at {y}, {z}: {found}, not {shear}");
+        }
+    }
+
+    /// A crowned roller that slides: the contact is the narrower the nearer to its end, and a place
+    /// of the surface has its largest tension at the contact's edge there.
+    #[test]
+    fn the_local_edge_of_a_sliding_contact_is_seen() {
+        let text = r#"
+            name = "crown"
+            block = { length_m = 12e-3, young_pa = 210e9, poisson = 0.3 }
+            load.force_n = 1500.0
+            sliding.friction = 0.3
+            fatigue.dang_van_alpha = 0.5
+            accuracy.tolerance = 1e-2
+            [roller]
+            radius_m = 10e-3
+            length_m = 8e-3
+            young_pa = 210e9
+            poisson = 0.3
+            profile = { kind = "crown", radius_m = 0.5 }"#;
+        let case = Case::from_toml(text).unwrap();
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+        let passage = Passage::new(&solved, BodyKind::Block, [12, 2]);
+        let within = |y: f64| solved.scene().pressure.modes(y).map(|(half_width, _)| half_width);
+        let widths: Vec<f64> = passage.y.iter().map_while(|y| within(*y)).collect();
+        assert!(widths.len() >= 5, "{widths:?}");
+        for (place, half_width) in widths.into_iter().enumerate() {
+            let [y, z] = passage.place(place);
+            let beside = |off: f64| [1.0 - off, 1.0 + off, off - 1.0, -off - 1.0];
+            let near = (0..400).map(|i| (-0.04 * f64::from(i)).exp());
+            let mut x: Vec<f64> = near.flat_map(beside).chain(beside(0.0)).collect();
+            x.sort_by(f64::total_cmp);
+            let at: Vec<[f64; 3]> = x.iter().map(|x| [x * half_width, y, z]).collect();
+            let history = solved.stress(BodyKind::Block, &at).unwrap();
+            let want = crate::fatigue::dang_van(&history, 0.5).value;
+            let found = passage.measures[place].dang_van.unwrap();
+            assert!((found.value - want).abs() < 5e-4, "at {y}: {found:?}, not {want}");
+            let instant = passage.instants(place)[found.at];
+            assert!((instant.abs() - half_width).abs() < 1e-9, "at {y}: {instant}");
         }
     }
 
