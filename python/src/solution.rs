@@ -107,7 +107,7 @@ impl Solution {
     fn at(&self, x: f64, y: f64) -> f64 {
         match &self.solved {
             Solved::Line(line) => line.0.pressure(x, y),
-            Solved::Cells(cells) => cells.pressure.at(x, y),
+            Solved::Cells(cells) => cells.pressure_at(x, y),
         }
     }
 

@@ -106,6 +106,18 @@ def test_every_method_carries_the_load(case: edgeline.Case, method: str) -> None
     assert solution.summary["method"] == method and method in repr(solution)
 
 
+def test_a_place_on_cells_is_one_from_the_rollers_middle() -> None:
+    body = {"length_m": 6e-3, "young_pa": 210e9, "poisson": 0.3}
+    case = edgeline.Case(
+        name="offset", roller={"radius_m": 8e-3, **body}, block=body,
+        load={"force_n": 9000.0}, pose={"offset_m": 1.6e-3},
+    )
+    solution = edgeline.solve(case, "mirror", tolerance=1e-4, engine="cells")
+    cells = solution.cells
+    found = solution.pressure(cells["x_m"], cells["y_m"])
+    assert np.array_equal(found, cells["p_pa"])
+
+
 def test_the_engine_on_cells(case: edgeline.Case, tmp_path: Path, program: Any) -> None:
     solution = edgeline.solve(case, "mirror", tolerance=1e-6, engine="cells")
     command = ("solve", "half-short", "--method", "mirror", "--engine", "cells")

@@ -109,6 +109,11 @@ impl Heights {
         self.values_m.iter().fold(f64::NEG_INFINITY, |m: f64, v| m.max(*v))
     }
 
+    /// Their mean (m).
+    pub fn mean_m(&self) -> f64 {
+        self.values_m.iter().sum::<f64>() / self.values_m.len() as f64
+    }
+
     /// The height (m) at (`x_m`, `y_m`), linear between samples; beyond the last ones theirs.
     pub fn at(&self, x_m: f64, y_m: f64) -> f64 {
         let half = self.half_spans_m();
@@ -128,8 +133,7 @@ impl Heights {
     #[must_use]
     pub fn without(self, what: Detrend) -> Self {
         let [nx, ny] = self.shape;
-        let count = (nx * ny) as f64;
-        let mean = self.values_m.iter().sum::<f64>() / count;
+        let mean = self.mean_m();
         // Counted from the middle, the two slopes and the mean are orthogonal.
         let from_middle = |i: usize, n: usize| i as f64 - 0.5 * (n - 1) as f64;
         let slope = |along: &dyn Fn(usize) -> f64| {

@@ -75,6 +75,14 @@ pub struct CellSolution {
     pub middle: f64,
 }
 
+impl CellSolution {
+    /// The pressure at (`x`, `y`) (p0); `y` (C) counts from the roller's middle, as everywhere but
+    /// on the grid itself.
+    pub fn pressure_at(&self, x: f64, y: f64) -> f64 {
+        self.pressure.at(x, y - self.middle)
+    }
+}
+
 /// How a case is solved on cells.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CellOptions {
@@ -103,7 +111,11 @@ pub fn check_cells(case: &Case, method: EdgeModel, cells: &CellOptions) -> Resul
             key: "sliding.friction".into(),
             value: stated(case.sliding.friction),
             reason: "cells carry pressures only".into(),
-            remedy: "solve this case with --engine line, or without friction".into(),
+            remedy: match case.surface {
+                Some(_) => "remove [sliding], or [surface] for --engine line",
+                None => "solve this case with --engine line, or without friction",
+            }
+            .into(),
         });
     }
     let region = Region::new(case, &scene, cells);
@@ -216,8 +228,8 @@ impl Region {
         }
     }
 
-    /// Even numbers of cells twice as long as wide, longer only where there would be too many; with
-    /// heights as many as samples.
+    /// Even numbers of cells twice as long as wide, longer only where there would be too many, and
+    /// wider only over a contact that is much shorter than wide; with heights as many as samples.
     ///
     /// # Errors
     /// [`Error::Value`] where a given half-width takes too many.
@@ -235,7 +247,8 @@ impl Region {
         } else {
             let square = fewest * ratio;
             let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
-            [fewest, along.max(ACROSS as f64)]
+            let along = along.max(ACROSS as f64);
+            [fewest.max(along / (LONGEST * ratio)), along]
         };
         let counts = counts.map(even);
         if counts.iter().any(|n| *n > MOST_CELLS as f64) {
@@ -504,6 +517,15 @@ mod tests {
             // Heights that touch far out take no more cells than fine heights do.
             let touched = region(None, rough).grid(50.0).unwrap();
             assert_eq!(touched.nx, if rough { MOST_SAMPLES } else { ACROSS });
+        }
+    }
+
+    #[test]
+    fn cells_over_a_contact_much_shorter_than_wide_suit_it() {
+        for half_length in [1e-3, 0.02, 0.3] {
+            let grid = Region { half_length, ..region(None, false) }.first().unwrap();
+            let (a, b) = grid.half_sides();
+            assert!(a <= LONGEST * b * (1.0 + 1e-9) && grid.ny >= ACROSS, "{grid:?}");
         }
     }
 

@@ -5,7 +5,7 @@ use super::scene::{Scene, Tilt};
 use super::secants::Secants;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap, WIDER};
+use crate::cells::{CellPressure, CellProblem, CellTilt, Detrend, Grid, Heights, RoughGap, WIDER};
 use crate::contact::{Gap, Shaped};
 
 /// Most contacts that are solved until a tilt is reached that is held.
@@ -26,8 +26,11 @@ pub(super) struct CellContact<'a> {
     pub problem: CellProblem,
     scene: &'a Scene,
     smooth: Shaped,
-    /// Heights with C and the unit of gaps (m).
+    /// Heights less their mean, with C and the unit of gaps (m).
     heights: Option<(Heights, [f64; 2])>,
+    /// Their mean (C^2 / (2 R)). It changes the approach alone, and where it is large beside their
+    /// range it would take digits of everything.
+    mean_height: f64,
     progress: &'a dyn Fn(usize, f64),
     /// The depth of the roller's radius (C).
     depth: f64,
@@ -45,11 +48,13 @@ impl<'a> CellContact<'a> {
         let c_m = case.hertz().c_m;
         let unit_m = case.gap_unit_m();
         let depth = case.roller.radius_m / c_m;
+        let heights = case.heights();
         Self {
             problem: scene.on_cells(grid, tolerance),
             scene,
             smooth: scene.gap_on_cells(),
-            heights: case.heights().map(|heights| (heights, [c_m, unit_m])),
+            mean_height: heights.as_ref().map_or(0.0, |heights| heights.mean_m() / unit_m),
+            heights: heights.map(|heights| (heights.without(Detrend::Mean), [c_m, unit_m])),
             progress,
             depth,
         }
@@ -64,9 +69,11 @@ impl<'a> CellContact<'a> {
     /// As [`CellProblem::solve`]; [`Error::Uncovered`] also where heights touch beyond the cells,
     /// and [`Error::NotConverged`] where a held tilt is not reached.
     pub fn solve(&self) -> Result<(CellPressure, DeepMotion)> {
-        let found = self.solve_within()?;
-        self.check_beyond(&found.0)?;
-        Ok(found)
+        let (mut pressure, mut motion) = self.solve_within()?;
+        self.check_beyond(&pressure)?;
+        pressure.approach -= self.mean_height;
+        motion.approach -= self.mean_height;
+        Ok((pressure, motion))
     }
 
     /// [`CellContact::solve`], whatever lies beyond the cells.

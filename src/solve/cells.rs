@@ -50,7 +50,7 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
         let reach = (a / CELL - 0.5).ceil().max(0.0) as i32;
         let carried = |i: i32| strip::cumulative(a, coefficients, (f64::from(i) - 0.5) * CELL);
         let sums: Vec<f64> = (0..=reach + 1).map(carried).collect();
-        sums.windows(2).map(|sum| ((sum[1] - sum[0]) / CELL).max(0.0)).collect()
+        without_tension(sums.windows(2).map(|sum| (sum[1] - sum[0]) / CELL).collect())
     };
     let profiles: Vec<Vec<f64>> = (0..axis.len()).map(profile).collect();
     let nodes = axis.nodes().iter().zip(axis.weights()).zip(&profiles);
@@ -64,6 +64,20 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
         }
     }
     cells
+}
+
+/// The pressures of a row of cells from its middle on, without those below zero that the modes leave
+/// somewhere within their accuracy; the row still carries its load.
+fn without_tension(mut row: Vec<f64>) -> Vec<f64> {
+    if row.iter().any(|p| *p < 0.0) {
+        // All but the middle cell are there twice.
+        let load = |row: &[f64]| row[0] + 2.0 * row[1..].iter().sum::<f64>();
+        let wanted = load(&row).max(0.0);
+        row.iter_mut().for_each(|p| *p = p.max(0.0));
+        let left = load(&row);
+        row.iter_mut().filter(|p| **p > 0.0).for_each(|p| *p *= wanted / left);
+    }
+    row
 }
 
 /// The load per length of each row of cells, whose middle is at `middle` (C).
@@ -89,5 +103,19 @@ pub(super) fn contact_ends(lines: &[LineLoad]) -> ContactEnds {
     ContactEnds {
         at: [edge(ends[0], -1.0), edge(ends[1], 1.0)],
         open: [idle(lines.first()), idle(lines.last())],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_row_without_tension_carries_the_same_load() {
+        let row = without_tension(vec![0.5, 0.4, -0.1, 0.2]);
+        assert!(row.iter().all(|p| *p >= 0.0) && row[2] == 0.0, "{row:?}");
+        assert!((row[0] + 2.0 * row[1..].iter().sum::<f64>() - 1.5).abs() < 1e-15, "{row:?}");
+        assert_eq!(without_tension(vec![0.5, 0.1]), [0.5, 0.1]);
+        assert_eq!(without_tension(vec![-0.5, 0.1]), [0.0, 0.0]);
     }
 }
