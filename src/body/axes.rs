@@ -574,7 +574,8 @@ impl Resolution {
         Part { parity, bends, .. }: Part,
         exponent: Option<f64>,
     ) -> Panels {
-        let deepest = self.face_reach / self.smallest_wavenumber(half, parity);
+        // Loads on the face of a body much shorter than the contact is wide have no longer tail.
+        let deepest = (self.face_reach / self.smallest_wavenumber(half, parity)).max(FACE_TAIL);
         // Where an end is singular, what cancels at the other one would no longer do so.
         let finer = bends && exponent.is_none() && half < SHORT;
         let share = if finer { half / SLENDER } else { 1.0 };
@@ -589,7 +590,9 @@ impl Resolution {
             s.push(next);
             next *= growth;
         }
-        s.push(deepest);
+        if deepest > FACE_TAIL {
+            s.push(deepest);
+        }
         let corner = |exponent| Corner { at: 0.0, side: 1.0, exponent, reach: LAW };
         Panels::new(s, self.order).with_corners(exponent.map(corner).as_slice())
     }
@@ -685,6 +688,24 @@ mod tests {
                     let breaks = numbers.coarse().breaks();
                     assert!(breaks.windows(2).all(|pair| pair[0] < pair[1]), "{half}: {breaks:?}");
                     assert!((breaks[breaks.len() - 1] / resolution.k_max - 1.0).abs() < 1e-12);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn depths_ascend_on_end_faces_of_bodies_of_any_length() {
+        for tolerance in TOLERANCES {
+            let all = [Resolution::for_tolerance(tolerance), Resolution::for_tips(tolerance)];
+            for (resolution, half) in
+                all.iter().flat_map(|r| [1e-3, 0.1, 0.5, 1.0, 2.0, 50.0, 1e4].map(|half| (r, half)))
+            {
+                for parity in [Parity::Even, Parity::Odd] {
+                    let part = Part { parity, bends: parity == Parity::Odd, slides: false };
+                    for ledge in [0.0, 0.3 * half, 1.0] {
+                        let depths = resolution.face_axis(ledge, half, part, None);
+                        assert!(depths.end() >= FACE_TAIL, "{half} {parity:?}: {depths:?}");
+                    }
                 }
             }
         }

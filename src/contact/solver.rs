@@ -221,8 +221,7 @@ fn solve_once(
 }
 
 fn not_converged(iterations: usize, residual: f64) -> Error {
-    let remedy =
-        "ask for a coarser [accuracy] tolerance if it is below 0.1, or check the case's lengths";
+    let remedy = "ask for a coarser [accuracy] tolerance if it is below 0.1, check the case's lengths, or take --engine cells";
     Error::NotConverged { iterations, residual, remedy: remedy.into() }
 }
 
