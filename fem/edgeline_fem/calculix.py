@@ -254,7 +254,7 @@ def solve_case(request, folder, log, stiffness=STIFFNESS):
         "versions": {"ccx": version, "gmsh": meshed["gmsh"], "numpy": np.__version__, **machine_versions()},
         "ranks": 1,
         "hertz": {"c_m": scales.c_m, "p0_pa": scales.p0_pa},
-        "mesh": {key: meshed[key] for key in ("options", "smallest_c")},
+        "mesh": {key: meshed[key] for key in ("options", "contact_ends_c", "smallest_c")},
         "solver": {"contact_stiffness": stiffness, "element": "C3D20R"},
         "unknowns": 3 * sum(len(body.points) for body in bodies.values()),
         "contact_nodes": len(contact.forces),

@@ -70,15 +70,15 @@ class Axes:
     overlap: np.ndarray
 
 
-def _along(scene, options):
-    """Nodes along y: ``({body: its own}, those of the overlap)``."""
+def _along(scene, options, tips):
+    """Nodes along y: ``({body: its own}, those of the overlap)``; ``tips`` as in :func:`make_axes`."""
     scale = options.size
     sizes = [options.end if end.longer is None else options.corner for end in scene.ends]
+    smallest = [(end.y, size) for end, size in zip(scene.ends, sizes)] + [(tip, options.tip) for tip in tips]
     largest = options.along if scene.profiled else np.inf
 
     def within(v):
-        grown = (size + options.growth * abs(end.y - v) for size, end in zip(sizes, scene.ends))
-        return min(largest, *grown)
+        return min(largest, *(size + options.growth * abs(place - v) for place, size in smallest))
 
     overlap = graded_axis(scene.middle, scene.stop, within, scale)
     if not scene.symmetric:
@@ -106,8 +106,11 @@ def _along(scene, options):
     return nodes, overlap
 
 
-def make_axes(case, options):
-    """The :class:`Axes` of a case under :class:`~edgeline_fem.request.MeshOptions`."""
+def make_axes(case, options, tips=()):
+    """The :class:`Axes` of a case under :class:`~edgeline_fem.request.MeshOptions`.
+
+    ``tips``: places along y (C) where the contact is expected to end before the bodies do.
+    """
     scene = Scene.of(case)
     radius, scale = scene.radius, options.size
 
@@ -139,7 +142,7 @@ def make_axes(case, options):
     core_depth = (1.0 - _CORE_SIDE) * radius
     core = max(2, round(4.0 / scale))
 
-    y, overlap = _along(scene, options)
+    y, overlap = _along(scene, options, tips)
     return Axes(
         arc=arc,
         contact_elements=len(near) - 1,
@@ -432,7 +435,8 @@ def make_meshes(request, folder):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "mesh.json").unlink(missing_ok=True)
     version = gmsh_version(request.gmsh)
-    axes = make_axes(request.case, request.mesh)
+    tips = request.tips()
+    axes = make_axes(request.case, request.mesh, tips)
     texts = {
         "block": box_geo("block", axes.x, axes.y["block"], axes.z, axes.contact_elements),
         "roller": roller_geo(request.case.scales().radius, axes),
@@ -444,6 +448,7 @@ def make_meshes(request, folder):
     summary = {
         "gmsh": version,
         "options": dataclasses.asdict(request.mesh),
+        "contact_ends_c": tips,
         "smallest_c": {name: float(value) for name, value in sizes.items()},
         "axes_c": {
             "x_contact": axes.x[: axes.contact_elements + 1].tolist(),

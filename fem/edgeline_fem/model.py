@@ -260,7 +260,7 @@ def solve_case(request, folder, comm, log):
         raise FemError(f"{folder / 'mesh.json'}: run the mesh stage first ({error})") from error
     if comm.rank == 0:
         (folder / "fem.json").unlink(missing_ok=True)
-    if meshed["options"] != dataclasses.asdict(request.mesh):
+    if (meshed["options"], meshed["contact_ends_c"]) != (dataclasses.asdict(request.mesh), request.tips()):
         raise FemError(f"{folder / 'mesh.json'}: was made for other mesh options; run the mesh stage again")
 
     seconds = {"mesh": sum(meshed["seconds"].values())}
@@ -303,7 +303,7 @@ def solve_case(request, folder, comm, log):
         "versions": {**versions(), "gmsh": meshed["gmsh"]},
         "ranks": comm.size,
         "hertz": {"c_m": scales.c_m, "p0_pa": scales.p0_pa},
-        "mesh": {key: meshed[key] for key in ("options", "smallest_c", "bodies")},
+        "mesh": {key: meshed[key] for key in ("options", "contact_ends_c", "smallest_c", "bodies")},
         "solver": {**dataclasses.asdict(request.solver), "factorised_by": bodies["block"].factorised_by},
         "boundary_conditions": boundary_conditions(scene),
         "unknowns": sum(body["unknowns"] for body in meshed["bodies"].values()),

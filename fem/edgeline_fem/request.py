@@ -146,6 +146,8 @@ class MeshOptions:
     """Element size at the roller's end, along y, if the block ends there as well (size 1)."""
     corner: float = 0.015
     """The same if the block goes on: the pressure is singular then (size 1)."""
+    tip: float = 0.02
+    """The same where the contact is expected to end before the bodies do (size 1)."""
     beyond: float = 0.5
     """Increase of element size per unit of distance along y, in the block beyond the roller's end."""
     free_end: float = 2.0
@@ -159,7 +161,7 @@ class MeshOptions:
     Along the contact line it holds all the way.
     """
     along: float = 0.5
-    """Largest element along the contact line of profiled bodies: the contact may end anywhere (size 1)."""
+    """Largest element along the contact line of profiled bodies, which may part anywhere (size 1)."""
     depth_growth: float = 0.34
     """The same along z."""
     far_growth: float = 1.4
@@ -203,7 +205,8 @@ class Curve:
 class Request:
     """All input of a calculation.
 
-    ``large_displacements``: the deck's bodies are in equilibrium where they have moved to; nothing else takes that.
+    ``contact_ends_m``: where along y the contact is expected to end before the bodies do; meshes are finer there,
+    and nothing else depends on it. ``large_displacements``: the deck's bodies are in equilibrium where they have moved to; nothing else takes that.
     """
 
     case: Case
@@ -214,7 +217,13 @@ class Request:
     gmsh: str = "gmsh"
     engine: str = "fenicsx"
     ccx: str = "ccx"
+    contact_ends_m: tuple = ()
     large_displacements: bool = False
+
+    def tips(self):
+        """``contact_ends_m`` in units of C."""
+        c_m = self.case.scales().c_m
+        return [y_m / c_m for y_m in self.contact_ends_m]
 
     def to_json(self):
         """The request as the JSON object that :func:`read_request` accepts."""
@@ -227,6 +236,7 @@ class Request:
             "pressure_points_m": self.pressure_points_m,
             "gmsh": self.gmsh,
             **({} if self.engine == "fenicsx" else {"engine": self.engine, "ccx": self.ccx}),
+            **({"contact_ends_m": list(self.contact_ends_m)} if self.contact_ends_m else {}),
             **({"large_displacements": True} if self.large_displacements else {}),
         }
 
@@ -244,10 +254,14 @@ def _only(table, known, where):
         raise FemError(f"{where}: unknown key '{unknown[0]}'; known are {', '.join(sorted(known))}")
 
 
+def _is_finite(value):
+    """Whether a value is a finite number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
 def _positive(table, key, where):
     value = table.get(key)
-    number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or value <= 0.0:
+    if not _is_finite(value) or value <= 0.0:
         raise FemError(f"{where}: '{key}' must be a finite number above 0, not {value!r}")
     return float(value)
 
@@ -255,8 +269,7 @@ def _positive(table, key, where):
 def _number(table, key, where):
     """A finite number, or ``None`` where there is none."""
     value = table.get(key)
-    if value is not None and (not isinstance(value, (int, float)) or isinstance(value, bool)
-                              or not math.isfinite(value)):
+    if value is not None and not _is_finite(value):
         raise FemError(f"{where}: '{key}' must be a finite number, not {value!r}")
     return None if value is None else float(value)
 
@@ -311,7 +324,7 @@ def _points(points, width, where):
     good = isinstance(points, list) and points and all(
         isinstance(p, list)
         and len(p) == width
-        and all(isinstance(v, (int, float)) and math.isfinite(v) for v in p)
+        and all(_is_finite(v) for v in p)
         for p in points
     )
     if not good:
@@ -363,7 +376,7 @@ def parse_request(data, where="request"):
     if not isinstance(data, dict):
         raise FemError(f"{where}: must be a JSON object")
     _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx",
-                 "large_displacements"}, where)
+                 "contact_ends_m", "large_displacements"}, where)
     if data.get("schema") != SCHEMA:
         raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
 
@@ -401,12 +414,16 @@ def parse_request(data, where="request"):
     engine = data.get("engine", "fenicsx")
     if engine not in ENGINES:
         raise FemError(f"{where}: 'engine' must be one of {', '.join(ENGINES)}, not {engine!r}")
+    contact_ends = data.get("contact_ends_m", [])
+    if not isinstance(contact_ends, list) or not all(_is_finite(y) for y in contact_ends):
+        raise FemError(f"{where}: 'contact_ends_m' must be a list of finite numbers, not {contact_ends!r}")
     large = data.get("large_displacements", False)
     if not isinstance(large, bool):
         raise FemError(f"{where}: 'large_displacements' must be true or false, not {large!r}")
     mesh = _options(MeshOptions, _table(data, "mesh", where) if "mesh" in data else {},
                     f"{where}: mesh")
-    return Request(parsed, mesh, solver, curves, lines, engine=engine, large_displacements=large, **programs)
+    return Request(parsed, mesh, solver, curves, lines, engine=engine, contact_ends_m=tuple(contact_ends),
+                   large_displacements=large, **programs)
 
 
 def read_request(path):

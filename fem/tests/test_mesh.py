@@ -1,5 +1,6 @@
 """The meshes: gradings, true geometry, matching nodes, quality."""
 
+import dataclasses
 import math
 
 import numpy as np
@@ -30,6 +31,28 @@ def test_halving_the_size_doubles_every_axis():
         one, two = len(getattr(coarse, name)) - 1, len(getattr(fine, name)) - 1
         # Rounding up to whole elements happens up to twice along an axis.
         assert 2 * one - 3 <= two <= 2 * one, name
+
+
+def test_elements_are_small_where_the_contact_ends():
+    """Beside an expected end as long as asked for, and growing from there; elsewhere as without one."""
+    half_length = 5.0
+    profile = tuple((y, abs(y)) for y in (-1.0, 0.0, 1.0))
+    straight = steel_case(1e-4, half_length, 0.5)
+    half_m = 0.5 * straight.roller_length_m
+    ends_m = tuple((half_m * y, 1e-6 * drop) for y, drop in profile)
+    for case in (dataclasses.replace(straight, roller_profile_m=ends_m),
+                 dataclasses.replace(straight, roller_profile_m=ends_m, eccentricity_m=0.0)):
+        options = MeshOptions()
+        plain, finer = make_axes(case, options).overlap, make_axes(case, options, [-3.9, 3.7]).overlap
+        steps, middles = np.diff(finer), 0.5 * (finer[1:] + finer[:-1])
+        for tip in (-3.9, 3.7):
+            if tip < finer[0]:
+                continue
+            near = np.abs(middles - tip) < 0.5
+            wanted = np.minimum(options.along, options.tip + options.growth * np.abs(middles - tip))
+            assert steps[near] == pytest.approx(wanted[near], rel=0.15)
+        one, other = (np.diff(nodes[nodes > 4.9]) for nodes in (plain, finer))
+        assert other[-3:] == pytest.approx(one[-3:], rel=0.05)
 
 
 @pytest.fixture(scope="module")

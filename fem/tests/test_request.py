@@ -39,6 +39,9 @@ def test_a_scene_without_symmetry_survives_its_own_json():
     assert data["case"]["roller"]["profile_m"] == [[-1.0, 1e-6], [0.0, 0.0], [1.0, 2e-6]]
     assert not {"tilt_rad", "profile_m"} & {*data["case"], *data["case"]["block"]}
     assert parse_request(data) == standard_request(case, 2.0)
+    ending = dataclasses.replace(standard_request(case, 2.0), contact_ends_m=(-2e-4, 3e-4))
+    assert parse_request(json.loads(json.dumps(ending.to_json()))) == ending
+    assert ending.tips() == pytest.approx([-2e-4 / case.scales().c_m, 3e-4 / case.scales().c_m])
     data["case"]["tilt_rad"] = 1e-4
     with pytest.raises(FemError, match="'eccentricity_m' and 'tilt_rad' exclude each other"):
         parse_request(data)
@@ -80,6 +83,7 @@ def change(data, path, value):
         (["curves", 0, "body"], "ball", "'body' must be block or roller"),
         (["curves", 0, "points_m"], [[0.0, 1.0]], "points of 3 finite numbers"),
         (["gmsh"], "", "'gmsh' must be"),
+        (["contact_ends_m"], [0.0, "end"], "'contact_ends_m' must be a list of finite numbers"),
     ],
 )
 def test_a_bad_request_is_named(path, value, complaint):

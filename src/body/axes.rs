@@ -101,6 +101,12 @@ const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 const TURN: f64 = 0.1;
 const NARROWEST: f64 = 0.02;
 
+/// The least largest wavenumber times that distance, and how many times a level's own it is at
+/// most. Where half-widths fall towards a tip, longer waves leave out what nodes so close do to
+/// each other; far shorter ones than the level's nodes can tell apart are noise.
+const RESOLVED: f64 = 5.0;
+const SHORTER: f64 = 3.0;
+
 /// A share this small is rounding.
 const ROUNDING: f64 = 1e-12;
 
@@ -446,11 +452,13 @@ impl Resolution {
         Self::between(&TIPS, tolerance)
     }
 
-    /// The same with half-widths near the contact's ends that follow a gap which turns there within
-    /// a `length` (C).
+    /// The same with half-widths near the contact's ends that follow what turns there within a
+    /// `length` (C), and with waves as short as these ask for.
     #[must_use]
     pub fn following(self, length: f64) -> Self {
-        Self { spacing: self.spacing.min((TURN * length).max(NARROWEST)), ..self }
+        let spacing = self.spacing.min((TURN * length).max(NARROWEST));
+        let k_max = (RESOLVED / spacing).clamp(self.k_max, SHORTER * self.k_max);
+        Self { spacing, k_max, ..self }
     }
 
     /// The same for a contact that narrows to a tip at an end, for a `tolerance`: panels grow as

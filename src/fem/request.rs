@@ -4,7 +4,9 @@
 use super::code::Code;
 use super::result::{wanted_curves, wanted_lines};
 use super::settings::FemSettings;
+use crate::body::EdgeModel;
 use crate::case::{Accuracy, Block, Case, Cells, Fatigue, Load, Pose, Roller, Sliding, Surface};
+use crate::solve::{Scene, SolvedScene};
 use crate::stress::BodyKind;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
@@ -41,6 +43,9 @@ pub(super) struct Request<'a> {
     schema: u32,
     case: Value,
     mesh: Mesh,
+    /// See [`contact_ends_m`].
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    contact_ends_m: Vec<f64>,
     solver: Solver,
     gmsh: &'a Path,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -98,6 +103,24 @@ fn case_of(case: &Case) -> Value {
     value
 }
 
+/// Tolerance (p0) of the solution that tells where meshes are to be finer, and the step (C) to
+/// which it tells: the request is to be the same for any program that is as accurate.
+const EXPECTED: f64 = 1e-2;
+const STEP: f64 = 0.02;
+
+/// Where along y (m) the contact of `case` ends before its bodies do, by `quarter-space`. Meshes
+/// are finer there; what they give does not depend on it. None where that model has no solution.
+fn contact_ends_m(case: &Case) -> Vec<f64> {
+    let expected = case.clone().with_tolerance(EXPECTED);
+    let scene = Scene::new(&expected, EdgeModel::QuarterSpace, None);
+    if !scene.may_end() {
+        return Vec::new();
+    }
+    let Ok(solved) = SolvedScene::new(&scene) else { return Vec::new() };
+    let ends = solved.ends().into_iter().zip(solved.open).filter(|(_, open)| *open);
+    ends.map(|(y, _)| (y / STEP).round() * STEP * case.hertz().c_m).collect()
+}
+
 /// Part of a half-length up to which a profile is taken as it is.
 const CUT: f64 = 1.0 - 1e-6;
 
@@ -110,6 +133,7 @@ impl<'a> Request<'a> {
             schema: 1,
             case: case_of(case),
             mesh: Mesh { size: settings.size },
+            contact_ends_m: contact_ends_m(case),
             solver: Solver { linear: settings.linear.name(), tolerance: 1e-8, max_iterations: 200 },
             gmsh: &settings.gmsh,
             engine: other.then(|| settings.code.name()),

@@ -129,3 +129,32 @@ fn meshes_state_their_unknowns() {
     let huge = bodies.replace("12", &u64::MAX.to_string());
     assert!(parse(&huge).unwrap_err().to_string().contains("has no number at /bodies/roller"));
 }
+
+/// Where a request says that the contact ends, the recorded pressure falls to nothing.
+#[test]
+fn a_request_says_where_the_contact_ends() {
+    let ends = |name: &str| {
+        let case = Case::find(Path::new(name)).unwrap();
+        let request = serde_json::to_value(request::Request::new(&case, &FemSettings::default()));
+        let c_m = case.hertz().c_m;
+        let ends: Vec<f64> = match request.unwrap().get("contact_ends_m") {
+            Some(ends) => serde_json::from_value(ends.clone()).unwrap(),
+            None => Vec::new(),
+        };
+        (case, ends.into_iter().map(|y| y / c_m).collect::<Vec<f64>>())
+    };
+    for (name, count) in [("crown-inside", 2), ("logarithmic-eccentric", 2)] {
+        let (case, ends) = ends(name);
+        assert_eq!(ends.len(), count, "{name}: {ends:?}");
+        let recorded = FemResults::embedded_of(&case).unwrap().expect(name);
+        let line = recorded.finest().curves.line("along-y").unwrap();
+        for (at, p) in line.at.iter().zip(&line.p) {
+            let inside = (at[1] - ends[0]).min(ends[1] - at[1]);
+            assert!(*p > 0.0 || inside < 0.05, "{name}: {p} at {at:?}, ends {ends:?}");
+            assert!(*p == 0.0 || inside > -0.05, "{name}: {p} at {at:?}, ends {ends:?}");
+        }
+    }
+    for name in ["flush-short", "half-short", "eccentric-flush", "crown-to-the-ends"] {
+        assert_eq!(ends(name).1, Vec::<f64>::new(), "{name}");
+    }
+}

@@ -66,8 +66,8 @@ pub(super) fn pressure_cells(solved: &SolvedScene) -> Vec<PressureCell> {
     cells
 }
 
-/// The pressures of a row of cells from its middle on, without those below zero that the modes leave
-/// somewhere within their accuracy; the row still carries its load.
+/// The pressures of a row of cells from its middle on, without those below zero that the modes
+/// leave somewhere within their accuracy; the row still carries its load.
 fn without_tension(mut row: Vec<f64>) -> Vec<f64> {
     if row.iter().any(|p| *p < 0.0) {
         // All but the middle cell are there twice.

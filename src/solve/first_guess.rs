@@ -11,6 +11,10 @@ pub(super) const MARGIN: f64 = 0.15;
 /// How near its guessed end is to that of the bodies (half-lengths) for a contact to reach it.
 const REACHES: f64 = 0.01;
 
+/// A contact that all but reaches the end of its bodies, with so much left to it, turns within this
+/// many times as much: beside a corner the pressure is as steep as the corner is near.
+const CORNER: f64 = 10.0;
+
 /// Half-length (own units) of a body with free ends below which a load beside its middle asks for
 /// the resolution of [`Resolution::COARSE`] at least. Under long waves the equations of a plate in
 /// bending are close to singular, and between its ends there are few panels: at coarser ones their
@@ -41,7 +45,9 @@ impl Scene {
         let turns = [0, 1].map(|side| {
             let outward = 2.0 * side as f64 - 1.0;
             let end = slices.ends[side].clamp(overlap[0], overlap[1]);
-            gap.turns_within(end, -outward)
+            let left = outward * (overlap[side] - end);
+            let corner = if left > 0.0 { CORNER * left } else { f64::INFINITY };
+            gap.turns_within(end, -outward).min(corner)
         });
         let level = self.level(tolerance, slices.ends).following(turns[0].min(turns[1]));
         let reaches = [0, 1].map(|side| self.reaches(slices.ends, side));

@@ -9,11 +9,12 @@ use edgeline::stress::{BodyKind, EDGE, away_from_edges};
 use std::f64::consts::PI;
 use std::path::Path;
 
-/// Distance (C) from where the contact ends by itself within which meshes differ among themselves.
-const TIP: f64 = 0.7;
+/// Distance (C) from where the contact ends by itself within which the contact is narrower than
+/// elements are wide.
+const TIP: f64 = 0.05;
 
-/// Distance (C) on the surface from the contact's edge, where the pressure has a vertical tangent
-/// and an element is partly in contact.
+/// Distance (C) from the contact's edge, where the pressure has a vertical tangent and an element
+/// is partly in contact.
 const RIM: f64 = 0.03;
 
 /// Largest of some differences (p0), and where it is.
@@ -48,8 +49,6 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
     let c_m = solved.hertz().c_m;
     let [roller, block] = [BodyKind::Roller, BodyKind::Block].map(|kind| case.ends_m(kind));
     let overlap = [roller[0].max(block[0]) / c_m, roller[1].min(block[1]) / c_m];
-    // Where the contact ends by itself, an element of these meshes is as long as what is left of
-    // it.
     let tips = solution.summary.contact_y_m.map(|y| y / c_m);
     let tips: Vec<f64> =
         (0..2).filter(|i| (tips[*i] - overlap[*i]).abs() > 0.01).map(|i| tips[i]).collect();
@@ -59,7 +58,7 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
         let [from, to] = [&lines[next - 1], &lines[next]];
         let share = (y - from.y) / (to.y - from.y);
         let half_width = from.half_width + share * (to.half_width - from.half_width);
-        z == 0.0 && (x.abs() - half_width).abs() < RIM
+        (x.abs() - half_width).hypot(z) < RIM
     };
     let counts = |at: [f64; 3]| {
         let beside_tip = tips.iter().any(|tip| (at[1] - tip).abs() <= TIP);
@@ -112,20 +111,19 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
     assert!(largest.value <= most, "{name}: {largest:?} > {most}");
 }
 
-/// Profiles, eccentric loads, offsets and long rollers. The profile of `logarithmic-eccentric`
-/// drops most within 0.1 C of the end, where its meshes differ by 0.03 p0; the block's uniform
-/// sigma_xx of `designed-roller` is off (`docs/fem.md`).
+/// Profiles, eccentric loads, offsets and long rollers. The block's uniform sigma_xx of
+/// `designed-roller` is off (`docs/fem.md`).
 #[test]
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
         ("crown-to-the-ends", [0.003, 0.003, 0.004], 0.01),
-        ("crown-inside", [0.003, 0.005, 0.006], 0.015),
+        ("crown-inside", [0.0025, 0.0035, 0.0065], 0.0125),
         ("longer-roller", [0.003, 0.004, 0.005], 0.02),
         ("logarithmic-steel-aluminium", [0.003, 0.003, 0.004], 0.012),
         ("eccentric-flush", [0.003, 0.004, 0.008], 0.02),
         ("eccentric-half", [0.003, 0.003, 0.008], 0.02),
         ("offset-flush-end", [0.003, 0.004, 0.004], 0.015),
-        ("logarithmic-eccentric", [0.005, 0.008, 0.008], 0.035),
+        ("logarithmic-eccentric", [0.0025, 0.0035, 0.0075], 0.015),
         ("designed-roller", [0.005, 0.011, 0.008], 0.025),
     ] {
         within(&Case::find(Path::new(name)).unwrap(), limits, most);
@@ -136,7 +134,7 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
-        within(case, [0.003, 0.0095, 0.0095], 0.04);
+        within(case, [0.003, 0.0105, 0.0105], 0.06);
     }
 }
 
