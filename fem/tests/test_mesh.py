@@ -52,7 +52,7 @@ def test_elements_are_small_where_the_contact_ends():
             wanted = np.minimum(options.along, options.tip + options.growth * np.abs(middles - tip))
             assert steps[near] == pytest.approx(wanted[near], rel=0.15)
         one, other = (np.diff(nodes[nodes > 4.9]) for nodes in (plain, finer))
-        assert other[-3:] == pytest.approx(one[-3:], rel=0.05)
+        assert other[-3:] == pytest.approx(one[-3:], rel=0.1)
 
 
 @pytest.fixture(scope="module")
