@@ -13,8 +13,8 @@ use std::path::Path;
 /// elements are wide.
 const TIP: f64 = 0.05;
 
-/// Distance (C) from the contact's edge, where the pressure has a vertical tangent and an element
-/// is partly in contact.
+/// Distance (C) on the surface from the contact's edge, where the pressure has a vertical tangent
+/// and an element is partly in contact.
 const RIM: f64 = 0.03;
 
 /// Largest of some differences (p0), and where it is.
@@ -58,7 +58,7 @@ fn compared(case: &Case) -> ([Worst; 3], Worst) {
         let [from, to] = [&lines[next - 1], &lines[next]];
         let share = (y - from.y) / (to.y - from.y);
         let half_width = from.half_width + share * (to.half_width - from.half_width);
-        (x.abs() - half_width).hypot(z) < RIM
+        z == 0.0 && (x.abs() - half_width).abs() < RIM
     };
     let counts = |at: [f64; 3]| {
         let beside_tip = tips.iter().any(|tip| (at[1] - tip).abs() <= TIP);
@@ -117,7 +117,7 @@ fn within(case: &Case, limits: [f64; 3], most: f64) {
 fn real_rollers_have_the_stresses_of_finite_elements() {
     for (name, limits, most) in [
         ("crown-to-the-ends", [0.003, 0.003, 0.004], 0.01),
-        ("crown-inside", [0.0025, 0.0035, 0.0065], 0.0125),
+        ("crown-inside", [0.0025, 0.0035, 0.006], 0.0125),
         ("longer-roller", [0.003, 0.004, 0.005], 0.02),
         ("logarithmic-steel-aluminium", [0.003, 0.003, 0.004], 0.012),
         ("eccentric-flush", [0.003, 0.004, 0.008], 0.02),
@@ -134,7 +134,7 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
-        within(case, [0.003, 0.0105, 0.0105], 0.06);
+        within(case, [0.003, 0.0095, 0.0095], 0.055);
     }
 }
 
