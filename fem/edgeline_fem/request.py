@@ -206,7 +206,8 @@ class Request:
     """All input of a calculation.
 
     ``contact_ends_m``: where along y the contact is expected to end before the bodies do; meshes are finer there,
-    and nothing else depends on it. ``large_displacements``: the deck's bodies are in equilibrium where they have moved to; nothing else takes that.
+    and nothing else depends on it. ``large_displacements``: the deck's bodies are in equilibrium where they have
+    moved to; nothing else takes that.
     """
 
     case: Case
@@ -291,8 +292,7 @@ def _profile(table, length_m, where):
 def _material(table, where):
     young_pa = _positive(table, "young_pa", where)
     poisson = table.get("poisson")
-    number = isinstance(poisson, (int, float)) and not isinstance(poisson, bool)
-    if not number or not 0.0 <= poisson < 0.5:
+    if not _is_finite(poisson) or not 0.0 <= poisson < 0.5:
         raise FemError(f"{where}: 'poisson' must lie in [0, 0.5), not {poisson!r}")
     return Material(young_pa, float(poisson))
 

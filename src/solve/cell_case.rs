@@ -237,19 +237,16 @@ impl Region {
         let even = |n: f64| 2.0 * (0.5 * n).ceil();
         let ratio = self.half_length / half_width;
         let fewest = self.fewest(half_width);
-        let counts = if let Some((_, steps)) = self.samples {
+        let (nx, ny) = if let Some((_, steps)) = self.samples {
             let sides = [half_width, self.half_length];
             let samples = |i: usize| (2.0 * sides[i] / steps[i]).min(MOST_SAMPLES as f64);
-            let (nx, ny) = (even(samples(0).max(fewest)), even(samples(1).max(ACROSS as f64)));
-            // As many in each direction as the slenderest cells ask for.
-            let across = nx.max(ny / (LONGEST * ratio));
-            [across, ny.max(across * ratio / LONGEST)]
+            (even(samples(0).max(fewest)), even(samples(1).max(ACROSS as f64)))
         } else {
-            let square = fewest * ratio;
-            let along = (0.5 * square).min(MOST_ALONG as f64).max(square / LONGEST);
-            let along = along.max(ACROSS as f64);
-            [fewest.max(along / (LONGEST * ratio)), along]
+            (fewest, (0.5 * fewest * ratio).clamp(ACROSS as f64, MOST_ALONG as f64))
         };
+        // As many in each direction as the slenderest cells ask for.
+        let across = nx.max(ny / (LONGEST * ratio));
+        let counts = [across, ny.max(across * ratio / LONGEST)];
         let counts = counts.map(even);
         if counts.iter().any(|n| *n > MOST_CELLS as f64) {
             return Err(Error::Value {
