@@ -72,8 +72,8 @@ pub struct Resolution {
     /// Modes of the pressure across the contact.
     pub modes: usize,
     /// Smallest distance (C) along the line between independent half-widths, and of the last one
-    /// from the end.
-    pub spacing: f64,
+    /// from the end, towards each end.
+    pub spacing: [f64; 2],
     /// Largest wavenumber (1/C).
     pub k_max: f64,
     /// Gauss nodes per panel of wavenumbers.
@@ -122,7 +122,7 @@ const FINITE: [Resolution; 5] = [
         corner_ratio: 3.0,
         ratio: 3.0,
         modes: 3,
-        spacing: 0.15,
+        spacing: [0.15; 2],
         k_max: 12.0,
         k_order: 3,
         k_step: 2.5,
@@ -138,7 +138,7 @@ const FINITE: [Resolution; 5] = [
         corner_ratio: 2.6,
         ratio: 2.6,
         modes: 3,
-        spacing: 0.15,
+        spacing: [0.15; 2],
         k_max: 36.0,
         k_order: 3,
         k_step: 2.5,
@@ -154,7 +154,7 @@ const FINITE: [Resolution; 5] = [
         corner_ratio: 2.4,
         ratio: 2.5,
         modes: 6,
-        spacing: 0.05,
+        spacing: [0.05; 2],
         k_max: 36.0,
         k_order: 4,
         k_step: 5.0,
@@ -170,7 +170,7 @@ const FINITE: [Resolution; 5] = [
         corner_ratio: 2.5,
         ratio: 2.4,
         modes: 7,
-        spacing: 0.025,
+        spacing: [0.025; 2],
         k_max: 130.0,
         k_order: 4,
         k_step: 6.0,
@@ -186,7 +186,7 @@ const FINITE: [Resolution; 5] = [
         corner_ratio: 2.2,
         ratio: 2.1,
         modes: 8,
-        spacing: 0.02,
+        spacing: [0.02; 2],
         k_max: 200.0,
         k_order: 6,
         k_step: 3.0,
@@ -207,7 +207,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.29,
         ratio: 2.7,
         modes: 3,
-        spacing: 0.12,
+        spacing: [0.12; 2],
         k_max: 20.0,
         k_order: 3,
         k_step: 3.0,
@@ -223,7 +223,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.29,
         ratio: 2.7,
         modes: 3,
-        spacing: 0.13,
+        spacing: [0.13; 2],
         k_max: 60.0,
         k_order: 4,
         k_step: 4.0,
@@ -239,7 +239,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.0,
         ratio: 2.8,
         modes: 4,
-        spacing: 0.06,
+        spacing: [0.06; 2],
         k_max: 70.0,
         k_order: 5,
         k_step: 4.0,
@@ -255,7 +255,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 5.8,
         ratio: 2.4,
         modes: 7,
-        spacing: 0.04,
+        spacing: [0.04; 2],
         k_max: 200.0,
         k_order: 6,
         k_step: 5.5,
@@ -271,7 +271,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 3.42,
         ratio: 2.0,
         modes: 8,
-        spacing: 0.03,
+        spacing: [0.03; 2],
         k_max: 200.0,
         k_order: 6,
         k_step: 4.0,
@@ -294,7 +294,7 @@ const TIPS: [Resolution; 5] = [
         corner_ratio: 2.5,
         ratio: 2.5,
         modes: 4,
-        spacing: 0.1,
+        spacing: [0.1; 2],
         k_max: 20.0,
         k_order: 3,
         k_step: 2.5,
@@ -310,7 +310,7 @@ const TIPS: [Resolution; 5] = [
         corner_ratio: 2.0,
         ratio: 2.0,
         modes: 5,
-        spacing: 0.05,
+        spacing: [0.05; 2],
         k_max: 130.0,
         k_order: 4,
         k_step: 4.0,
@@ -326,7 +326,7 @@ const TIPS: [Resolution; 5] = [
         corner_ratio: 1.8,
         ratio: 1.8,
         modes: 7,
-        spacing: 0.05,
+        spacing: [0.05; 2],
         k_max: 260.0,
         k_order: 5,
         k_step: 3.0,
@@ -347,7 +347,7 @@ const ENDLESS: [Resolution; 5] = [
         corner_ratio: 3.0,
         ratio: 3.0,
         modes: 3,
-        spacing: 0.1,
+        spacing: [0.1; 2],
         k_max: 60.0,
         k_order: 4,
         k_step: 4.0,
@@ -363,7 +363,7 @@ const ENDLESS: [Resolution; 5] = [
         corner_ratio: 3.0,
         ratio: 2.35,
         modes: 4,
-        spacing: 0.0949,
+        spacing: [0.0949; 2],
         k_max: 60.0,
         k_order: 4,
         k_step: 4.0,
@@ -379,7 +379,7 @@ const ENDLESS: [Resolution; 5] = [
         corner_ratio: 2.8,
         ratio: 2.3,
         modes: 4,
-        spacing: 0.0569,
+        spacing: [0.0569; 2],
         k_max: 80.0,
         k_order: 5,
         k_step: 4.0,
@@ -395,7 +395,7 @@ const ENDLESS: [Resolution; 5] = [
         corner_ratio: 2.5,
         ratio: 2.05,
         modes: 6,
-        spacing: 0.08,
+        spacing: [0.08; 2],
         k_max: 185.0,
         k_order: 6,
         k_step: 4.0,
@@ -411,7 +411,7 @@ const ENDLESS: [Resolution; 5] = [
         corner_ratio: 2.8,
         ratio: 2.1,
         modes: 8,
-        spacing: 0.025,
+        spacing: [0.025; 2],
         k_max: 340.0,
         k_order: 6,
         k_step: 4.2,
@@ -452,12 +452,15 @@ impl Resolution {
         Self::between(&TIPS, tolerance)
     }
 
-    /// The same with half-widths near the contact's ends that follow what turns there within a
-    /// `length` (C), and with waves as short as these ask for.
+    /// The same with half-widths towards each end of the contact that follow what turns there within
+    /// a length (C), and with waves as short as these ask for. Towards an end that does not turn so
+    /// soon half-widths as close would be noise.
     #[must_use]
-    pub fn following(self, length: f64) -> Self {
-        let spacing = self.spacing.min((TURN * length).max(NARROWEST));
-        let k_max = (RESOLVED / spacing).clamp(self.k_max, SHORTER * self.k_max);
+    pub fn following(self, lengths: [f64; 2]) -> Self {
+        let follows = |side: usize| self.spacing[side].min((TURN * lengths[side]).max(NARROWEST));
+        let spacing = [0, 1].map(follows);
+        let closest = spacing[0].min(spacing[1]);
+        let k_max = (RESOLVED / closest).clamp(self.k_max, SHORTER * self.k_max);
         Self { spacing, k_max, ..self }
     }
 
@@ -498,7 +501,7 @@ impl Resolution {
             corner_ratio: mixed(|r| r.corner_ratio),
             ratio: mixed(|r| r.ratio),
             modes: count(|r| r.modes),
-            spacing: mixed(|r| r.spacing),
+            spacing: [mixed(|r| r.spacing[0]), mixed(|r| r.spacing[1])],
             k_max: mixed(|r| r.k_max),
             k_order: count(|r| r.k_order),
             k_step: mixed(|r| r.k_step),
@@ -518,7 +521,7 @@ impl Resolution {
             corner_ratio: self.corner_ratio.sqrt(),
             ratio: self.ratio.sqrt(),
             modes: self.modes + 2,
-            spacing: 0.5 * self.spacing,
+            spacing: self.spacing.map(|apart| 0.5 * apart),
             k_max: 2.0 * self.k_max,
             k_order: self.k_order,
             k_step: 0.5 * self.k_step,

@@ -41,7 +41,7 @@ const RESOLUTION: Resolution = Resolution {
     corner_ratio: 4.0,
     ratio: 2.3,
     modes: 0,
-    spacing: 0.0,
+    spacing: [0.0; 2],
     k_max: 9.0,
     k_order: 4,
     k_step: 3.0,

@@ -133,7 +133,7 @@ mod tests {
         let compliance = Compliance { wavenumbers: &numbers, matrices: &matrices };
         let settings = ContactSettings {
             modes: 3,
-            spacing: 0.1,
+            spacing: [0.1; 2],
             tolerance: 1e-6,
             max_iterations: 20,
             soundness: 1e-3,

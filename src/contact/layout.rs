@@ -60,7 +60,7 @@ pub(super) struct Layout {
 
 /// The free nodes of those in `contact`, ascending: from each end towards the middle, so that
 /// mirror images of a contact have mirror images of them.
-fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<usize> {
+fn free_nodes(problem: &Problem, spacing: [f64; 2], contact: &Range<usize>) -> Vec<usize> {
     let nodes = problem.axis.nodes();
     // Where the contact ends before the bodies do, it narrows to a tip.
     let receded = [contact.start > 0, contact.end < nodes.len()];
@@ -74,19 +74,22 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
             return false;
         }
         let end = if receded[side] { last[side] } else { ends[side] };
-        let apart =
-            if receded[side] || problem.open[side] { tips[side].max(spacing) } else { spacing };
+        let apart = if receded[side] || problem.open[side] {
+            tips[side].max(spacing[side])
+        } else {
+            spacing[side]
+        };
         (y - end).abs() < apart
     };
     let middle = match problem.both_ends {
         true => nodes.partition_point(|y| *y < 0.5 * (last[0] + last[1])),
         false => contact.start,
     };
-    let side = |inward: &mut dyn Iterator<Item = usize>| {
+    let towards = |side: usize, inward: &mut dyn Iterator<Item = usize>| {
         let mut last: Option<f64> = None;
         let apart = |j: &usize| {
             let y = nodes[*j];
-            let far = last.is_none_or(|last| (y - last).abs() >= spacing);
+            let far = last.is_none_or(|last| (y - last).abs() >= spacing[side]);
             let is_free = far && !near(0, y) && !near(1, y);
             if is_free {
                 last = Some(y);
@@ -95,8 +98,8 @@ fn free_nodes(problem: &Problem, spacing: f64, contact: &Range<usize>) -> Vec<us
         };
         inward.filter(apart).collect::<Vec<_>>()
     };
-    let mut free = side(&mut (contact.start..middle));
-    let after = side(&mut (middle..contact.end).rev());
+    let mut free = towards(0, &mut (contact.start..middle));
+    let after = towards(1, &mut (middle..contact.end).rev());
     free.extend(after.into_iter().rev());
     if free.is_empty() { vec![middle] } else { free }
 }

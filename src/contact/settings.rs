@@ -6,8 +6,8 @@ pub struct ContactSettings {
     /// Modes of the pressure across the contact.
     pub modes: usize,
     /// Smallest distance (C) of nodes with an independent half-width, from each other along the
-    /// line and from its end.
-    pub spacing: f64,
+    /// line and from its end, towards each end.
+    pub spacing: [f64; 2],
     /// Largest negligible amplitude of the pressure's edge singularity (p0).
     pub tolerance: f64,
     /// Largest number of iterations.

@@ -33,8 +33,9 @@ pub struct ContactSolution {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "cli", derive(schemars::JsonSchema))]
 pub struct Coarser {
-    /// Smallest distance of nodes with an independent half-width, in the resolution's unit.
-    pub spacing: f64,
+    /// Smallest distance of nodes with an independent half-width towards each end, in the
+    /// resolution's unit.
+    pub spacing: [f64; 2],
     /// Modes of the pressure across the contact.
     pub modes: usize,
     /// Most modes behind the last node with an independent half-width.

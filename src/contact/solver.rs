@@ -118,7 +118,7 @@ fn attempts(settings: &ContactSettings) -> Vec<Attempt> {
     let all = settings.modes;
     let short = ATTEMPT.min(settings.max_iterations);
     let one = |by_secants, times: f64, modes, tail_modes, max_iterations| {
-        let spacing = times * settings.spacing;
+        let spacing = settings.spacing.map(|apart| times * apart);
         let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
         Attempt { settings, tail_modes, by_secants }
     };
@@ -143,11 +143,11 @@ fn first_guess(
 ) -> Result<Vec<f64>> {
     let known = |y: &f64| problem.guess.map_or(1.0, |slices| slices.half_width(*y).max(TIP));
     let known: Vec<f64> = problem.axis.nodes().iter().map(known).collect();
-    if problem.guess.is_some() || problem.may_end() || settings.spacing >= CLOSE {
+    if problem.guess.is_some() || problem.may_end() || settings.spacing[1] >= CLOSE {
         return Ok(known);
     }
     let fewer = ContactSettings {
-        spacing: FIRST_SPACING,
+        spacing: [FIRST_SPACING; 2],
         tolerance: FIRST_TOLERANCE,
         max_iterations: FIRST_ITERATIONS,
         ..*settings

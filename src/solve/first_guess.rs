@@ -49,7 +49,7 @@ impl Scene {
             let corner = if left > 0.0 { CORNER * left } else { f64::INFINITY };
             gap.turns_within(end, -outward).min(corner)
         });
-        let level = self.level(tolerance, slices.ends).following(turns[0].min(turns[1]));
+        let level = self.level(tolerance, slices.ends).following(turns);
         let reaches = [0, 1].map(|side| self.reaches(slices.ends, side));
         let level = if reaches == [true; 2] { level } else { level.narrowing(tolerance) };
         let is_steep = reaches.contains(&true) || !gap.kinks().is_empty();

@@ -62,7 +62,7 @@ impl Summary {
         };
         let wanted = self.details.resolution;
         let coarser = |Coarser { spacing, modes, .. }| {
-            let farther = spacing / wanted.spacing;
+            let farther = spacing[1] / wanted.spacing[1];
             let given_up = [
                 (farther > 1.01).then(|| format!("half-widths {farther:.0} times as far apart")),
                 (modes < wanted.modes).then(|| format!("{modes} of {} modes", wanted.modes)),

@@ -132,13 +132,16 @@ fn a_contact_coarser_than_its_resolution_says_so() {
     assert_eq!((first.details.coarser, first.warnings()), (None, Vec::new()));
     let later = summary(EdgeModel::HalfSpace);
     let (coarser, wanted) = (later.details.coarser.unwrap(), later.details.resolution);
-    assert!(coarser.spacing > 1.9 * wanted.spacing || coarser.modes < wanted.modes, "{coarser:?}");
+    assert!(
+        coarser.spacing[1] > 1.9 * wanted.spacing[1] || coarser.modes < wanted.modes,
+        "{coarser:?}"
+    );
     let said = later.warnings();
-    let times = format!("{:.0} times as far apart", coarser.spacing / wanted.spacing);
+    let times = format!("{:.0} times as far apart", coarser.spacing[1] / wanted.spacing[1]);
     assert!(later.converged && said.len() == 1 && said[0].contains("`coarser`"), "{said:?}");
     // It tells what was given up alone.
     let modes = format!("{} of {} modes", coarser.modes, wanted.modes);
-    assert_eq!(said[0].contains(&times), coarser.spacing > 1.01 * wanted.spacing, "{said:?}");
+    assert_eq!(said[0].contains(&times), coarser.spacing[1] > 1.01 * wanted.spacing[1], "{said:?}");
     assert_eq!(said[0].contains(&modes), coarser.modes < wanted.modes, "{said:?}");
     for (model, want) in [(EdgeModel::Mirror, vec![]), (EdgeModel::HalfSpace, vec!["coarser"])] {
         let mut case = Case::from_toml(STEEP).unwrap();

@@ -241,7 +241,7 @@ fn nodes_closer_than_the_shortest_wave_keep_together() {
             corner_ratio: 3.42,
             ratio: 2.0,
             modes: 8,
-            spacing: 0.07,
+            spacing: [0.07; 2],
             k_max: 300.0,
             k_order: 6,
             k_step: 4.0,
@@ -277,7 +277,7 @@ fn no_half_width_is_left_behind() {
             corner_ratio: 2.2,
             ratio: 2.1,
             modes: 8,
-            spacing: 0.02,
+            spacing: [0.02; 2],
             k_max: 200.0,
             k_order: 5,
             k_step: 4.0,
@@ -313,7 +313,9 @@ fn every_direction_converges() {
             r.corner_ratio = r.corner_ratio.powf(0.5f64.powf(level));
         }),
         ("modes across x", |r, level| r.modes = (r.modes as f64 + 2.0 * level) as usize),
-        ("free half-widths", |r, level| r.spacing *= 0.5f64.powf(level)),
+        ("free half-widths", |r, level| {
+            r.spacing = r.spacing.map(|apart| apart * 0.5f64.powf(level))
+        }),
         ("wavenumbers", |r, level| {
             r.k_max *= 2f64.powf(level);
             r.k_step *= 0.5f64.powf(level);
