@@ -452,9 +452,9 @@ impl Resolution {
         Self::between(&TIPS, tolerance)
     }
 
-    /// The same with half-widths towards each end of the contact that follow what turns there within
-    /// a length (C), and with waves as short as these ask for. Towards an end that does not turn so
-    /// soon half-widths as close would be noise.
+    /// The same with half-widths towards each end of the contact that follow what turns there
+    /// within a length (C), and with waves as short as these ask for. Towards an end that does not
+    /// turn so soon half-widths as close would be noise.
     #[must_use]
     pub fn following(self, lengths: [f64; 2]) -> Self {
         let follows = |side: usize| self.spacing[side].min((TURN * lengths[side]).max(NARROWEST));

@@ -153,9 +153,9 @@ fn singular_ends_under_an_eccentric_load_keep_the_tolerance() {
 
 /// Beside a flush end under an eccentric load half-widths rise steeply up to the end. With the sums
 /// over wavenumbers of a contact as wide as Hertz's, pressures 0.05 C from it were up to 0.02 p0
-/// off at 1e-3, and some contacts lost up to 0.3 C of the loaded end. The last two end 0.03 C before
-/// their bodies at the other end: half-widths as close as there were noise at the loaded one, and
-/// pressures up to 0.09 p0 off at 1e-2.
+/// off at 1e-3, and some contacts lost up to 0.3 C of the loaded end. The last two end 0.03 C
+/// before their bodies at the other end: half-widths as close as there were noise at the loaded
+/// one, and pressures up to 0.09 p0 off at 1e-2.
 #[test]
 fn a_loaded_flush_end_keeps_the_tolerance() {
     for (slenderness, nu, arm) in [
