@@ -37,6 +37,14 @@ const STEEPEST: f64 = 10.0;
 /// steepens towards an end where the pressure changes by s^-m or by s ln s.
 const STEEPENING: f64 = 0.6;
 
+/// Knots between which the square of a half-width is interpolated towards a tip, by the cubic
+/// through them. By straight lines from node to node errors of pressures 0.03 to 0.1 C from a steep
+/// tip are as large at 3e-4 as at 1e-3.
+const CUBIC: usize = 4;
+
+/// What is interpolated at a node: positions of free nodes, and their shares.
+pub(super) type Shares = [(usize, f64); CUBIC];
+
 /// The unknowns of each node. Free nodes have all modes and the singular one, whose amplitude
 /// determines the change of their half-width. Next to the end of the line the nodes are closer than
 /// the shortest wave, and independent half-widths would be noise. They are interpolated from those
@@ -48,7 +56,7 @@ pub(super) struct Layout {
     /// The free nodes, ascending.
     pub free: Vec<usize>,
     /// The half-width of each node from those of the free nodes: positions in `free`, and shares.
-    pub shares: Vec<[(usize, f64); 2]>,
+    pub shares: Vec<Shares>,
     /// Whether the contact narrows to a tip towards the end next to each node: it is the square of
     /// the half-width that is interpolated then.
     pub narrows: Vec<bool>,
@@ -116,6 +124,43 @@ fn steepening(problem: &Problem, y: f64) -> f64 {
     }
 }
 
+/// A place at which the half-width is known: a free node, by its position among these, or a tip,
+/// where it is zero.
+struct Knot {
+    y: f64,
+    free: Option<usize>,
+}
+
+/// The knots along the line, ascending. A contact that has receded from the end of the line has its
+/// tip somewhere beyond the last free node.
+fn knots(problem: &Problem, contact: &Range<usize>, free: &[usize]) -> Vec<Knot> {
+    let axis = problem.axis;
+    let tip = |y: f64, open: bool| open.then_some(Knot { y, free: None });
+    let nodes = free.iter().enumerate().map(|(at, j)| Knot { y: axis.nodes()[*j], free: Some(at) });
+    tip(axis.breaks()[0], problem.open[0] && contact.start == 0)
+        .into_iter()
+        .chain(nodes)
+        .chain(tip(axis.end(), problem.open[1] && contact.end == axis.len()))
+        .collect()
+}
+
+/// The shares of free nodes from those of knots.
+fn shares_of<'a>(knots: impl IntoIterator<Item = (&'a Knot, f64)>) -> Shares {
+    let mut shares = [(0, 0.0); CUBIC];
+    let of_nodes = knots.into_iter().filter_map(|(knot, share)| Some((knot.free?, share)));
+    shares.iter_mut().zip(of_nodes).for_each(|(own, share)| *own = share);
+    shares
+}
+
+/// The shares at `y` of the cubic through knots.
+fn cubic(y: f64, knots: &[Knot; CUBIC]) -> Shares {
+    let share = |own: &Knot| {
+        let others = knots.iter().filter(|other| other.y != own.y);
+        others.map(|other| (y - other.y) / (own.y - other.y)).product()
+    };
+    shares_of(knots.iter().map(|own| (own, share(own))))
+}
+
 /// Whether the contact ends before the bodies do towards the end next to `y`.
 fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
     let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
@@ -139,30 +184,31 @@ impl Layout {
         let free = free_nodes(problem, settings.spacing, &contact);
         let narrows: Vec<bool> =
             axis.nodes().iter().map(|y| narrows(problem, &contact, *y)).collect();
+        let knots = knots(problem, &contact, &free);
         let shares = axis
             .nodes()
             .iter()
-            .enumerate()
-            .map(|(j, y)| {
-                let after = free.partition_point(|f| *f < j);
+            .zip(&narrows)
+            .map(|(y, narrow)| {
+                let after = knots.partition_point(|knot| knot.y < *y);
                 // Towards a plane of symmetry the half-width is uniform.
                 if free.len() == 1 || after == 0 && !problem.both_ends {
-                    return [(0, 1.0), (0, 0.0)];
+                    return shares_of([(&knots[0], 1.0)]);
                 }
-                // At an open end the half-width is zero.
-                if problem.open[1] && contact.end == axis.len() && after == free.len() {
-                    let last = axis.nodes()[free[after - 1]];
-                    return [(after - 1, (axis.end() - y) / (axis.end() - last)), (0, 0.0)];
+                let before = after.clamp(1, knots.len() - 1) - 1;
+                let first = before.saturating_sub(1).min(knots.len().saturating_sub(CUBIC));
+                let around = &knots[first..(first + CUBIC).min(knots.len())];
+                let all_narrow =
+                    around.iter().all(|knot| knot.free.is_none_or(|at| narrows[free[at]]));
+                let within = after > 0 && after < knots.len();
+                if let (true, Ok(around)) = (all_narrow && within, around.try_into()) {
+                    return cubic(*y, around);
                 }
-                if problem.open[0] && contact.start == 0 && after == 0 {
-                    let (first, end) = (axis.nodes()[free[0]], axis.breaks()[0]);
-                    return [(0, (y - end) / (first - end)), (0, 0.0)];
-                }
-                let before = after.clamp(1, free.len() - 1) - 1;
-                let own = if narrows[j] { |_: &Problem, y: f64| y } else { steepening };
-                let [a, b] = [before, before + 1].map(|i| own(problem, axis.nodes()[free[i]]));
+                let own = if *narrow { |_: &Problem, y: f64| y } else { steepening };
+                let [from, to] = [&knots[before], &knots[before + 1]];
+                let [a, b] = [from, to].map(|knot| own(problem, knot.y));
                 let share = (own(problem, *y) - a) / (b - a);
-                [(before, 1.0 - share), (before + 1, share)]
+                shares_of([(from, 1.0 - share), (to, share)])
             })
             .collect();
         let (first, last) = (free[0], free[free.len() - 1]);

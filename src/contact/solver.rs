@@ -3,7 +3,7 @@
 use super::check::check;
 use super::collocation::LinearProblem;
 use super::ends::ends;
-use super::layout::Layout;
+use super::layout::{Layout, Shares};
 use super::operator::LineOperator;
 use super::problem::{Problem, Rotation};
 use super::settings::ContactSettings;
@@ -252,11 +252,11 @@ impl StepParts {
 
 /// The half-widths at all nodes from those at the free ones.
 fn between(layout: &Layout, free: &[f64]) -> Vec<f64> {
-    let at_node = |(shares, narrows): (&[(usize, f64); 2], &bool)| {
+    let at_node = |(shares, narrows): (&Shares, &bool)| {
         let mean = |of: fn(f64) -> f64| -> f64 {
             shares.iter().map(|(node, share)| share * of(free[*node])).sum()
         };
-        // Towards an open end the square is linear.
+        // Towards a tip the square is as smooth as the pressure's.
         match narrows {
             true => mean(|a| a * a).max(TIP * TIP).sqrt(),
             false => mean(|a| a).max(NARROWEST),

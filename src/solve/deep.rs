@@ -101,10 +101,11 @@ enum Far {
 }
 
 /// The shortening of a body between free faces deep below one place: per length it is
-/// `growth` / z + `rest` / z^3.
+/// `growth` / z + `twist` / z^2 + `rest` / z^3.
 #[derive(Debug)]
 pub(super) struct Plate {
     growth: f64,
+    twist: f64,
     rest: f64,
 }
 
@@ -120,19 +121,26 @@ impl Plate {
         let SceneBody { half, middle, nu, share, .. } = *body;
         let load = forces.iter().map(|force| force.size).sum();
         let moment = forces.iter().map(|force| (force.y - middle) * force.size).sum();
-        let growth = share * Shape { half, nu }.as_plate(load, moment, y - middle) / (PI * PI);
+        let shape = Shape { half, nu };
+        let growth = share * shape.as_plate(load, moment, y - middle) / (PI * PI);
+        // Waves turn the plate at the depth z by 1 - (1 - nu) k z / 2 of e^(-k z), and their sum
+        // over k is taken of one power of k more.
+        let turn = share * shape.as_plate(0.0, moment, y - middle) / (PI * PI);
+        let twist = 0.5 * (1.0 + nu) * half * shape.twisted() * turn;
         let last = rule.len() - rule.order();
         let nodes = rule.nodes().iter().zip(rule.weights()).zip(strains).skip(last);
         let rest = |((z, weight), strain): ((&f64, &f64), &f64)| {
-            weight * (strain - growth / z) * z.powi(3)
+            weight * (strain - growth / z - twist / (z * z)) * z.powi(3)
         };
         let length: f64 = rule.weights()[last..].iter().sum();
-        Self { growth, rest: nodes.map(rest).sum::<f64>() / length }
+        Self { growth, twist, rest: nodes.map(rest).sum::<f64>() / length }
     }
 
     /// The shortening (C^2 / (2 R)) between two depths (C).
     pub fn between(&self, from: f64, to: f64) -> f64 {
-        self.growth * (to / from).ln() + 0.5 * self.rest * (from.powi(-2) - to.powi(-2))
+        self.growth * (to / from).ln()
+            + self.twist * (from.recip() - to.recip())
+            + 0.5 * self.rest * (from.powi(-2) - to.powi(-2))
     }
 }
 

@@ -15,6 +15,11 @@ const REACHES: f64 = 0.01;
 /// many times as much: beside a corner the pressure is as steep as the corner is near.
 const CORNER: f64 = 10.0;
 
+/// Width, in its lengths, of a contact that ends before its bodies do from which on it has the
+/// resolution of tighter tolerances, in proportion: the pressure is the higher, and changes the
+/// faster along the nodes, the shorter it is.
+const SLENDER: f64 = 0.1;
+
 /// Half-length (own units) of a body with free ends below which a load beside its middle asks for
 /// the resolution of [`Resolution::COARSE`] at least. Under long waves the equations of a plate in
 /// bending are close to singular, and between its ends there are few panels: at coarser ones their
@@ -39,7 +44,8 @@ impl Scene {
         let overlap = self.overlap();
         let Some(slices) = slices else { return self.level(tolerance, overlap) };
         if self.ends_inside(slices) {
-            return Resolution::for_tips(tolerance);
+            let width = 2.0 * slices.widest() / (slices.ends[1] - slices.ends[0]);
+            return Resolution::for_tips(tolerance / (width / SLENDER).max(1.0));
         }
         let gap = self.gap();
         let turns = [0, 1].map(|side| {
