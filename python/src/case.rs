@@ -17,7 +17,7 @@ impl Case {
     /// Reads a case file, or takes a built-in case.
     #[staticmethod]
     fn from_path(path: PathBuf) -> PyResult<Self> {
-        edgeline::case::Case::find(&path).map(Self).map_err(raised)
+        edgeline::case::find_case(&path).map(Self).map_err(raised)
     }
 
     /// Takes a case from the text of a case file.

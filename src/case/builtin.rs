@@ -79,21 +79,25 @@ impl Draft {
 
 /// The error about a `path` at which there is neither a case file nor a built-in case.
 fn not_found(path: &Path) -> Error {
+    let word = path.to_str().unwrap_or_default();
+    let (message, remedy) = no_case(word, nothing_at(path).into(), "a case file");
+    Error::File { path: path.to_path_buf(), line: None, message, remedy }
+}
+
+/// What is wrong with a `word` that is no case, `nothing` if it is no study either, and what to
+/// give: `file`, or a name.
+pub(super) fn no_case(word: &str, nothing: String, file: &str) -> (String, String) {
     let names = BUILTIN_CASES.map(|(name, _)| name);
     // A path is not meant for a name.
-    let word = path.to_str().filter(|word| !word.contains(['/', '.'])).unwrap_or_default();
+    let word = if word.contains(['/', '.']) { "" } else { word };
     let is_study = BUILTIN_STUDIES.iter().any(|(name, _)| *name == word);
     let meant = match word {
         "-" => "for a case from standard input give /dev/stdin, or ".to_string(),
         _ if is_study => format!("run `edgeline study {word}`, or "),
         _ => did_you_mean(word, &names),
     };
-    Error::File {
-        path: path.to_path_buf(),
-        line: None,
-        message: if is_study { "is a study, not a case" } else { nothing_at(path) }.into(),
-        remedy: format!("{meant}give a case file, or a built-in case: {}", names.join(", ")),
-    }
+    let message = if is_study { "is a study, not a case".into() } else { nothing };
+    (message, format!("{meant}give {file}, or a built-in case: {}", names.join(", ")))
 }
 
 /// What there is at a `path` without a file.

@@ -50,6 +50,6 @@ pub use {
     design_file::{Design, DesignLoad, Parameter},
     factor::FactorKey,
     schema::case_schema,
-    study_file::{DEFAULT_STUDY, Study, Varied, find_case},
+    study_file::{DEFAULT_STUDY, Study, Varied, find_case, find_draft},
     sweep::Sweep,
 };

@@ -1,6 +1,6 @@
 //! The study file: a factorial design around one pair of bodies, and further cases, or these alone.
 
-use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given, nothing_at};
+use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given, no_case, nothing_at};
 use super::case_file::{entries, keys_of, name, only_tables, read_order, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, did_you_mean, read_text};
@@ -85,7 +85,7 @@ impl Study {
         let name = path.to_str().unwrap_or_default();
         Study::all_built_in().find(|study| study.name == name).ok_or_else(|| {
             let names = BUILTIN_STUDIES.map(|(name, _)| name);
-            let is_case = builtin_case(name).is_some() || case_of_study(name).is_some();
+            let is_case = named_case(name).is_some();
             let meant = match is_case {
                 true => format!("run `edgeline solve {name}`, or "),
                 false => did_you_mean(name, &names),
@@ -217,10 +217,29 @@ impl Study {
 /// # Errors
 /// As [`Case::find`].
 pub fn find_case(path: &Path) -> Result<Case> {
-    Case::find(path).or_else(|error| match path.to_str().and_then(case_of_study) {
-        Some(case) if !is_given(path) => Ok(case),
+    or_of_study(path, Case::find(path), |case| case)
+}
+
+/// [`find_case`] in the form of its file; a case of a study has W, S_l and L_r.
+///
+/// # Errors
+/// As [`Case::find`].
+pub fn find_draft(path: &Path) -> Result<Draft> {
+    or_of_study(path, Draft::find(path), |case| Draft::of(&case, Form::Factors))
+}
+
+/// What is `found` at `path`, or what becomes of the case of a study that has this name.
+fn or_of_study<T>(path: &Path, found: Result<T>, of: impl FnOnce(Case) -> T) -> Result<T> {
+    found.or_else(|error| match path.to_str().and_then(case_of_study) {
+        Some(case) if !is_given(path) => Ok(of(case)),
         _ => Err(error),
     })
+}
+
+/// The built-in case called `name`, also one of a study.
+fn named_case(name: &str) -> Option<Result<Case>> {
+    // In this order: built-in studies list built-in cases, and are read to find theirs.
+    builtin_case(name).or_else(|| case_of_study(name).map(Ok))
 }
 
 /// The case called `name` of a built-in study, see [`find_case`].
@@ -480,8 +499,8 @@ fn design_case(
     Ok(case)
 }
 
-/// A case that a file lists by its own file or by built-in name; the file is that of `what`, a
-/// study for example.
+/// A case that a file lists by its own file or by a name that [`find_case`] takes; the file is that
+/// of `what`, a study for example.
 pub(super) fn listed_case(entry: &Entry, folder: &Path, what: &str) -> Result<Case> {
     let listed = entry.string()?;
     let path: PathBuf = folder.join(listed);
@@ -493,8 +512,10 @@ pub(super) fn listed_case(entry: &Entry, folder: &Path, what: &str) -> Result<Ca
         }
         return Ok(case);
     }
-    builtin_case(listed).unwrap_or_else(|| {
-        let reason = format!("there is no file {}", path.display());
-        Err(entry.refuse(reason, format!("paths are relative to the file of the {what}")))
+    named_case(listed).unwrap_or_else(|| {
+        let nothing = format!("there is no file {}", path.display());
+        let file = format!("a case file by its path from the file of the {what}");
+        let (reason, remedy) = no_case(listed, nothing, &file);
+        Err(entry.refuse(reason, remedy))
     })
 }

@@ -5,7 +5,7 @@ use super::progress::progress_bar;
 use super::values::{checked_tolerance, count, edge_model};
 use crate::base::Result;
 use crate::body::EdgeModel;
-use crate::case::{Draft, Sweep};
+use crate::case::{Sweep, find_draft};
 use crate::host::prepare_folder;
 use crate::report::sweep::{Label, SweepFile};
 use crate::report::sweep_target::Target;
@@ -33,7 +33,8 @@ pub(super) struct Arguments {
     /// kept
     #[arg(long, value_name = "FILE", default_value = "sweep.csv", value_hint = ValueHint::FilePath)]
     out: PathBuf,
-    /// A case file or built-in case for the values that a table has no column for
+    /// A case file, or the name of a case that `edgeline cases` lists, for the values that a table
+    /// has no column for
     #[arg(long, value_name = "CASE", value_hint = ValueHint::FilePath)]
     base: Option<PathBuf>,
     /// How the free ends of the bodies are modelled
@@ -55,7 +56,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let began = Instant::now();
-    let base = arguments.base.as_deref().map(Draft::find).transpose()?;
+    let base = arguments.base.as_deref().map(find_draft).transpose()?;
     let sweep = Sweep::read(&arguments.file, base.as_ref())?;
     let settings = Settings {
         method: arguments.method,

@@ -92,6 +92,13 @@ fn what_is_built_in_is_listed_printed_and_found() {
     };
     assert_eq!(solve("own.toml"), solve("profiled/centre"));
     assert_ne!(solve("centre"), solve("profiled/centre"));
+    // It is a base of sweeps, too.
+    std::fs::write(path.join("t.csv"), "W\n1e-3\n").unwrap();
+    let sweep = ["sweep", "t.csv", "--tolerance", "0.1", "--method", "half-space", "--base"];
+    for base in ["own.toml", "profiled/centre"] {
+        succeeded(&mut edgeline(path, &[&sweep[..], &[base]].concat()));
+    }
+    assert!(refused(path, &[&sweep[..], &["zzz"]].concat()).contains("a built-in case: crown-"));
     for (arguments, wanted) in [
         (["study", "flush-short"], "is a case, not a study; run `edgeline solve flush-short`"),
         (["study", "w1e-3_sl5_lr1"], "is a case, not a study"),

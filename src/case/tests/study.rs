@@ -74,6 +74,33 @@ fn profiled_is_half_of_five_factors_and_a_centre() {
     assert!(Study::find(Path::new("nowhere")).unwrap_err().to_string().contains("profiled"));
 }
 
+#[test]
+fn cases_of_built_in_studies_are_found_wherever_a_case_is() {
+    let wanted = find_case(Path::new("w1e-3_sl5_lr1")).unwrap();
+    let listed = study(&["name = \"s\"\ncases = [\"w1e-3_sl5_lr1\", \"profiled/centre\"]\n"]);
+    assert_eq!(listed.extra[0], wanted);
+    assert_eq!(listed.extra[1], find_case(Path::new("profiled/centre")).unwrap());
+    let design = "case = \"w1e-3_sl5_lr1\"\n[profile]\nkind = \"crown\"\n[bounds]\n\
+                  radius_m = [0.5, 5.0]\n[[loads]]\nforce_n = 1e3\n";
+    let parse_design = |text: &str| Design::parse(text, Path::new("d.toml"));
+    assert_eq!(parse_design(design).unwrap().case, wanted);
+    let base = find_draft(Path::new("w1e-3_sl5_lr1")).unwrap();
+    assert_eq!(base.form(), Form::Factors);
+    assert!(base.case().unwrap().is_same_problem(&wanted));
+    // Names that are none get the list of those that are some.
+    for (name, wanted) in [
+        ("flush-shrt", "did you mean flush-short?"),
+        ("scenes", "is a study, not a case"),
+        ("scenes/zzz", "or a built-in case: crown-inside"),
+    ] {
+        let listed = format!("name = \"s\"\ncases = [\"{name}\"]\n");
+        let design = design.replace("w1e-3_sl5_lr1", name);
+        for error in [parse_study(&listed).unwrap_err(), parse_design(&design).unwrap_err()] {
+            assert!(error.to_string().contains(wanted), "{error}");
+        }
+    }
+}
+
 /// The rest of a study in which the number at `path` can be a factor.
 fn rest_for(key: &Key) -> String {
     let (table, leaf) = (key.table(), key.leaf());
