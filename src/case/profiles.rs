@@ -12,7 +12,7 @@ const SHORT: f64 = 2.5;
 /// Johns and Gohar's factor of the Hertz half-width.
 const JOHNS_GOHAR: f64 = 0.3033;
 
-/// Most of the diameter that a profile may drop at the body's end.
+/// Most of the roller's radius that a profile may drop by.
 const DEEPEST: f64 = 0.5;
 
 impl Case {
@@ -147,12 +147,22 @@ impl Case {
         }
         let profile = self.profile(body).expect("the body has one");
         // What has no limit at the end is judged just before it.
-        let deepest = [from, to].map(|y| profile.drop(0.999 * y)).into_iter().fold(0.0, f64::max);
+        let ends = [from, to].map(|y| 0.999 * y);
+        let inner = profile.points().iter().copied().filter(|y| *y > from && *y < to);
+        let drops = inner.chain(ends).map(|y| (y, profile.drop(y)));
+        let highest = drops.clone().map(|(_, drop)| drop).fold(0.0, f64::min);
+        let (place, lowest) =
+            drops.max_by(|a, b| a.1.total_cmp(&b.1)).expect("a profile has two ends");
+        let deepest = lowest - highest;
         if deepest >= DEEPEST * self.roller.radius_m {
+            let place = match ends.contains(&place) {
+                true => "the body's end".to_string(),
+                false => format!("y = {} m", stated(place)),
+            };
             let (radius, value) = (stated(self.roller.radius_m), format!("{kind:?}"));
             let reason = match deepest.is_finite() {
                 true => format!(
-                    "the profile drops by {} m at the body's end, which no small slope allows \
+                    "the profile drops by {} m at {place}, which no small slope allows \
                      (the roller's radius is {radius} m)",
                     significant(deepest, 4)
                 ),

@@ -212,6 +212,32 @@ fn a_drop_of_both_bodies_together_is_not_given_twice() {
     }
 }
 
+#[test]
+fn a_table_drops_nowhere_by_half_of_the_radius() {
+    // The radius is 10 mm and the roller 20 mm long; points beyond its ends do not count.
+    let of = |drops: [f64; 5]| {
+        let mut case = parse(LOADED).unwrap();
+        let y = [-15e-3, -10e-3, 2e-3, 10e-3, 15e-3];
+        let table = crate::base::profile::Table::new(y.to_vec(), drops.to_vec());
+        let mut spec = ProfileSpec::new(ProfileKind::Table);
+        spec.table = Some(std::sync::Arc::new(table));
+        case.roller.profile = Some(spec);
+        case.check().map_err(|e| e.to_string())
+    };
+    of([1.0, 0.0, 4.9e-3, 0.0, 1.0]).unwrap();
+    of([1.0, 2.4e-3, -2.4e-3, 2.4e-3, 1.0]).unwrap();
+    for (drops, wanted) in [
+        ([0.0, 0.0, 1.0, 0.0, 0.0], "drops by 1 m at y = 0.002 m, which no small slope allows"),
+        ([0.0, 0.0, 5e-3, 0.0, 0.0], "drops by 0.005 m at y = 0.002 m"),
+        ([0.0, 0.0, -1.0, 0.0, 0.0], "m at the body's end"),
+        ([0.0, 0.0, 0.0, 1.0, 1.0], "m at the body's end"),
+        ([1.0; 5], "drops by 1 m at the body's end"),
+    ] {
+        let said = of(drops).unwrap_err();
+        assert!(said.contains("roller.profile.kind") && said.contains(wanted), "{drops:?}: {said}");
+    }
+}
+
 /// Beyond the force whose Hertz half-width b is a / 0.3033 the profile would be a straight line.
 #[test]
 fn a_force_under_which_johns_and_gohars_profile_does_not_drop_is_refused() {
