@@ -95,6 +95,28 @@ fn own_curves_stand_beside_the_references() {
     assert!(fs::read_to_string(at("o/report.html")).unwrap() == page, "rebuilt, it is the same");
 }
 
+/// Names of files and curves may be longer than those of files are.
+#[test]
+fn curves_of_any_name_have_plots() {
+    let folder = bench();
+    let at = |name: &str| folder.path().join(name);
+    study_file(folder.path(), "[5.0]");
+    let (name, curve) = ("n".repeat(300), "ü/".repeat(200));
+    let line = |end: &str| format!("{curve}{end},0,0,1e9\n{curve}{end},0,1e-4,1e9\n");
+    let text = format!("# name: {name}\ncurve,x_m,y_m,p_pa\n{}{}", line("a"), line("b"));
+    fs::write(at("long.csv"), text).unwrap();
+    let curves = format!("--curves={CASE}=long.csv");
+    let study = ["study", "small.toml", &curves, "--methods=quarter-space", "--repeats=0"];
+    for (arguments, out) in [(&study[..], "s"), (&["compare", "case.toml", "long.csv"][..], "c")] {
+        let done =
+            edgeline(folder.path(), &[arguments, &["--out", out]].concat()).output().unwrap();
+        assert!(done.status.code() != Some(2), "{}", said(&done));
+        assert!(at(out).join("summary.json").is_file(), "{out}");
+    }
+    let of = |out: &str, part: &str| files(&at(out)).iter().filter(|p| p.contains(part)).count();
+    assert_eq!([of("c/plots", "nnn"), of("s/plots", "-brought-")], [2, 2]);
+}
+
 #[test]
 fn curves_that_cannot_be_used_are_refused_before_the_study_runs() {
     let folder = bench();

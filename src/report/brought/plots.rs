@@ -7,11 +7,14 @@ use crate::stress::{Curves, PressureLine, Quantity, StressCurve, Variable, away_
 use crate::study::Source;
 use crate::study::errors::POINTS;
 
-/// A name of letters, digits, dots and hyphens alone.
+/// Letters of a plot's name; file systems take 255 bytes.
+const LONGEST: usize = 160;
+
+/// A name of letters, digits, dots, underscores and hyphens alone, without the end of a long one:
+/// what tells names apart has to stand in front.
 pub fn plain(name: &str) -> String {
-    name.chars()
-        .map(|c| if c.is_ascii_alphanumeric() || ".-_".contains(c) { c } else { '-' })
-        .collect()
+    let one = |c: char| if c.is_ascii_alphanumeric() || ".-_".contains(c) { c } else { '-' };
+    name.chars().take(LONGEST).map(one).collect()
 }
 
 /// A stress (p0) that is none.
