@@ -211,6 +211,11 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
     for (text, wanted) in [
         (format!("{head}block,0,0,abc,-1\n"), ":3: column 4 (z_m): 'abc' is not a finite number"),
         (format!("{head}block,0,0,0,inf\n"), ":3: column 5 (S11 [MPa]): 'inf'"),
+        (
+            format!("{head}block,0,0,0,1e300\n"),
+            ":3: column 5 (S11 [MPa]): '1e300' is more than 1e14 Pa",
+        ),
+        ("x_m,y_m,p_pa\n0,0,-2e14\n".into(), ":2: column 3 (p_pa): '-2e14' is more than 1e14 Pa"),
         (format!("{head}ball,0,0,0,-1\n"), ":3: column 1 (body): 'ball' is neither"),
         (format!("{head}block,0,0,0\n"), ":3"),
         (format!("{head}block,0,1,0,-1\n"), ":3: in our axes y = 1 m is outside the block"),

@@ -31,6 +31,10 @@ const NEAR: f64 = 2.0;
 /// Depths below this (C) are those of the surface.
 const SURFACE: f64 = 1e-6;
 
+/// Stresses beyond the stiffest modulus that a case takes (Pa) are marks of missing values, or in
+/// another unit.
+const MOST_PA: f64 = 1e14;
+
 /// The curves of a file, in C and p0 and in our axes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BroughtFile {
@@ -347,12 +351,19 @@ impl<'a> Table<'a> {
                 ),
                 _ => Err(at(column, format!("'{text}' is not a finite number"))),
             };
+            let stress_pa = || match number()? {
+                value if value.abs() <= MOST_PA => Ok(value),
+                _ => {
+                    let message = format!("'{text}' is more than {MOST_PA:e} Pa: check the unit");
+                    Err(at(column, message))
+                }
+            };
             match column.meaning {
                 Meaning::Place(axis) => place[axis] = number()?,
                 Meaning::Width(axis) if axis == self.axes.0[0].0 => width = number()?.abs(),
                 Meaning::Width(_) => {}
-                Meaning::Stress(i) => stress[i] = number()?,
-                Meaning::Pressure => p = number()?,
+                Meaning::Stress(i) => stress[i] = stress_pa()?,
+                Meaning::Pressure => p = stress_pa()?,
                 Meaning::Mesh => mesh = Some(number()?),
                 Meaning::Curve if text.is_empty() => {}
                 Meaning::Curve => curve = text.to_string(),
