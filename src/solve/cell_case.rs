@@ -333,7 +333,8 @@ pub struct LoadStep {
     pub p_max_pa: f64,
 }
 
-/// Solves the contact of `case` on cells under each of `forces` (N) in place of its own.
+/// Solves the contact of `case` on cells under each of `forces` (N) in place of its own, each as if
+/// it were the only one.
 ///
 /// # Errors
 /// As [`solve_on_cells`].
@@ -347,10 +348,13 @@ pub fn loads_on_cells(
     check_cells(case, options.method, cells)?;
     let scene = Scene::new(case, options.method, options.psi);
     let region = Region::new(case, &scene, cells);
-    let mut contact = CellContact::new(case, &scene, region.first()?, cells.tolerance, progress);
+    let first = region.first()?;
+    let mut contact = CellContact::new(case, &scene, first, cells.tolerance, progress);
     let HertzScales { c_m, p0_pa, .. } = case.hertz();
     let unit_m = case.gap_unit_m();
     let step = |&force_n: &f64| {
+        // Another force may have widened the region, and so its cells.
+        contact.problem.grid = first;
         contact.problem.load = scene.load * force_n / case.load.force_n;
         let (pressure, motion) = covering(&mut contact, &region)?;
         Ok(LoadStep {

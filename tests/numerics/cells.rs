@@ -10,7 +10,7 @@ use edgeline::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughG
 use edgeline::contact::{Gap, Straight};
 use edgeline::solve::{
     CellOptions, Options, PEAK_CURVE, Point, Scene, SolvedCase, SolvedScene, layers_on_cells,
-    solve, solve_on_cells, stress_on_cells,
+    loads_on_cells, solve, solve_on_cells, stress_on_cells,
 };
 use edgeline::stress::{BodyKind, away_from_edge, away_from_edges};
 use std::f64::consts::PI;
@@ -566,6 +566,21 @@ fn a_bump_beyond_the_smooth_contact_carries_load() {
         near("raised, pressure", other.p_max_pa / wide.p_max_pa, 1.0, 1e-8);
         near("raised, approach", (wide.approach_m - other.approach_m) / by_m, 1.0, 1e-9);
     }
+}
+
+/// The largest force takes a wider region of cells than the others.
+#[test]
+fn what_a_force_does_on_cells_does_not_depend_on_others_before_it() {
+    let case = builtin_case("half-short").unwrap().unwrap();
+    let options = Options::new(EdgeModel::HalfSpace);
+    let cells = CellOptions { counts: Some([32, 32]), ..CellOptions::default() };
+    let solve = |parts: &[f64]| {
+        let forces: Vec<f64> = parts.iter().map(|part| part * case.load.force_n).collect();
+        loads_on_cells(&case, &options, &cells, &forces, &|_, _| {}).unwrap()
+    };
+    let steps = solve(&[0.5, 4.0, 0.5]);
+    assert_eq!(steps[0], steps[2]);
+    assert_eq!(steps[1..], solve(&[4.0, 0.5]));
 }
 
 /// Pressures, tilt and stresses of a case by free ends, which sum the cells of a rough case by
