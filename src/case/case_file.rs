@@ -2,7 +2,7 @@
 
 use super::document::{Document, Entry, Table, did_you_mean, read_text};
 use super::draft::{Draft, Form};
-use super::keys::{KEYS, Key, only_keys};
+use super::keys::{FLAGS, KEYS, Key, only_keys};
 use super::model::Case;
 use super::profile::{ProfileKind, ProfileSpec};
 use super::profile_table::read_profile_table;
@@ -86,7 +86,7 @@ impl Draft {
         let mut draft = Draft::new(name(&root)?, form);
         read_profiles(&root, path, &mut draft)?;
         read_surface(&root, path, &mut draft)?;
-        read_order(&root, &mut draft)?;
+        read_flags(&root, &mut draft)?;
         for (key, entry) in entries(&root, &keys_of(form))? {
             key.set(&mut draft, entry.number()?);
         }
@@ -183,10 +183,12 @@ fn check_one_of_several(table: &Table, keys: &[&'static Key]) -> Result<()> {
     }
 }
 
-/// Takes the order in C / R to which bodies are round.
-pub(super) fn read_order(root: &Table, draft: &mut Draft) -> Result<()> {
-    if let Some(entry) = root.find("accuracy.first_order") {
-        draft.case.accuracy.first_order = entry.flag()?;
+/// Takes what is on or off.
+pub(super) fn read_flags(root: &Table, draft: &mut Draft) -> Result<()> {
+    for flag in &FLAGS {
+        if let Some(entry) = root.find(flag.path) {
+            flag.set(&mut draft.case, entry.flag()?);
+        }
     }
     Ok(())
 }

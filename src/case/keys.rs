@@ -1,9 +1,9 @@
-//! The numbers of a case: their names in files, their meaning and their legal ranges. All readers,
-//! checks and tables of parameters use this list.
+//! The numbers and the flags of a case: their names in files, their meaning and legal ranges. All
+//! readers, checks and tables of parameters use these lists.
 
 use super::document::Table;
 use super::draft::{Draft, Form};
-use super::model::{Cells, Factors};
+use super::model::{Case, Cells, Factors};
 use crate::base::number::stated;
 use crate::base::{Error, Result};
 
@@ -50,25 +50,71 @@ pub struct Key {
     set: fn(&mut Draft, f64),
 }
 
-/// What a table of a case file has besides its numbers: texts, and tables below it.
+/// What is on or off in a case; off where a file does not have it.
+#[derive(Debug)]
+pub struct Flag {
+    /// Its place in a case file.
+    pub path: &'static str,
+    /// What is taken in if it is on, in words.
+    pub what: &'static str,
+    get: fn(&Case) -> bool,
+    set: fn(&mut Case, bool),
+}
+
+/// All flags of a case.
+pub static FLAGS: [Flag; 1] = [Flag {
+    path: "accuracy.first_order",
+    what: "what round surfaces and free ends make of each other, to first order in C / R",
+    get: |case| case.accuracy.first_order,
+    set: |case, on| case.accuracy.first_order = on,
+}];
+
+impl Flag {
+    /// Its table.
+    pub fn table(&self) -> &'static str {
+        split(self.path).0
+    }
+
+    /// Its name within the table.
+    pub fn leaf(&self) -> &'static str {
+        split(self.path).1
+    }
+
+    /// Whether it is on.
+    pub fn get(&self, case: &Case) -> bool {
+        (self.get)(case)
+    }
+
+    /// Turns it on or off.
+    pub fn set(&self, case: &mut Case, on: bool) {
+        (self.set)(case, on);
+    }
+}
+
+/// The table and the name within it of a path.
+fn split(path: &'static str) -> (&'static str, &'static str) {
+    path.rsplit_once('.').expect("a path has two parts")
+}
+
+/// What a table of a case file has besides its numbers and flags: texts, and tables below it.
 fn others_of(table: &str) -> &'static [&'static str] {
     match table {
         "roller" | "block" => &["profile"],
         "roller.profile" | "block.profile" => &["kind", "file"],
         "surface" => &["heights", "detrend"],
-        "accuracy" => &["first_order"],
         _ => &[],
     }
 }
 
-/// Refuses a key of the table `name` that is neither among `keys` nor one of its words.
+/// Refuses a key of the table `name` that is neither among `keys` nor one of its flags or words.
 pub(super) fn only_keys(
     table: &Table,
     name: &str,
     keys: impl Iterator<Item = &'static Key>,
 ) -> Result<()> {
     let same = keys.filter(|key| key.table() == name).map(|key| key.leaf());
-    let known: Vec<&str> = same.chain(others_of(name).iter().copied()).collect();
+    let flags = FLAGS.iter().filter(|flag| flag.table() == name).map(Flag::leaf);
+    let known: Vec<&str> = same.chain(flags).chain(others_of(name).iter().copied()).collect();
     table.only(&known)
 }
 
@@ -86,12 +132,12 @@ impl Key {
 
     /// Its table.
     pub fn table(&self) -> &'static str {
-        self.path.rsplit_once('.').expect("a path has two parts").0
+        split(self.path).0
     }
 
     /// Its name within the table.
     pub fn leaf(&self) -> &'static str {
-        self.path.rsplit_once('.').expect("a path has two parts").1
+        split(self.path).1
     }
 
     /// Whether a case with the load and the lengths in this form may contain it.

@@ -38,7 +38,7 @@ pub mod two_level;
 
 pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case};
 pub use draft::{Draft, Form};
-pub use keys::{KEYS, Key, Presence};
+pub use keys::{FLAGS, Flag, KEYS, Key, Presence};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
 pub use objective::Objective;
 pub use profile::{ProfileKind, ProfileSpec};

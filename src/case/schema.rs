@@ -2,7 +2,7 @@
 
 use super::check::MAX_NAME;
 use super::draft::Form;
-use super::keys::{KEYS, Key, Presence};
+use super::keys::{FLAGS, KEYS, Key, Presence};
 use super::profile::ProfileKind;
 use crate::base::BodyKind;
 use crate::cells::Detrend;
@@ -34,10 +34,12 @@ pub fn case_schema() -> Value {
         push(&mut profile["required"], "kind");
         tables[body]["properties"]["profile"] = profile;
     }
-    tables["accuracy"]["properties"]["first_order"] = json!({
-        "description": "Whether what round surfaces and free ends make of each other is taken in, to first order in C / R; false by default.",
-        "type": "boolean",
-    });
+    for flag in &FLAGS {
+        tables[flag.table()]["properties"][flag.leaf()] = json!({
+            "description": format!("Whether to take in {}; false by default.", flag.what),
+            "type": "boolean",
+        });
+    }
     let surface = &mut tables["surface"];
     surface["properties"]["heights"] = json!({
         "description": "The file of the heights, .npy, .csv or .x3p, beside the case file. The first two need dx_m and dy_m.",

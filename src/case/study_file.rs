@@ -1,7 +1,7 @@
 //! The study file: a factorial design around one pair of bodies, and further cases, or these alone.
 
 use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given, no_case, nothing_at};
-use super::case_file::{entries, keys_of, name, only_tables, read_order, read_profiles};
+use super::case_file::{entries, keys_of, name, only_tables, read_flags, read_profiles};
 use super::check::{MAX_NAME, check_name};
 use super::document::{Document, Entry, Table, did_you_mean, read_text};
 use super::draft::{Draft, Form};
@@ -298,7 +298,7 @@ fn read_base(root: &Table, path: &Path, table: &Table, factors: &[Factor]) -> Re
     let form = form(root, factors)?;
     let mut draft = Draft::new("base", form);
     read_profiles(root, path, &mut draft)?;
-    read_order(root, &mut draft)?;
+    read_flags(root, &mut draft)?;
     let mut varied: Vec<&'static Key> = Vec::new();
     for (factor, entry) in factors {
         let key = entry.placed(factor.key(&draft))?;

@@ -1,6 +1,6 @@
 //! The sweep file in TOML: a case file in which every number may also be a list or a range.
 
-use super::case_file::{entries, form, keys_of, only_tables, read_order, read_profiles};
+use super::case_file::{entries, form, keys_of, only_tables, read_flags, read_profiles};
 use super::check::ON_CELLS;
 use super::document::{Document, Entry, Table, read_text};
 use super::draft::Draft;
@@ -46,7 +46,7 @@ impl Sweep {
         let (form, _) = form(&root)?;
         let mut base = Draft::new("", form);
         read_profiles(&root, path, &mut base)?;
-        read_order(&root, &mut base)?;
+        read_flags(&root, &mut base)?;
         let mut varying: Vec<Varying> = Vec::new();
         for (key, entry) in entries(&root, &keys_of(form))? {
             match levels(&entry)? {

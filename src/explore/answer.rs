@@ -3,7 +3,7 @@
 use crate::base::stop::go_on;
 use crate::base::{BodyKind, PerBody, Result};
 use crate::body::EdgeModel;
-use crate::case::{Case, Draft, Form, KEYS};
+use crate::case::{Case, Draft, FLAGS, Form, KEYS};
 use crate::solve::{Options, Scene, Solution, SolvedCase, Summary};
 use crate::stress::{Quantity, StressCurve};
 use serde::Serialize;
@@ -39,6 +39,8 @@ struct CaseAnswer {
     /// Numbers by the paths of their keys, in both ways to give the load and the lengths.
     load: BTreeMap<&'static str, Option<f64>>,
     factors: BTreeMap<&'static str, Option<f64>>,
+    /// What is on or off, by path.
+    flags: BTreeMap<&'static str, bool>,
     profiles: PerBody<Option<ProfileAnswer>>,
     /// The bodies' ends along y (m).
     ends_m: PerBody<[f64; 2]>,
@@ -151,6 +153,7 @@ fn case_answer(case: &Case) -> CaseAnswer {
         name: case.name.clone(),
         load: values(Form::Load),
         factors: values(Form::Factors),
+        flags: FLAGS.iter().map(|flag| (flag.path, flag.get(case))).collect(),
         profiles: PerBody { block: profile(BodyKind::Block), roller: profile(BodyKind::Roller) },
         ends_m: PerBody { block: per_body(BodyKind::Block), roller: per_body(BodyKind::Roller) },
         symmetric: Scene::new(case, EdgeModel::HalfSpace, None).is_symmetric(),

@@ -1,12 +1,12 @@
 //! What the page needs to make its fields: every key of a case with its meaning and range, the
-//! profiles, the models and the built-in cases. A key that is added to a case has its field without
-//! a further word here.
+//! flags, the profiles, the models and the built-in cases. A key or a flag that is added to a case
+//! has its field without a further word here.
 
 use super::answer::described;
 use super::files::FILES;
 use crate::base::BodyKind;
 use crate::body::EdgeModel;
-use crate::case::{BUILTIN_CASES, Case, Form, KEYS, Key, ProfileKind};
+use crate::case::{BUILTIN_CASES, Case, FLAGS, Flag, Form, KEYS, Key, ProfileKind};
 use crate::stress::curves::CURVE_NAMES;
 use crate::stress::{EDGE, Quantity};
 use serde_json::{Value, json};
@@ -22,6 +22,7 @@ pub fn controls(own: &Case) -> Value {
     json!({
         "version": env!("CARGO_PKG_VERSION"),
         "keys": KEYS.iter().filter(|key| is_shown(key)).map(key).collect::<Vec<_>>(),
+        "flags": FLAGS.iter().map(flag).collect::<Vec<_>>(),
         "profiles": ProfileKind::ALL.map(|kind| json!({ "kind": kind.name(), "keys": kind.keys() })),
         "models": EdgeModel::ALL.map(|model| json!({ "name": model.name(), "misses": misses(model) })),
         "bodies": BodyKind::ALL.map(BodyKind::name),
@@ -58,6 +59,10 @@ fn key(key: &Key) -> Value {
     })
 }
 
+fn flag(flag: &Flag) -> Value {
+    json!({ "path": flag.path, "table": flag.table(), "leaf": flag.leaf(), "what": flag.what })
+}
+
 /// The range of a key's slider, and its scale: logarithmic where the legal range spans decades; of
 /// either sign beyond a gap about zero where values are; and otherwise even, about zero.
 fn slider(key: &Key, example: f64) -> Value {
@@ -85,5 +90,48 @@ fn misses(model: EdgeModel) -> &'static str {
             "weighs the mirrored pressure: the load is right on average, stresses at the end are not"
         }
         EdgeModel::QuarterSpace => "frees both end faces of all traction: the model to use",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::builtin_case;
+    use toml::{Table, Value as Entry};
+
+    /// The keys of a case file that are not tables, by their paths.
+    fn paths(table: &Table, prefix: &str) -> Vec<String> {
+        let below = |(key, entry): (&String, &Entry)| match entry {
+            Entry::Table(table) => paths(table, &format!("{prefix}{key}.")),
+            _ => vec![format!("{prefix}{key}")],
+        };
+        table.iter().flat_map(below).collect()
+    }
+
+    /// What has no field is neither solved nor downloaded.
+    #[test]
+    fn the_page_has_a_field_for_all_that_a_case_file_has() {
+        let mut cases: Vec<Case> = BUILTIN_CASES
+            .iter()
+            .map(|(name, _)| builtin_case(name).unwrap().unwrap())
+            .filter(|case| case.surface.is_none())
+            .collect();
+        cases[0].accuracy.first_order = true;
+        for case in cases {
+            let page = controls(&case);
+            for path in paths(&case.to_toml().parse().unwrap(), "") {
+                // Words have fields of their own.
+                if path == "name" || path.ends_with(".profile.kind") {
+                    continue;
+                }
+                let has = |list: &str| {
+                    page[list].as_array().unwrap().iter().any(|field| field["path"] == path)
+                };
+                let start = &page["start"];
+                let number = has("keys") && start["load"][&path].is_number();
+                let flag = has("flags") && start["flags"][&path] == true;
+                assert!(number || flag, "{}: {path}", case.name);
+            }
+        }
     }
 }

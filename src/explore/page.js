@@ -12,14 +12,14 @@ const REST = 160; // ms without a move until all models are solved
 const PATIENCE = 120; // ms until a solve in flight is dropped for a newer one
 
 // ---- What is shown.
-let state = null; // { name, form, values, profiles }
+let state = null; // { name, form, values, flags, profiles }
 let revision = 0;
 let answers = {}; // by model: { revision, quick, ms, data }
 let pinned = null; // { name, answer }
 const view = { body: "block", quantity: "sigma_yy", along: "surface-along-y", down: "depth-end", units: "si", hidden: [] };
 
 const stateOf = (described, form) => ({
-  name: described.name, form, values: { ...described[form] },
+  name: described.name, form, values: { ...described[form] }, flags: { ...described.flags },
   profiles: Object.fromEntries(start.bodies.map((b) => [b, described.profiles[b] && { kind: described.profiles[b].kind, file: described.profiles[b].file }])),
 });
 const kindOf = (body) => (state.profiles[body] ? state.profiles[body].kind : "");
@@ -30,13 +30,16 @@ const isShown = (key) => key.forms[state.form] && (!profileBody(key) || keysOfKi
 // The case as tables, in the form of its file.
 function tables() {
   const all = { name: state.name };
-  for (const key of start.keys) {
-    const value = state.values[key.path];
-    if (!isShown(key) || value === null || value === undefined) continue;
+  const give = (key, value) => {
     let table = all;
     for (const name of key.table.split(".")) table = table[name] ??= {};
     table[key.leaf] = value;
+  };
+  for (const key of start.keys) {
+    const value = state.values[key.path];
+    if (isShown(key) && value !== null && value !== undefined) give(key, value);
   }
+  for (const flag of start.flags) if (state.flags[flag.path]) give(flag, true);
   for (const body of start.bodies) {
     const profile = state.profiles[body];
     if (!profile) continue;
@@ -157,6 +160,18 @@ function makeField(key) {
   return box;
 }
 
+// What is on or off.
+function makeFlag(flag) {
+  const box = document.createElement("div");
+  box.className = "field";
+  box.innerHTML = `<label><input type="checkbox" id="key-${flag.path}" data-key="${flag.path}"></label>`;
+  const input = box.querySelector("input");
+  box.firstChild.append(labelOf(flag));
+  input.addEventListener("change", () => { state.flags[flag.path] = input.checked; changed(false); });
+  fields.set(flag.path, { box, input, show() { input.checked = Boolean(state.flags[flag.path]); } });
+  return box;
+}
+
 function makeProfile(body) {
   const box = document.createElement("div");
   box.className = "field";
@@ -201,6 +216,7 @@ function makeFields() {
     if (profileBody(key) && !fields.has(`${name}.profile`)) group.append(makeProfile(name));
     group.append(makeField(key));
   }
+  for (const flag of start.flags) groups.get(flag.table).append(makeFlag(flag));
   byId("groups").append(...groups.values());
 }
 
@@ -529,9 +545,9 @@ function legend() {
 
 // ---- The link carries the state.
 function remember() {
-  const { name, form, values, profiles } = state;
+  const { name, form, values, flags, profiles } = state;
   const given = Object.fromEntries(start.keys.filter((k) => isShown(k) && values[k.path] !== null && values[k.path] !== undefined).map((k) => [k.path, values[k.path]]));
-  history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify({ name, form, values: given, profiles, view }))}`);
+  history.replaceState(null, "", `#${encodeURIComponent(JSON.stringify({ name, form, values: given, flags, profiles, view }))}`);
 }
 function recall() {
   try {
@@ -539,7 +555,8 @@ function recall() {
     if (!["load", "factors"].includes(found.form)) return false;
     const profiles = Object.fromEntries(start.bodies.map((b) => [b, (found.profiles || {})[b] || null]));
     const values = Object.fromEntries(start.keys.map((k) => [k.path, typeof found.values[k.path] === "number" ? found.values[k.path] : null]));
-    state = { name: String(found.name), form: found.form, values, profiles };
+    const flags = Object.fromEntries(start.flags.map((f) => [f.path, (found.flags || {})[f.path] === true]));
+    state = { name: String(found.name), form: found.form, values, flags, profiles };
     for (const [name, value] of Object.entries(found.view || {})) if (name in view && typeof value === typeof view[name]) view[name] = value;
     view.hidden = (Array.isArray(view.hidden) ? view.hidden : []).filter((m) => MODELS.includes(m) && m !== MAIN);
     return true;

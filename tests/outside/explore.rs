@@ -148,6 +148,13 @@ fn every_field_changes_its_key_and_values_are_those_of_solve() {
     it.page.eval("document.querySelector('#form input[value=load]').click()");
     it.rest();
 
+    // What is on or off.
+    let plain = it.shown("p-centre");
+    it.tick("accuracy.first_order");
+    assert_eq!(it.state()["flags"]["accuracy.first_order"], true);
+    assert_ne!(it.shown("p-centre"), plain);
+    it.same_as_solve("to first order");
+
     // Profiles, raceways, offset and tilt.
     for (kind, key) in [
         ("crown", "radius_m"),
