@@ -69,7 +69,7 @@ const seen = new IntersectionObserver((entries) => {
   for (const { target, isIntersecting } of entries) {
     const { chart } = target;
     chart.visible = isIntersecting;
-    if (isIntersecting && chart.late) chart.show(chart.data);
+    if (isIntersecting && chart.late) chart.paint();
   }
 }, { rootMargin: "100px" });
 
@@ -124,7 +124,13 @@ export class Chart {
     this.data = data;
     this.late = !this.visible;
     set(this.svg, "aria-label", `${data.title}: ${data.yTitle} over ${data.xTitle}`);
-    if (this.late) return;
+    if (!this.late) this.paint();
+  }
+
+  // Draws what is to be shown, in view or not.
+  paint() {
+    const { data } = this;
+    this.late = false;
     if (this.caption.textContent !== data.title) this.caption.textContent = data.title;
     const width = Math.max(260, Math.round(widthOf(this.card) - 24));
     const height = data.height || Math.round(Math.min(250, Math.max(190, width * 0.5)));
@@ -262,7 +268,9 @@ export function drawMap(holder, map, view) {
   const [y0, y1] = [map.y[0] - map.dy[0] / 2, map.y[rows - 1] + map.dy[rows - 1] / 2];
   const reach = map.dx * (Math.max(...map.p.map((row) => row.length)) - 0.5);
   if (canvas.width !== nx || canvas.height !== ny) { canvas.width = nx; canvas.height = ny; }
-  Object.assign(canvas.style, { left: `${box.left}px`, top: `${box.top}px`, width: `${wide}px`, height: `${high}px` });
+  // In shares of the axes, which a printer draws in another size than the screen.
+  const percent = (v, whole) => `${v / whole * 100}%`;
+  Object.assign(canvas.style, { left: percent(box.left, width), top: percent(box.top, height), width: percent(wide, width), height: percent(high, height) });
   const context = canvas.getContext("2d");
   const image = context.createImageData(nx, ny);
   const half = Math.ceil(ny / 2);
@@ -304,7 +312,6 @@ export function drawMap(holder, map, view) {
   for (const [stroke, w] of [["#fff", 4], ["#111", 1.6]]) marks.push(`<path fill="none" stroke="${stroke}" stroke-width="${w}" d="M${mx - 7} ${my}h14M${mx} ${my - 7}v14"/>`);
   if (view.critical) marks.push(`<path class="star" d="${star(px(view.critical[1]), py(view.critical[0]))}"><title>most stressed place</title></path>`);
   set(svg, "viewBox", `0 0 ${width} ${height}`);
-  set(svg, "width", width); set(svg, "height", height);
   set(svg, "aria-label", `Contact pressure over the contact; the cross is its largest value${view.critical ? ", the star the most stressed place" : ""}`);
   layers(svg, parts.join(""), marks.join(""));
   const stretched = (high / (2 * reach)) / (wide / (y1 - y0));
@@ -312,8 +319,9 @@ export function drawMap(holder, map, view) {
     stretched,
     at(clientX, clientY) {
       const rect = svg.getBoundingClientRect();
-      const y = y0 + (clientX - rect.left - box.left) / wide * (y1 - y0);
-      const x = reach - (clientY - rect.top - box.top) / high * 2 * reach;
+      const [across, down] = [(clientX - rect.left) / rect.width * width, (clientY - rect.top) / rect.height * height];
+      const y = y0 + (across - box.left) / wide * (y1 - y0);
+      const x = reach - (down - box.top) / high * 2 * reach;
       if (y < y0 || y > y1 || Math.abs(x) > reach) return null;
       let j = 0;
       for (let i = 1; i < rows; i += 1) if (Math.abs(map.y[i] - y) < Math.abs(map.y[j] - y)) j = i;

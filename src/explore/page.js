@@ -650,6 +650,8 @@ function setUp() {
     });
   }
   addEventListener("hashchange", () => { if (recall()) { fillChoices(); showFields(); changed(false); } });
+  // On paper everything is in view.
+  addEventListener("beforeprint", () => { for (const chart of Object.values(charts)) if (chart.late && !chart.card.hidden) chart.paint(); });
   let width = innerWidth;
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; measureAgain(); requestAnimationFrame(draw); } });
   const alive = new EventSource("alive");

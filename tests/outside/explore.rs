@@ -293,6 +293,22 @@ fn charts_read_out_the_curves_of_solve() {
     assert_eq!(it.page.complaints(&origin), Vec::<String>::new());
 }
 
+/// Printed in another width than the screen's, charts that were out of view are those of the newest
+/// state, and the colours lie on their axes.
+fn paper_has_every_chart(it: &mut Explored) {
+    it.page.eval("scrollTo(0, 0)");
+    it.type_in("load.force_n", "1600");
+    let late = "Object.values(document.querySelectorAll('.chart')).filter((c) => c.chart.late && !c.hidden).length";
+    assert_ne!(it.page.eval(late), json!(0), "nothing is out of view");
+    it.page.call("Page.printToPDF", json!({}));
+    assert_eq!(it.page.eval(late), json!(0));
+    let off = "(() => { const m = document.getElementById('map'); m.style.width = '200px'; \
+               const a = m.querySelector('canvas').getBoundingClientRect(); \
+               const b = m.querySelector('svg .frame').getBoundingClientRect(); m.style.width = ''; \
+               return Math.max(...['left', 'right', 'top', 'bottom'].map((k) => Math.abs(a[k] - b[k]))); })()";
+    assert!(it.page.eval(off).as_f64().unwrap() < 2.0, "{}", it.page.eval(off));
+}
+
 /// Resident memory of a process (MB), and the processor time that it has used (ticks).
 fn usage(pid: u32) -> (f64, u64) {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
@@ -354,6 +370,7 @@ fn it_is_readable_at_two_widths_in_two_schemes_and_tells_when_it_has_ended() {
             assert_eq!(it.page.picture(&pictures.join(name)), (width, height));
         }
     }
+    paper_has_every_chart(&mut it);
     // A screenshot of the page does not tell the secret word.
     assert!(!it.page.text("document.documentElement.innerText").contains(&it.explorer.token));
     // Every field and chart has a name for those who do not see it.
