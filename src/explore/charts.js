@@ -344,12 +344,15 @@ export function drawBodies(svg, it) {
   // Room above for words, and for the load's arrow.
   const top = it.arm === null ? 22 : 40;
   const room = height - top - 40;
-  const scale = Math.min((width - 66) / (side + front), room / (2 * r + depth));
+  // The view from the end has room for its words, however small it is beside a long roller.
+  const words = 6.5 * Math.max(...[it.labels.radius, ...it.labels.width].map((text) => text.length));
+  const scale = Math.min((width - 66) / (side + front), (width - 66 - words) / side, room / (2 * r + depth));
+  const slot = Math.max(front * scale, words);
   const ground = top + 2 * r * scale + (room - (2 * r + depth) * scale) / 2;
-  const used = (side + front) * scale;
+  const used = side * scale + slot;
   const start = (width - used - 40) / 2 + 8;
   const sy = (y) => start + (y - y0) * scale;
-  const cx = start + side * scale + 40 + front * scale / 2;
+  const cx = start + side * scale + 40 + slot / 2;
   const f = (v) => v.toFixed(1);
   const parts = [];
   // From the side.

@@ -309,6 +309,18 @@ fn paper_has_every_chart(it: &mut Explored) {
     assert!(it.page.eval(off).as_f64().unwrap() < 2.0, "{}", it.page.eval(off));
 }
 
+/// A roller much longer than thick leaves the view from its end little room.
+fn words_of_the_drawing_are_inside(it: &mut Explored) {
+    let before = it.state()["values"]["roller.length_m"].as_f64().unwrap() * 1e3;
+    it.type_in("roller.length_m", "300");
+    let outside = "(() => { const d = document.getElementById('drawing').getBoundingClientRect(); \
+                   return [...document.querySelectorAll('#drawing text')].filter((t) => { \
+                   const r = t.getBoundingClientRect(); return r.left < d.left || r.right > d.right; \
+                   }).map((t) => t.textContent); })()";
+    assert_eq!(it.page.eval(outside), json!([]));
+    it.type_in("roller.length_m", &before.to_string());
+}
+
 /// Resident memory of a process (MB), and the processor time that it has used (ticks).
 fn usage(pid: u32) -> (f64, u64) {
     let status = std::fs::read_to_string(format!("/proc/{pid}/status")).unwrap();
@@ -371,6 +383,7 @@ fn it_is_readable_at_two_widths_in_two_schemes_and_tells_when_it_has_ended() {
         }
     }
     paper_has_every_chart(&mut it);
+    words_of_the_drawing_are_inside(&mut it);
     // A screenshot of the page does not tell the secret word.
     assert!(!it.page.text("document.documentElement.innerText").contains(&it.explorer.token));
     // Every field and chart has a name for those who do not see it.
