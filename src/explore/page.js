@@ -366,6 +366,15 @@ function series(of, near) {
   return all;
 }
 
+// A contact that is symmetric has curves on one side alone; the choice of the other side is kept
+// until it has them again. Returns the curve to show.
+function curveDown(symmetric) {
+  const select = byId("down");
+  for (const option of select.options) option.hidden = option.disabled = symmetric && option.value.endsWith("-neg");
+  select.value = symmetric ? view.down.replace(/-neg$/, "") : view.down;
+  return select.value;
+}
+
 let charts = null;
 function draw() {
   const main = answers[MAIN];
@@ -383,7 +392,7 @@ function draw() {
   chart("p-across", { title: "Pressure across the contact, in the middle", xTitle: `x (${u.l})`, yTitle: `p (${u.s})`, unit: u.stress * u.p0_pa,
     series: series((d) => ({ x: times(d.pressure["along-x"].at_m, u.length), y: times(d.pressure["along-x"].p_pa, u.stress) })) });
   const critical = data.summary.critical;
-  for (const [place, name, axis] of [["along", view.along, "y"], ["down", view.down, "z"]]) {
+  for (const [place, name, axis] of [["along", view.along, "y"], ["down", curveDown(data.case.symmetric), "z"]]) {
     for (const [which, quantity] of [["stress", view.quantity], ["mises", "von_mises"]]) {
       const of = (d) => {
         const curve = d.curves[view.body][name];

@@ -271,6 +271,16 @@ fn charts_read_out_the_curves_of_solve() {
             it.page.press("ArrowRight");
         }
     }
+    // The other side of a contact that is symmetric has no curves of its own.
+    let offered = "[...document.getElementById('down').options].filter((o) => !o.disabled).length";
+    assert_eq!(it.page.eval(offered), json!(3));
+    it.type_in("pose.offset_m", "0.5");
+    assert_eq!(it.page.eval(offered), json!(5));
+    it.page.choose("down", "depth-end-neg");
+    it.type_in("pose.offset_m", "0");
+    let chosen = "document.getElementById('down').value + ' ' + \
+                 document.querySelectorAll('#chart-stress-down [data-series]').length";
+    assert_eq!(it.page.text(chosen), "depth-end 4");
     // Another unit, another model, a pinned state.
     it.page.choose("units", "c");
     let p0 =
