@@ -88,13 +88,19 @@ const slider = {
   },
   value(key, place) {
     const [low, high] = slider.limits(key);
+    // Rounded down where the limit itself is not legal, as of Poisson's ratio.
+    const rounded = (value, by) => {
+      const step = (count) => Number((count * by).toPrecision(8));
+      const nearest = Math.round(value / by);
+      return step(nearest) > key.range[1] ? step(nearest - 1) : step(nearest);
+    };
     if (key.slider.scale === "log" || key.slider.scale === "signed") {
       const sign = Math.sign(state.values[key.path] || key.example);
-      return Number((sign * low * (high / low) ** place).toPrecision(4));
+      const size = low * (high / low) ** place;
+      return rounded(sign * size, 10 ** (Math.floor(Math.log10(size)) - 3));
     }
     const value = low + place * (high - low);
-    const by = 10 ** Math.floor(Math.log10((high - low) / 500));
-    return Number((Math.round(value / by) * by).toPrecision(8));
+    return rounded(value, 10 ** Math.floor(Math.log10((high - low) / 500)));
   },
 };
 

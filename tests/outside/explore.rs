@@ -148,6 +148,18 @@ fn every_field_changes_its_key_and_values_are_those_of_solve() {
     it.page.eval("document.querySelector('#form input[value=load]').click()");
     it.rest();
 
+    // The right stop of a slider is legal.
+    for (key, stop) in [("roller.poisson", 0.499), ("block.poisson", 0.499)] {
+        it.page.eval(&format!(
+            "document.querySelector('input[type=range][data-key=\"{key}\"]').focus()"
+        ));
+        it.page.press("End");
+        it.rest();
+        assert_eq!(it.state()["values"][key], stop);
+        assert_eq!(it.page.eval("document.getElementById('message').hidden"), json!(true), "{key}");
+        it.type_in(key, "0.3");
+    }
+
     // What is on or off.
     let plain = it.shown("p-centre");
     it.tick("accuracy.first_order");
