@@ -4,14 +4,13 @@
 the one of the other engine with bricks of 20 nodes; it is also written as .vtu.
 """
 
-import json
 import math
 from pathlib import Path
 
 import numpy as np
 
 from .bricks import Bricks
-from .meshing import write_atomically
+from .meshing import read_summary, write_atomically
 from .request import FemError
 from .scene import BODIES, Scene, surface_slope
 
@@ -39,10 +38,7 @@ def check_scene(case):
 def read_bricks(request, folder):
     """The meshes of both bodies in ``folder``, and the content of ``mesh.json``: ``({body: Bricks}, meshed)``."""
     folder, scene = Path(folder), Scene.of(request.case)
-    try:
-        meshed = json.loads((folder / "mesh.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise FemError(f"{folder / 'mesh.json'}: run the mesh stage first ({error})") from error
+    meshed = read_summary(folder)
     support = {"block": request.mesh.block_depth, "roller": scene.radius}
     across = meshed["axes_c"]["x_contact"][-1]
     bodies = {

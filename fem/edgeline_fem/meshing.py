@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from .programs import run_program
-from .request import FemError
+from .request import FemError, read_json
 from .scene import BODIES, Scene
 
 # The roller's quarter disc is three patches that meet at one inner point, as an O-grid. Radii are
@@ -479,3 +479,18 @@ def make_meshes(request, folder):
     summary["cpu_seconds"] = processor_seconds() - before
     write_atomically(folder / "mesh.json", json.dumps(summary, indent=1) + "\n")
     return summary
+
+
+def read_summary(folder):
+    """The content of ``mesh.json`` in ``folder``; :class:`FemError` unless it is that of a mesh stage."""
+    path = Path(folder) / "mesh.json"
+    try:
+        meshed = read_json(path)
+    except FemError as error:
+        raise FemError(f"{path}: run the mesh stage first ({error})") from error
+    known = {"options": dict, "contact_ends_c": list, "axes_c": dict, "bodies": dict, "seconds": dict}
+    whole = isinstance(meshed, dict) and all(isinstance(meshed.get(k), kind) for k, kind in known.items())
+    if not whole or not all(isinstance(meshed["axes_c"].get(name), list) and meshed["axes_c"][name]
+                            for name in ("x_contact", "y_contact", "z_block")):
+        raise FemError(f"{path}: is not what the mesh stage writes; run the mesh stage again")
+    return meshed

@@ -13,7 +13,7 @@ from .contact import (
     ContactGrid, ContactSolution, half_space_compliance, interpolation, solve_contact, with_middles,
 )
 from .elasticity import Body, load_mesh
-from .meshing import processor_seconds, write_atomically
+from .meshing import processor_seconds, read_summary, write_atomically
 from .request import FemError
 from .results import CURVE_HEADER, blas, curve_table, machine_versions, table
 from .sampling import Sampler
@@ -254,10 +254,7 @@ def solve_case(request, folder, comm, log):
     began, used_before = time.perf_counter(), processor_seconds()
     folder = Path(folder)
     case, scales = request.case, request.case.scales()
-    try:
-        meshed = json.loads((folder / "mesh.json").read_text(encoding="utf-8"))
-    except (OSError, ValueError) as error:
-        raise FemError(f"{folder / 'mesh.json'}: run the mesh stage first ({error})") from error
+    meshed = read_summary(folder)
     if comm.rank == 0:
         (folder / "fem.json").unlink(missing_ok=True)
     if (meshed["options"], meshed["contact_ends_c"]) != (dataclasses.asdict(request.mesh), request.tips()):

@@ -257,7 +257,10 @@ def _only(table, known, where):
 
 def _is_finite(value):
     """Whether a value is a finite number."""
-    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    try:
+        return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+    except OverflowError:  # a whole number that no float holds
+        return False
 
 
 def _positive(table, key, where):
@@ -357,6 +360,16 @@ def _case(case, where):
         offset_m=_number(case, "offset_m", where) or 0.0,
         friction=_number(case, "friction", where) or 0.0,
     )
+    if not isinstance(case.get("name", ""), str):
+        raise FemError(f"{where}: 'name' must be a text, not {case['name']!r}")
+    try:
+        scales = dataclasses.astuple(parsed.scales())
+    except (ZeroDivisionError, OverflowError):
+        scales = (0.0,)
+    # Each number may be legal, and what follows from them out of reach of floating point.
+    if not all(_is_finite(scale) and scale > 0.0 for scale in scales):
+        raise FemError(f"{where}: its half-width and pressure are no finite numbers above 0; check force, "
+                       "lengths and moduli and their units")
     if not 0.0 <= parsed.friction <= 1.0:
         raise FemError(f"{where}: 'friction' must lie in [0, 1], not {parsed.friction:g}")
     if parsed.eccentricity_m is not None and parsed.tilt_rad is not None:
@@ -388,7 +401,10 @@ def parse_request(data, where="request"):
         raise FemError(f"{where}: solver: 'linear' must be direct or iterative, not {solver.linear!r}")
 
     curves = []
-    for number, curve in enumerate(data.get("curves", [])):
+    listed = data.get("curves", [])
+    if not isinstance(listed, list):
+        raise FemError(f"{where}: 'curves' must be a list of objects, not {listed!r}")
+    for number, curve in enumerate(listed):
         at = f"{where}: curves[{number}]"
         if not isinstance(curve, dict):
             raise FemError(f"{at}: must be an object")
@@ -426,12 +442,16 @@ def parse_request(data, where="request"):
                    large_displacements=large, **programs)
 
 
-def read_request(path):
-    """The request in the file at ``path``; :class:`FemError` if it cannot be read or used."""
+def read_json(path):
+    """What the JSON file at ``path`` holds; :class:`FemError` if it cannot be read."""
     try:
-        data = json.loads(Path(path).read_text(encoding="utf-8"))
+        return json.loads(Path(path).read_text(encoding="utf-8"))
     except OSError as error:
         raise FemError(f"{path}: cannot be read: {error.strerror}") from error
-    except ValueError as error:
+    except (ValueError, RecursionError) as error:
         raise FemError(f"{path}: is not JSON: {error}") from error
-    return parse_request(data, str(path))
+
+
+def read_request(path):
+    """The request in the file at ``path``; :class:`FemError` if it cannot be read or used."""
+    return parse_request(read_json(path), str(path))

@@ -83,6 +83,12 @@ def change(data, path, value):
         (["curves", 0, "body"], "ball", "'body' must be block or roller"),
         (["curves", 0, "points_m"], [[0.0, 1.0]], "points of 3 finite numbers"),
         (["gmsh"], "", "'gmsh' must be"),
+        (["curves"], 5, "'curves' must be a list of objects, not 5"),
+        (["curves"], None, "'curves' must be a list of objects, not None"),
+        (["case", "name"], 5, "'name' must be a text"),
+        (["case", "force_n"], 10**400, "'force_n' must be a finite number above 0"),
+        (["case", "force_n"], 1e-320, "half-width and pressure are no finite numbers"),
+        (["mesh", "size"], 10**400, "'size' must be a finite number above 0"),
         (["contact_ends_m"], [0.0, "end"], "'contact_ends_m' must be a list of finite numbers"),
     ],
 )
@@ -101,6 +107,10 @@ def test_the_command_line_fails_with_code_2_and_leaves_nothing(tmp_path):
     assert done.stderr.startswith("error: ") and "is not JSON" in done.stderr
     assert not (tmp_path / "out").exists()
 
+    request.write_text("[" * 100_000)
+    done = run_stage("mesh", request, tmp_path / "out")
+    assert done.returncode == 2 and "is not JSON" in done.stderr
+
     data = sound()
     data["gmsh"] = "no-such-gmsh"
     request.write_text(json.dumps(data))
@@ -110,3 +120,7 @@ def test_the_command_line_fails_with_code_2_and_leaves_nothing(tmp_path):
 
     done = run_stage("solve", request, tmp_path / "out")
     assert done.returncode == 2 and "run the mesh stage first" in done.stderr
+    for stage in ("points", "solve"):
+        (tmp_path / "out" / "mesh.json").write_text("{}")
+        done = run_stage(stage, request, tmp_path / "out")
+        assert done.returncode == 2 and "run the mesh stage again" in done.stderr, done.stderr
