@@ -23,7 +23,10 @@ from pathlib import Path
 import numpy as np
 
 from .meshing import write_atomically
-from .request import Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions, read_request
+from .request import (
+    SCHEMA, Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions, read_json,
+    read_request,
+)
 from .standard_points import EDGE_RANGE, away_from_edge, pressure_lines, standard_curves
 
 COMPONENTS = ("sigma_xx", "sigma_yy", "sigma_zz", "sigma_xy", "sigma_xz", "sigma_yz", "von_mises",
@@ -84,7 +87,7 @@ def _rows(path):
             rows = list(csv.reader(file))
     except FileNotFoundError:
         return None, []
-    return rows[0], rows[1:]
+    return (rows[0], rows[1:]) if rows else (None, [])
 
 
 def _merge(path, size, new, merged):
@@ -360,13 +363,56 @@ def _record(case, size, target, log, run, overrides):
     return True
 
 
+def _check_summary(path):
+    """Raise :class:`FemError` unless ``path`` is the fem.json of a run."""
+    summary = read_json(path)
+    known = {"schema": int, "case": str, "hertz": dict, "mesh": dict}
+    for key, kind in known.items():
+        if not isinstance(summary, dict) or not isinstance(summary.get(key), kind):
+            raise FemError(f"{path}: '{key}' is missing or of another kind; run it again")
+    if summary["schema"] != SCHEMA:
+        raise FemError(f"{path}: 'schema' is {summary['schema']}, this program reads {SCHEMA}")
+    try:
+        json.dumps(summary, allow_nan=False)
+    except ValueError as error:
+        raise FemError(f"{path}: holds a number that is not finite; run it again") from error
+
+
+def _check_points(path, asked, names, least):
+    """Raise :class:`FemError` unless ``path`` has the points ``asked``, in order, with finite values.
+
+    ``asked``: the texts that name a curve, and the point. ``names``: how many such texts there are;
+    ``least``: how many values a point has at least.
+    """
+    header, rows = _rows(path)
+    if header is None or len(rows) != len(asked):
+        raise FemError(f"{path}: has {len(rows)} points, the request {len(asked)}; run it again")
+    for line, (row, (name, point)) in enumerate(zip(rows, asked), 2):
+        try:
+            values = [float(value) for value in row[names:]]
+        except ValueError:
+            values = [math.nan]
+        if len(row) != len(header) or len(values) < len(point) + least or not np.isfinite(values).all():
+            raise FemError(f"{path}: line {line} has a value that is no finite number, or another number of "
+                           "values; run it again")
+        # Files have fewer digits than requests.
+        near = np.allclose(values[: len(point)], point, rtol=1e-5, atol=1e-5 * np.abs(point).max())
+        if tuple(row[:names]) != name or not near:
+            raise FemError(f"{path}: line {line} is not the point that the request has there; run it again")
+
+
 def _finished(work):
     """The run in ``work``: folder, request, and case as a record has it; raise if it cannot be kept."""
     path = work / "request.json"
     request = read_request(path)
     if not (work / "fem.json").exists():
         raise FemError(f"{work}: has no fem.json: the run is not finished; run it again")
-    case = json.loads(path.read_text(encoding="utf-8"))["case"]
+    _check_summary(work / "fem.json")
+    curves = [((curve.body, curve.name), point) for curve in request.curves for point in curve.points_m]
+    _check_points(work / "curves.csv", curves, 2, len(COMPONENTS))
+    lines = [((name,), point) for name, points in request.pressure_points_m.items() for point in points]
+    _check_points(work / "pressure.csv", lines, 1, 1)
+    case = read_json(path)["case"]
     for body in ("roller", "block"):
         # A record names a profile as the case does; its points follow from that, but not from a table's file.
         points = case[body].pop("profile_m", None)
@@ -386,6 +432,10 @@ def keep(runs, folder, log, study=None):
     finished or has such a profile, before anything is written, and where it is of another case or code
     than its record.
     """
+    folders = [Path(work).resolve() for work in runs]
+    twice = [work for work, place in zip(runs, folders) if folders.count(place) > 1]
+    if twice:
+        raise FemError(f"{twice[0]}: is given twice; give each run once")
     # All are read before the first is added, so that a run that cannot be kept leaves all records alone.
     for work, request, asked in [_finished(Path(work)) for work in runs]:
         target = Path(folder) / request.case.name
@@ -433,6 +483,6 @@ def _add(case, form, size, data, work, target, made):
     measures = (new, case.contact_half_length() * scales.c_m, scales.c_m, scales.p0_pa)
     data["orders"] = observed_orders(*measures)
     data["errors"] = estimate_errors(*measures)
-    (new / "record.json").write_text(json.dumps(data, indent=1) + "\n", encoding="utf-8")
+    (new / "record.json").write_text(json.dumps(data, indent=1, allow_nan=False) + "\n", encoding="utf-8")
     write_atomically(new / SUMS, checksums(new))
     _commit(target)

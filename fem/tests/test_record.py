@@ -156,6 +156,43 @@ def test_a_table_as_profile_is_not_kept(tmp_path, profile):
     assert not (tmp_path / "kept").exists()
 
 
+def swapped(text):
+    lines = text.splitlines()
+    lines[1], lines[2] = lines[2], lines[1]
+    return "\n".join(lines) + "\n"
+
+
+@pytest.mark.parametrize(
+    "name, change, complaint",
+    [
+        ("curves.csv", lambda text: text.replace("1e9", "nan", 1), "line 2 has a value that is no finite"),
+        ("curves.csv", swapped, "line 2 is not the point that the request has there"),
+        ("curves.csv", lambda text: text[: len(text) // 2], "points, the request"),
+        ("pressure.csv", lambda text: "", "has 0 points"),
+        ("pressure.csv", None, "has 0 points"),
+        ("fem.json", lambda text: "{}", "'schema' is missing"),
+        ("fem.json", lambda text: text.replace("7", "NaN"), "not finite"),
+    ],
+)
+def test_a_damaged_run_leaves_all_records_alone(tmp_path, name, change, complaint):
+    case = steel_case(5e-4, 5.0, 1.0)
+    runs = [finish(made_up_run(tmp_path / f"run-{size:g}", case, size)) for size in (4.0, 3.0)]
+    path = runs[1] / name
+    if change is None:
+        path.unlink()
+    else:
+        path.write_text(change(path.read_text()))
+    with pytest.raises(FemError, match=f"run-3/{name}: .*{complaint}"):
+        keep(runs, tmp_path / "kept", print)
+    assert not (tmp_path / "kept").exists()
+
+
+def test_a_run_is_given_once(tmp_path):
+    run = finish(made_up_run(tmp_path / "run", steel_case(5e-4, 5.0, 1.0), 3.0))
+    with pytest.raises(FemError, match="is given twice"):
+        keep([run, run], tmp_path / "kept", print)
+
+
 def test_a_size_is_what_is_written_of_it(tmp_path):
     case = steel_case(5e-4, 5.0, 1.0)
     unround = 1.4 * 1.4
