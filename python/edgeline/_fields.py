@@ -31,7 +31,8 @@ def dataset(
     from edgeline._solution import COMPONENTS, von_mises
 
     places = {"x": x, "y": y} if z is None else {"x": x, "y": y, "z": z}
-    axes = {name: np.atleast_1d(np.asarray(v, dtype=np.float64)) for name, v in places.items()}
+    # The native grid takes contiguous values only; a scalar becomes an axis of one.
+    axes = {name: np.ascontiguousarray(v, dtype=np.float64) for name, v in places.items()}
     for name, values in axes.items():
         if values.ndim > 1:
             raise Error(
