@@ -69,9 +69,9 @@ class Case:
     def from_toml(cls, path_or_text: str | os.PathLike[str]) -> Case:
         """Reads a case file.
 
-        `path_or_text` is the path of a case file, a name that `edgeline cases`
-        lists (`"flush-short"`), or the text of a case file: a string with a line
-        break or an equals sign is a text.
+        `path_or_text` is the path of a case file, the name of a built-in case
+        (`"flush-short"`) or of one of a built-in study (`"w1e-3_sl5_lr1"`), or the
+        text of a case file: a string with a line break or an equals sign is a text.
 
         Raises `edgeline.Error` that names the file, the line and the key.
         """

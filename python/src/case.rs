@@ -14,7 +14,7 @@ pub struct Case(pub edgeline::case::Case);
 
 #[pymethods]
 impl Case {
-    /// Reads a case file, or takes a built-in case.
+    /// Reads a case file, or takes a built-in case or one of a built-in study.
     #[staticmethod]
     fn from_path(path: PathBuf) -> PyResult<Self> {
         edgeline::case::find_case(&path).map(Self).map_err(raised)

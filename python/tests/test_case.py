@@ -102,6 +102,10 @@ def test_wrong_tables_are_refused(wrong: dict[str, Any], wanted: str) -> None:
     assert str(refused.value).startswith("the case: ") and wanted in str(refused.value)
 
 
+def test_cases_of_studies_have_names() -> None:
+    assert edgeline.Case.from_toml("w1e-3_sl5_lr1").factors["W"] == pytest.approx(1e-3)
+
+
 def test_what_no_file_holds_is_a_type_error() -> None:
     with pytest.raises(TypeError, match="load.force_n is a <class 'object'>"):
         edgeline.Case(**{**tables(), "load": {"force_n": object()}})
