@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -115,13 +116,18 @@ def _column(values: NDArray[np.float64] | list[str]) -> NDArray[Any]:
 def _shard(shard: object) -> tuple[int, int]:
     """A part of a sweep, as a pair of whole numbers."""
     match shard:
-        case (int(part), int(parts)) if part > 0 and parts > 0:
-            return part, parts
-        case _:
-            raise Error(
-                f"shard = {shard!r} is not valid: give a pair of whole numbers, (1, 3) for the first "
-                "of three parts"
-            )
+        # Flags have an index, too, but are no numbers.
+        case (part, parts) if not any(isinstance(v, bool | np.bool_) for v in (part, parts)):
+            try:
+                pair = operator.index(part), operator.index(parts)
+            except TypeError:
+                pair = (0, 0)
+            if min(pair) > 0:
+                return pair
+    raise Error(
+        f"shard = {shard!r} is not valid: give a pair of whole numbers, (1, 3) for the first of "
+        "three parts"
+    )
 
 
 class _Bar:

@@ -4,7 +4,7 @@ use crate::errors::raised;
 use edgeline::base;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 use std::path::PathBuf;
 use toml::Value;
 
@@ -100,21 +100,26 @@ fn table(values: &Bound<'_, PyDict>, path: &str) -> PyResult<toml::Table> {
 
 /// A value of a case file; `path` is where it stands.
 fn value(given: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
-    if given.is_instance_of::<PyBool>() {
-        return given.extract().map(Value::Boolean);
+    // A flag of numpy is one, too: as a number it would be 0 or 1.
+    if let Ok(flag) = given.extract() {
+        return Ok(Value::Boolean(flag));
     }
     if given.is_instance_of::<PyInt>() {
         // What is too large for an integer of TOML is a number all the same.
         return match given.extract() {
             Ok(value) => Ok(Value::Integer(value)),
-            Err(_) => given.extract().map(Value::Float),
+            Err(_) => given.extract().map(Value::Float).map_err(|_| {
+                PyTypeError::new_err(format!("{path} is larger than any number of a case file"))
+            }),
         };
     }
     if given.is_instance_of::<PyFloat>() {
         return given.extract().map(Value::Float);
     }
     if given.is_instance_of::<PyString>() {
-        return given.extract().map(Value::String);
+        return given.extract().map(Value::String).map_err(|_| {
+            PyTypeError::new_err(format!("{path} is no Unicode text: it has a lone surrogate"))
+        });
     }
     if let Ok(values) = given.cast::<PyDict>() {
         return table(values, path).map(Value::Table);

@@ -102,11 +102,24 @@ def test_wrong_tables_are_refused(wrong: dict[str, Any], wanted: str) -> None:
     assert str(refused.value).startswith("the case: ") and wanted in str(refused.value)
 
 
+def test_flags_of_numpy_are_flags() -> None:
+    flag: Any = np.bool_(True)
+    case = edgeline.Case(**tables(), accuracy={"first_order": flag})
+    assert case == edgeline.Case(**tables(), accuracy={"first_order": True})
+    for wrong in (flag, True):
+        with pytest.raises(edgeline.Error, match="radius_m = true"):
+            edgeline.Case(**{**tables(), "roller": {**tables()["roller"], "radius_m": wrong}})
+
+
 def test_cases_of_studies_have_names() -> None:
     assert edgeline.Case.from_toml("w1e-3_sl5_lr1").factors["W"] == pytest.approx(1e-3)
 
 
 def test_what_no_file_holds_is_a_type_error() -> None:
+    with pytest.raises(TypeError, match="roller.radius_m is larger than any number"):
+        edgeline.Case(**{**tables(), "roller": {"radius_m": 10**400}})
+    with pytest.raises(TypeError, match="name is no Unicode text"):
+        edgeline.Case(**{**tables(), "name": "\ud800"})
     with pytest.raises(TypeError, match="load.force_n is a <class 'object'>"):
         edgeline.Case(**{**tables(), "load": {"force_n": object()}})
     within: dict[str, Any] = {}

@@ -74,7 +74,7 @@ def test_frames_and_tables_hold_the_same(cases: list[edgeline.Case]) -> None:
 
 def test_shards_have_each_case_once(cases: list[edgeline.Case]) -> None:
     whole = edgeline.sweep(cases, tolerance=1e-2)
-    shards = [edgeline.sweep(cases, tolerance=1e-2, shard=(i, 2)) for i in (1, 2)]
+    shards = [edgeline.sweep(cases, tolerance=1e-2, shard=(i, 2)) for i in np.arange(1, 3)]
     rows = np.concatenate([shard["row"] for shard in shards])
     p_max = np.concatenate([shard["p_max_pa"] for shard in shards])
     assert sorted(rows.tolist()) == list(range(len(cases)))
@@ -97,7 +97,7 @@ def test_numbers_of_jobs_and_parts_are_checked(cases: list[edgeline.Case]) -> No
     for wrong in (0, -1):
         with pytest.raises(edgeline.Error, match=f"jobs = {wrong} is not valid"):
             edgeline.sweep(cases, jobs=wrong)
-    for shard in ("1/3", (1.0, 3), (0, 3), 1):
+    for shard in ("1/3", (1.0, 3), (0, 3), 1, (True, 2), (1, np.bool_(True))):
         with pytest.raises(edgeline.Error, match="give a pair of whole numbers"):
             edgeline.sweep(cases, shard=shard)  # type: ignore[arg-type]
 
