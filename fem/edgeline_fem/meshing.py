@@ -488,7 +488,8 @@ def read_summary(folder):
         meshed = read_json(path)
     except FemError as error:
         raise FemError(f"{path}: run the mesh stage first ({error})") from error
-    known = {"options": dict, "contact_ends_c": list, "axes_c": dict, "bodies": dict, "seconds": dict}
+    known = {"options": dict, "contact_ends_c": list, "smallest_c": dict, "axes_c": dict, "bodies": dict,
+             "seconds": dict, "cpu_seconds": float}
     whole = isinstance(meshed, dict) and all(isinstance(meshed.get(k), kind) for k, kind in known.items())
     if not whole or not all(isinstance(meshed["axes_c"].get(name), list) and meshed["axes_c"][name]
                             for name in ("x_contact", "y_contact", "z_block")):
