@@ -104,7 +104,8 @@ pub struct Shape {
     pub nu: f64,
 }
 
-/// 186 zeta(5) / pi^5.
+/// 186 zeta(5) / pi^5: the part of its torsional stiffness that a rectangle lacks, in thicknesses over
+/// widths.
 const TWIST: f64 = 0.630_249;
 
 impl Shape {
@@ -116,7 +117,7 @@ impl Shape {
 
     /// How much farther the plate turns under shorter waves, as a part of [`Shape::turned`] per k
     /// times the half-length: Kirchhoff's edge is too stiff in torsion. A rectangle lacks a part
-    /// [`TWIST`] of the thickness over the width, half of it at either edge (Saint-Venant;
+    /// 0.63 of the thickness over the width, half of it at either edge (Saint-Venant;
     /// Timoshenko and Goodier, Theory of Elasticity, 1970, Art. 109).
     pub fn twisted(&self) -> f64 {
         4.0 * TWIST / (3.0 + self.nu)

@@ -123,8 +123,8 @@ impl Plate {
         let moment = forces.iter().map(|force| (force.y - middle) * force.size).sum();
         let shape = Shape { half, nu };
         let growth = share * shape.as_plate(load, moment, y - middle) / (PI * PI);
-        // Waves turn the plate at the depth z by 1 - (1 - nu) k z / 2 of e^(-k z), and their sum
-        // over k is taken of one power of k more.
+        // A wave turns the depth z by (1 - (1 - nu) k z / 2) e^(-k z) of what it turns the edge by:
+        // summed over k with the torsion's further power of k, that falls as (1 + nu) / 2 z^-2.
         let turn = share * shape.as_plate(0.0, moment, y - middle) / (PI * PI);
         let twist = 0.5 * (1.0 + nu) * half * shape.twisted() * turn;
         let last = rule.len() - rule.order();

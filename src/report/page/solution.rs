@@ -3,7 +3,7 @@
 use super::render::fill;
 use crate::base::number::{duration, significant, with_minus_signs};
 use crate::base::{BodyKind, Result};
-use crate::case::{Case, Draft, Form, KEYS, Key};
+use crate::case::{Case, Draft, FLAGS, Form, KEYS, Key};
 use crate::report::plots;
 use crate::report::solution::unbounded;
 use crate::solve::{CellDetails, Solution, Summary};
@@ -103,11 +103,16 @@ fn inputs(case: &Case, label: &Label) -> Vec<[String; 2]> {
             .map(|(name, value)| [name.to_string(), with_unit(value, "")]);
     let unused = |key: &&Key| label.cells.is_some() && key.path == "accuracy.tolerance";
     let numbers = KEYS.iter().filter(|key| !unused(key)).filter_map(number);
+    let flags = FLAGS
+        .iter()
+        .filter(|flag| flag.get(case))
+        .map(|flag| [format!("{} ({})", capital(flag.what), flag.table()), "taken in".to_string()]);
     let heights = case.surface.as_ref().map(|surface| {
         let name = surface.heights.file_name().unwrap_or_default();
         ["Heights (surface)".to_string(), name.to_string_lossy().into_owned()]
     });
     numbers
+        .chain(flags)
         .chain(heights)
         .chain(BodyKind::ALL.into_iter().filter_map(profile))
         .chain(factors)
