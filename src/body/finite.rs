@@ -104,8 +104,8 @@ pub struct Shape {
     pub nu: f64,
 }
 
-/// 186 zeta(5) / pi^5: the part of its torsional stiffness that a rectangle lacks, in thicknesses over
-/// widths.
+/// 186 zeta(5) / pi^5: the part of its torsional stiffness that a rectangle lacks, in thicknesses
+/// over widths.
 const TWIST: f64 = 0.630_249;
 
 impl Shape {

@@ -95,7 +95,8 @@ fn loads_on_either_side_are_mirror_images() {
 /// Far below, both bodies are plates that a moment on their edge bends: their lines x = 0 tilt by 3
 /// M ln(z2 / z1) / (pi H^3 (1 - nu)(3 + nu)) between two depths, and nearer to the edge by what its
 /// torsion adds, 0.63 times 2 (1 + nu) / (3 + nu) H (1 / z1 - 1 / z2) in place of the logarithm.
-/// What is left is a part (H / z)^2. Here stresses are summed down to the first two depths, the second one 4 H.
+/// What is left is a part (H / z)^2. Here stresses are summed down to the first two depths, the
+/// second one 4 H.
 #[test]
 fn lines_below_an_eccentric_load_tilt_as_those_of_plates() {
     let solved = eccentric(0.8, EdgeModel::QuarterSpace, 1e-3);

@@ -130,8 +130,8 @@ fn a_contact_that_is_shorter_than_wide_is_hertzs_or_refused() {
 }
 
 /// Contacts of several ratios of axes, under loads beside the middle: the pressure everywhere but
-/// in a rim of 0.03 shorter half-axes is that of the ellipse, within the tolerance times the largest
-/// pressure. With nodes for slender contacts it was up to 8 tolerances off.
+/// in a rim of 0.03 shorter half-axes is that of the ellipse, within the tolerance times the
+/// largest pressure. With nodes for slender contacts it was up to 8 tolerances off.
 #[test]
 fn pressures_of_wide_contacts_keep_the_tolerance_up_to_their_edge() {
     let tolerance = 1e-2;
