@@ -153,7 +153,7 @@ fn shares_of<'a>(knots: impl IntoIterator<Item = (&'a Knot, f64)>) -> Shares {
 }
 
 /// The shares at `y` of the cubic through knots.
-fn cubic(y: f64, knots: &[Knot; CUBIC]) -> Shares {
+fn shares_of_cubic(y: f64, knots: &[Knot; CUBIC]) -> Shares {
     let share = |own: &Knot| {
         let others = knots.iter().filter(|other| other.y != own.y);
         others.map(|other| (y - other.y) / (own.y - other.y)).product()
@@ -173,11 +173,11 @@ fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
 
 impl Layout {
     /// All modes at the nodes that are in `contact`, at most `tail_modes` behind the last free one,
-    /// none at the others.
+    /// none at the others; half-widths towards a tip by `cubic`s, or by straight lines.
     pub fn new(
         problem: &Problem,
         settings: &ContactSettings,
-        tail_modes: usize,
+        (tail_modes, cubic): (usize, bool),
         contact: Range<usize>,
     ) -> Self {
         let axis = problem.axis;
@@ -200,9 +200,9 @@ impl Layout {
                 let around = &knots[first..(first + CUBIC).min(knots.len())];
                 let all_narrow =
                     around.iter().all(|knot| knot.free.is_none_or(|at| narrows[free[at]]));
-                let within = after > 0 && after < knots.len();
+                let within = cubic && after > 0 && after < knots.len();
                 if let (true, Ok(around)) = (all_narrow && within, around.try_into()) {
-                    return cubic(*y, around);
+                    return shares_of_cubic(*y, around);
                 }
                 let own = if *narrow { |_: &Problem, y: f64| y } else { steepening };
                 let [from, to] = [&knots[before], &knots[before + 1]];

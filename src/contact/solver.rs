@@ -83,10 +83,13 @@ pub fn solve(problem: &Problem, settings: &ContactSettings) -> Result<ContactSol
     let operator = LineOperator::new(problem.compliance, problem.axis, negligible);
     let guess = first_guess(&operator, problem, settings)?;
     let mut answer = Err(not_converged(0, f64::INFINITY));
-    for (number, attempt) in attempts(settings).into_iter().enumerate() {
+    let attempts = attempts(settings, problem.may_end() || problem.open.contains(&true));
+    let wanted = attempts[0].coarser();
+    for attempt in attempts {
         answer = solve_once(&operator, problem, &attempt, guess.clone()).and_then(|solution| {
             check(&operator, problem, &solution, settings.soundness)?;
-            Ok(ContactSolution { coarser: (number > 0).then(|| attempt.coarser()), ..solution })
+            let coarser = Some(attempt.coarser()).filter(|own| *own != wanted);
+            Ok(ContactSolution { coarser, ..solution })
         });
         if answer.is_ok() {
             return answer;
@@ -103,6 +106,8 @@ struct Attempt {
     tail_modes: usize,
     /// Whether nodes take parts of Newton's steps, see [`STAYS`].
     by_secants: bool,
+    /// Whether half-widths towards a tip are interpolated by cubics.
+    cubic: bool,
 }
 
 impl Attempt {
@@ -113,16 +118,20 @@ impl Attempt {
 }
 
 /// The attempts, one after the other until one succeeds: a pressure that is singular at the end, as
-/// a half-space's, may need fewer unknown half-widths, and few of those whole steps.
-fn attempts(settings: &ContactSettings) -> Vec<Attempt> {
+/// a half-space's, may need fewer unknown half-widths, and few of those whole steps. If the contact
+/// `may_end` before its bodies do, cubics between half-widths that are far off may go below zero,
+/// and straight lines come next.
+fn attempts(settings: &ContactSettings, may_end: bool) -> Vec<Attempt> {
     let all = settings.modes;
     let short = ATTEMPT.min(settings.max_iterations);
     let one = |by_secants, times: f64, modes, tail_modes, max_iterations| {
         let spacing = settings.spacing.map(|apart| times * apart);
         let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
-        Attempt { settings, tail_modes, by_secants }
+        Attempt { settings, tail_modes, by_secants, cubic: false }
     };
-    let mut list = vec![one(true, 1.0, all, all, short)];
+    let first = || one(true, 1.0, all, all, short);
+    let mut list = vec![Attempt { cubic: true, ..first() }];
+    list.extend(may_end.then(first));
     if all > FEWER_MODES {
         list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, short));
     }
@@ -152,7 +161,8 @@ fn first_guess(
         max_iterations: FIRST_ITERATIONS,
         ..*settings
     };
-    let fewer = Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, by_secants: true };
+    let (tail_modes, cubic) = (FEW_TAIL_MODES, false);
+    let fewer = Attempt { settings: fewer, tail_modes, by_secants: true, cubic };
     match solve_once(operator, problem, &fewer, known.clone()) {
         Err(Error::Stopped) => Err(Error::Stopped),
         found => Ok(found.map_or(known, |first| first.half_widths)),
@@ -166,10 +176,11 @@ fn solve_once(
     attempt: &Attempt,
     mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
-    let Attempt { ref settings, tail_modes, by_secants } = *attempt;
+    let Attempt { ref settings, tail_modes, by_secants, cubic } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
-    let mut layout = Layout::new(problem, settings, tail_modes, contact.clone());
+    let layout_of = |contact| Layout::new(problem, settings, (tail_modes, cubic), contact);
+    let mut layout = layout_of(contact.clone());
     let mut parts = StepParts::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
     let mut slopes = vec![1.0; n];
@@ -211,7 +222,7 @@ fn solve_once(
         half_widths = between(&layout, &wanted);
         if !settled {
             contact = shrunk;
-            layout = Layout::new(problem, settings, tail_modes, contact.clone());
+            layout = layout_of(contact.clone());
         }
         if !settled || released {
             parts = StepParts::new(n);
