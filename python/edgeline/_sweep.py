@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Iterable
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal, SupportsIndex, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -117,7 +117,10 @@ def _shard(shard: object) -> tuple[int, int]:
     """A part of a sweep, as a pair of whole numbers."""
     match shard:
         # Flags have an index, too, but are no numbers.
-        case (part, parts) if not any(isinstance(v, bool | np.bool_) for v in (part, parts)):
+        case (SupportsIndex() as part, SupportsIndex() as parts) if not any(
+            isinstance(v, bool | np.bool_) for v in (part, parts)
+        ):
+            # An array has an index by its type, and may have none.
             try:
                 pair = operator.index(part), operator.index(parts)
             except TypeError:
