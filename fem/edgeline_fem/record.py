@@ -429,8 +429,8 @@ def keep(runs, folder, log, study=None):
     ``study``: the built-in study that the cases belong to, for the command in the record. Each run holds
     its request, and so its case: any that the model takes, of several sizes, but for profiles that are
     tables. What a record holds of that size is replaced. Raises :class:`FemError` where a run is not
-    finished or has such a profile, before anything is written, and where it is of another case or code
-    than its record.
+    finished, given twice, damaged or has such a profile, before anything is written, and where it is of
+    another case or code than its record.
     """
     folders = [Path(work).resolve() for work in runs]
     twice = [work for work, place in zip(runs, folders) if folders.count(place) > 1]

@@ -177,7 +177,8 @@ impl Layout {
     pub fn new(
         problem: &Problem,
         settings: &ContactSettings,
-        (tail_modes, cubic): (usize, bool),
+        tail_modes: usize,
+        cubic: bool,
         contact: Range<usize>,
     ) -> Self {
         let axis = problem.axis;

@@ -120,6 +120,11 @@ impl Slices {
         self.squares.iter().copied().fold(0.0, f64::max).sqrt()
     }
 
+    /// The largest width, in lengths along y.
+    pub fn width_over_length(&self) -> f64 {
+        2.0 * self.widest() / (self.ends[1] - self.ends[0])
+    }
+
     /// The half-width at `y`.
     pub fn half_width(&self, y: f64) -> f64 {
         let after = self.y.partition_point(|place| *place < y).clamp(1, self.y.len() - 1);

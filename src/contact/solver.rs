@@ -161,8 +161,8 @@ fn first_guess(
         max_iterations: FIRST_ITERATIONS,
         ..*settings
     };
-    let (tail_modes, cubic) = (FEW_TAIL_MODES, false);
-    let fewer = Attempt { settings: fewer, tail_modes, by_secants: true, cubic };
+    let fewer =
+        Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, by_secants: true, cubic: false };
     match solve_once(operator, problem, &fewer, known.clone()) {
         Err(Error::Stopped) => Err(Error::Stopped),
         found => Ok(found.map_or(known, |first| first.half_widths)),
@@ -179,7 +179,7 @@ fn solve_once(
     let Attempt { ref settings, tail_modes, by_secants, cubic } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
-    let layout_of = |contact| Layout::new(problem, settings, (tail_modes, cubic), contact);
+    let layout_of = |contact| Layout::new(problem, settings, tail_modes, cubic, contact);
     let mut layout = layout_of(contact.clone());
     let mut parts = StepParts::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.
@@ -267,7 +267,7 @@ fn between(layout: &Layout, free: &[f64]) -> Vec<f64> {
         let mean = |of: fn(f64) -> f64| -> f64 {
             shares.iter().map(|(node, share)| share * of(free[*node])).sum()
         };
-        // Towards a tip the square is as smooth as the pressure's.
+        // Towards a tip it is the square that is smooth.
         match narrows {
             true => mean(|a| a * a).max(TIP * TIP).sqrt(),
             false => mean(|a| a).max(NARROWEST),

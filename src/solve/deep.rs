@@ -125,7 +125,7 @@ impl Plate {
         let growth = share * shape.as_plate(load, moment, y - middle) / (PI * PI);
         // A wave turns the depth z by (1 - (1 - nu) k z / 2) e^(-k z) of what it turns the edge by:
         // summed over k with the torsion's further power of k, that falls as (1 + nu) / 2 z^-2.
-        let turn = share * shape.as_plate(0.0, moment, y - middle) / (PI * PI);
+        let turn = share * shape.turned() * moment * (y - middle) / (PI * PI);
         let twist = 0.5 * (1.0 + nu) * half * shape.twisted() * turn;
         let last = rule.len() - rule.order();
         let nodes = rule.nodes().iter().zip(rule.weights()).zip(strains).skip(last);

@@ -44,8 +44,8 @@ impl Scene {
         let overlap = self.overlap();
         let Some(slices) = slices else { return self.level(tolerance, overlap) };
         if self.ends_inside(slices) {
-            let width = 2.0 * slices.widest() / (slices.ends[1] - slices.ends[0]);
-            return Resolution::for_tips(tolerance / (width / SLENDER).max(1.0));
+            let wider = slices.width_over_length() / SLENDER;
+            return Resolution::for_tips(tolerance / wider.max(1.0));
         }
         let gap = self.gap();
         let turns = [0, 1].map(|side| {

@@ -116,7 +116,7 @@ impl SolvedScene {
         }
         let slices = scene.slices(&scene.gap());
         if scene.ends_inside(&slices) {
-            check_length(slices.widest(), slices.ends[1] - slices.ends[0], WIDEST_GUESS)?;
+            check_width(slices.width_over_length(), WIDEST_GUESS)?;
         }
         first
     }
@@ -193,7 +193,7 @@ impl SolvedScene {
         if soundness.is_finite() && open.contains(&true) {
             let widest = contact.half_widths.iter().copied().fold(0.0, f64::max);
             let [from, to] = contact.ends.map(|end| end.at);
-            check_length(widest, to - from, WIDEST)?;
+            check_width(2.0 * widest / (to - from), WIDEST)?;
         }
         let pressure = Pressure::new(
             axis,
@@ -355,10 +355,8 @@ fn soundness(scene: &Scene) -> f64 {
 /// The law that a contact wider than long does not hold.
 const WIDTH: &str = "the contact's width over its length along y";
 
-/// Refuses a contact of the largest half-width `widest` that is wider than `limit` times its
-/// `length`.
-fn check_length(widest: f64, length: f64, limit: f64) -> Result<()> {
-    let value = 2.0 * widest / length;
+/// Refuses a contact whose largest width, in its lengths, is a `value` above the `limit`.
+fn check_width(value: f64, limit: f64) -> Result<()> {
     if value <= limit {
         return Ok(());
     }

@@ -81,7 +81,7 @@ pub fn near(what: &str, got: f64, want: f64, tolerance: f64) {
 /// Asserts |value| <= tolerance and reports the value.
 pub fn small(what: &str, value: f64, tolerance: f64) {
     println!("{what}: {value:.2e} of at most {tolerance:.0e}");
-    assert!(value.abs() <= tolerance, "{what}: {value:e} > {tolerance:e}");
+    assert!(value.abs() <= tolerance, "{what}: |{value:e}| > {tolerance:e}");
 }
 
 pub fn case(load: f64, slenderness: f64, length_ratio: f64) -> Case {
