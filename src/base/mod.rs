@@ -19,7 +19,7 @@ mod wavenumbers;
 pub use bodies::{BodyKind, PerBody, ledge};
 pub use error::{Error, Result};
 pub use material::Material;
-pub use panels::{Corner, Panels};
+pub use panels::{Corner, Growth, Panels};
 pub use parity::Parity;
 pub use profile::{Kink, Profile};
 pub use quadrature::{crowded_legendre, gauss_legendre};

@@ -1,13 +1,14 @@
 //! Graded axes: panels with Gauss-Legendre nodes, on which functions are piecewise polynomials.
 
 use super::quadrature::{crowded_legendre, gauss_legendre, legendre};
+use std::ops::Range;
 
 /// An axis divided into panels with the same number of Gauss-Legendre nodes each.
 ///
 /// A function on the axis is given by its values at the nodes. On each panel it is the
 /// interpolating polynomial, without continuity between panels: a pressure may jump at the roller's
 /// end, and a steep end needs small panels only there. A load that grows without bound towards a
-/// [`Corner`] is a polynomial times its power there.
+/// [`Corner`] does so like the corner's [`Growth`].
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panels {
     breaks: Vec<f64>,
@@ -17,25 +18,37 @@ pub struct Panels {
     unit_nodes: Vec<f64>,
     barycentric: Vec<f64>,
     corners: Vec<Corner>,
-    /// The corner whose power the loads of each panel have.
+    /// The corner towards which the loads of each panel grow.
     laws: Vec<Option<Corner>>,
-    /// The inverse of that power at the nodes.
+    /// The inverse of its power at the nodes.
     leveled: Vec<f64>,
+    /// Its logarithm at the nodes, and how much of it a unit at each of them has; none without.
+    logarithms: Vec<f64>,
+    shares: Vec<f64>,
     /// A rule for integrals on (0, 1) of what is steep at 0.
     steep_rule: Vec<(f64, f64)>,
 }
 
-/// A place towards which the loads on an axis grow like s^-m, with the distance s.
+/// A place towards which the loads on an axis grow.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Corner {
     /// The place.
     pub at: f64,
     /// 1 if the loads are at larger coordinates, -1 if at smaller ones.
     pub side: f64,
-    /// The exponent m, in (0, 1).
-    pub exponent: f64,
-    /// The distance up to which loads have the power.
+    /// How they grow.
+    pub growth: Growth,
+    /// The distance up to which loads have this growth.
     pub reach: f64,
+}
+
+/// How loads grow towards a [`Corner`], at the distance s from it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Growth {
+    /// Like s^-m, with m in (0, 1): they are polynomials times this power.
+    Power(f64),
+    /// Like ln s, which stands in the place of the highest power of their polynomials.
+    Logarithm,
 }
 
 /// The least distance from a corner, in the panel's lengths: loads are bounded there.
@@ -50,6 +63,14 @@ const MORE_NODES: usize = 6;
 const POWER: i32 = 4;
 
 impl Corner {
+    /// The exponent of a power, if that is how loads grow.
+    pub fn exponent(&self) -> Option<f64> {
+        match self.growth {
+            Growth::Power(exponent) => Some(exponent),
+            Growth::Logarithm => None,
+        }
+    }
+
     /// Whether the loads between `a` and `b` have the power.
     fn governs(&self, [a, b]: [f64; 2]) -> bool {
         let [near, far] = if self.side > 0.0 { [a, b] } else { [b, a] };
@@ -58,9 +79,14 @@ impl Corner {
         self.side * (near - self.at) >= 0.0 && self.side * (far - self.at) <= reach
     }
 
-    /// The power at `x`, in a panel of the given `length`.
+    /// The power at `x`, in a panel of the given `length`; 1 where loads have none.
     fn power(&self, x: f64, length: f64) -> f64 {
-        (x - self.at).abs().max(NEAREST * length).powf(-self.exponent)
+        self.exponent().map_or(1.0, |exponent| self.distance(x, length).powf(-exponent))
+    }
+
+    /// The distance of `x`, in a panel of the given `length`.
+    fn distance(&self, x: f64, length: f64) -> f64 {
+        (x - self.at).abs().max(NEAREST * length)
     }
 }
 
@@ -78,8 +104,11 @@ impl Panels {
             let Some(law) = corners.iter().find(|c| c.governs(ends)) else { continue };
             self.laws[panel] = Some(*law);
             let own = panel * self.order..(panel + 1) * self.order;
-            for (leveled, x) in self.leveled[own.clone()].iter_mut().zip(&self.nodes[own]) {
+            for (leveled, x) in self.leveled[own.clone()].iter_mut().zip(&self.nodes[own.clone()]) {
                 *leveled = 1.0 / law.power(*x, ends[1] - ends[0]);
+            }
+            if law.growth == Growth::Logarithm && self.order > 1 {
+                self.set_logarithm(law, own, ends[1] - ends[0]);
             }
             if self.corner_of(panel).is_some() {
                 let mut moments = vec![0.0; self.order];
@@ -88,6 +117,27 @@ impl Panels {
             }
         }
         self
+    }
+
+    /// Lets the loads at the nodes `own` of a panel of the given `length` have a logarithm. In
+    /// theirs, less the polynomial through its values at the nodes, the highest power is to vanish.
+    fn set_logarithm(&mut self, law: &Corner, own: Range<usize>, length: f64) {
+        let highest = |values: &[f64]| -> f64 {
+            values.iter().zip(&self.barycentric).map(|(value, c)| c * value).sum()
+        };
+        let logarithms: Vec<f64> =
+            self.nodes[own.clone()].iter().map(|x| law.distance(*x, length).ln()).collect();
+        let shares: Vec<f64> = self.barycentric.iter().map(|c| c / highest(&logarithms)).collect();
+        self.logarithms.resize(self.nodes.len(), 0.0);
+        self.shares.resize(self.nodes.len(), 0.0);
+        self.logarithms[own.clone()].copy_from_slice(&logarithms);
+        self.shares[own].copy_from_slice(&shares);
+    }
+
+    /// The corner towards which the loads of panel `i` have a logarithm, if any.
+    fn logarithm_of(&self, i: usize) -> Option<&Corner> {
+        let law = self.laws[i].as_ref()?;
+        (law.growth == Growth::Logarithm && self.order > 1).then_some(law)
     }
 
     /// The corners towards which loads grow.
@@ -127,16 +177,27 @@ impl Panels {
     }
 
     /// Values at `x` of the loads of panel `i` that are 1 at one of its nodes and 0 at the others:
-    /// its polynomials, times the power of a corner.
+    /// its polynomials, times the power of a corner or beside its logarithm.
     pub fn loads(&self, i: usize, x: f64) -> impl Iterator<Item = f64> {
         let [a, b] = self.panel(i);
+        let own = i * self.order..(i + 1) * self.order;
         let power = self.laws[i].map_or(1.0, |law| law.power(x, b - a));
-        let leveled = &self.leveled[i * self.order..];
-        self.polynomials(i, x).zip(leveled).map(move |(value, leveled)| value * leveled * power)
+        let leveled = &self.leveled[own.clone()];
+        // The logarithm less the polynomial through its values at the nodes.
+        let (rest, shares) = match self.logarithm_of(i) {
+            None => (0.0, leveled),
+            Some(law) => {
+                let known = &self.logarithms[own.clone()];
+                let between: f64 = self.polynomials(i, x).zip(known).map(|(p, l)| p * l).sum();
+                (law.distance(x, b - a).ln() - between, &self.shares[own])
+            }
+        };
+        let values = self.polynomials(i, x).zip(leveled).zip(shares);
+        values.map(move |((value, leveled), share)| value * leveled * power + rest * share)
     }
 
     /// The load at `x` from those at the nodes of its panel, with weights; see
-    /// [`Panels::interpolation`]. Nearer to a corner than the nodes are, it is that of the
+    /// [`Panels::interpolation`]. Nearer to a corner than the nodes are, a power is that of the
     /// outermost one. Beside the axis, but for rounding, there is no load and no node.
     pub fn load_interpolation(&self, x: f64) -> impl Iterator<Item = (usize, f64)> {
         let [first, end] = [self.breaks[0], self.end()];
@@ -146,9 +207,9 @@ impl Panels {
         panels.flat_map(move |(panel, share)| {
             let own = &self.nodes[panel * self.order..(panel + 1) * self.order];
             let bounded = match self.corner_of(panel) {
+                Some(Corner { growth: Growth::Logarithm, .. }) | None => x,
                 Some(corner) if corner.at < own[0] => x.max(own[0]),
                 Some(_) => x.min(own[self.order - 1]),
-                None => x,
             };
             let loads = self.loads(panel, bounded).map(move |load| share * load);
             (panel * self.order..).zip(loads)
@@ -195,6 +256,8 @@ impl Panels {
             corners,
             laws,
             leveled,
+            logarithms: Vec::new(),
+            shares: Vec::new(),
             steep_rule: Vec::new(),
         }
     }
@@ -369,8 +432,33 @@ mod tests {
     }
 
     #[test]
+    fn loads_have_a_logarithm_beside_polynomials() {
+        let corner = Corner { at: 3.0, side: -1.0, growth: Growth::Logarithm, reach: 1.0 };
+        for order in [2, 4, 7] {
+            let breaks = vec![0.0, 2.0, 2.9, 3.0];
+            let axis = Panels::new(breaks, order).with_corners(&[corner]);
+            // Beside the logarithm the polynomials have a degree less.
+            let g = |x: f64| if order > 2 { 1.5 - x + 0.3 * x.powi(order as i32 - 2) } else { 0.7 };
+            let f = |x: f64| if x < 2.0 { g(x) } else { g(x) - 0.4 * (3.0 - x).ln() };
+            let values: Vec<f64> = axis.nodes().iter().map(|x| f(*x)).collect();
+            for x in [0.7, 2.01, 2.6, 2.95, 2.9999] {
+                let got: f64 = axis.load_interpolation(x).map(|(node, w)| w * values[node]).sum();
+                assert!((got - f(x)).abs() < 1e-9, "{order} {x}: {got} {}", f(x));
+            }
+            // int_2.9^3 -0.4 ln (3 - x) dx, and the polynomials by Gauss's rule.
+            let (nodes, weights) = gauss_legendre(order);
+            let rule = nodes.iter().zip(&weights);
+            let smooth: f64 = rule.map(|(t, w)| 0.05 * w * g(2.95 + 0.05 * t)).sum();
+            let exact = smooth - 0.4 * 0.1 * (0.1f64.ln() - 1.0);
+            let own = 2 * order..3 * order;
+            let got: f64 = own.map(|j| axis.weights()[j] * values[j]).sum();
+            assert!((got - exact).abs() < 1e-6, "{order}: {got} {exact}");
+        }
+    }
+
+    #[test]
     fn loads_grow_towards_corners_and_are_integrated() {
-        let corner = |at, side| Corner { at, side, exponent: 0.3, reach: 1.2 };
+        let corner = |at, side| Corner { at, side, growth: Growth::Power(0.3), reach: 1.2 };
         let corners = [corner(-1.0, 1.0), corner(3.0, -1.0)];
         let breaks = vec![-1.0, -0.9, -0.4, 0.0, 1.9, 2.5, 2.9, 3.0];
         let axis = Panels::new(breaks, 4).with_corners(&corners);

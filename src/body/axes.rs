@@ -2,7 +2,7 @@
 
 use super::end::End;
 use super::part::Part;
-use crate::base::{Corner, Panels, Parity, Wavenumbers, ledge};
+use crate::base::{Corner, Growth, Panels, Parity, Wavenumbers, ledge};
 use serde::{Deserialize, Serialize};
 
 /// Wavenumber below which the contact's width has no effect.
@@ -29,15 +29,6 @@ const BENDING_RATIO: f64 = 2.0;
 /// Largest ratio of two bodies' half-lengths for which the first panel of wavenumbers is that of
 /// the longer one.
 const UNLIKE: f64 = 10.0;
-
-/// Half-length (C) of a body below which the first panel of its end faces' depth is, in proportion,
-/// that of a body of half-length [`SLENDER`], if loads bend it. Under long waves the equations of a
-/// plate in bending are close to singular, and errors at the corner, relative to the length, take
-/// the place of what is left: with panels of one size a body of half-length 0.65 turns by 0.7 to
-/// 1.4 times the right angle at the lowest wavenumber of tolerances of 1e-2, or by the opposite one
-/// at coarser ones.
-const SHORT: f64 = 2.0;
-const SLENDER: f64 = 5.0;
 
 /// Further panels of wavenumbers along an end face of a plate in bending, as parts of the smallest
 /// one.
@@ -549,17 +540,14 @@ impl Resolution {
 
     /// The smallest panel at a body's end face, `ledge` beyond the contact's end: a loaded corner
     /// needs the finest panels; at a corner farther from the load the fields vary over that
-    /// distance. Beside a ledge narrower than C they are large, and vanish at the corner itself,
-    /// like the 1.7th power of the distance from it: the loads that cancel them there need smaller
-    /// panels.
+    /// distance.
     fn end_panel(&self, ledge: f64) -> f64 {
-        let smallest = self.corner / 16.0;
-        if ledge > 0.0 { (ledge * ledge.min(1.0) / 16.0).max(smallest) } else { self.corner }
+        if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
     }
 
     /// The `contact` on one side of a body's middle, continued by panels to the middle and to the
     /// end face at `half`, graded towards the contact and the face.
-    pub fn body_axis(&self, contact: &Panels, half: f64) -> Panels {
+    pub fn body_axis(&self, contact: &Panels, half: f64, part: Part) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
         if ledge(near, half) > 0.0 {
@@ -573,24 +561,22 @@ impl Resolution {
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
             breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
         }
-        Panels::new(breaks, self.order).with_corners(contact.corners())
+        let at = breaks[breaks.len() - 1];
+        let last = contact.corner_of(contact.panel_count() - 1);
+        let has_power = ledge == 0.0 && last.is_some_and(|corner| corner.side < 0.0);
+        let reach = logarithm(ledge, half, part).filter(|_| !has_power);
+        let edge = reach.map(|reach| Corner { at, side: -1.0, growth: Growth::Logarithm, reach });
+        let corners: Vec<Corner> = contact.corners().iter().copied().chain(edge).collect();
+        Panels::new(breaks, self.order).with_corners(&corners)
     }
 
     /// Panels of the depth along an end face, graded towards the edge, deep enough for the
     /// smallest wavenumber. Its loads grow with the `exponent` towards the edge, if any.
-    pub fn face_axis(
-        &self,
-        ledge: f64,
-        half: f64,
-        Part { parity, bends, .. }: Part,
-        exponent: Option<f64>,
-    ) -> Panels {
+    pub fn face_axis(&self, ledge: f64, half: f64, part: Part, exponent: Option<f64>) -> Panels {
+        let parity = part.parity;
         // Loads on the face of a body much shorter than the contact is wide have no longer tail.
         let deepest = (self.face_reach / self.smallest_wavenumber(half, parity)).max(FACE_TAIL);
-        // Where an end is singular, what cancels at the other one would no longer do so.
-        let finer = bends && exponent.is_none() && half < SHORT;
-        let share = if finer { half / SLENDER } else { 1.0 };
-        let mut s = self.graded(share * self.end_panel(ledge), FACE_TAIL);
+        let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
         // Panels may grow faster where the load only decays.
         let growth = match parity {
             Parity::Even => self.ratio * self.ratio,
@@ -604,8 +590,12 @@ impl Resolution {
         if deepest > FACE_TAIL {
             s.push(deepest);
         }
-        let corner = |exponent| Corner { at: 0.0, side: 1.0, exponent, reach: LAW };
-        Panels::new(s, self.order).with_corners(exponent.map(corner).as_slice())
+        let growth = match exponent {
+            Some(exponent) => Some((Growth::Power(exponent), LAW)),
+            None => logarithm(ledge, half, part).map(|reach| (Growth::Logarithm, reach)),
+        };
+        let edge = growth.map(|(growth, reach)| Corner { at: 0.0, side: 1.0, growth, reach });
+        Panels::new(s, self.order).with_corners(edge.as_slice())
     }
 
     /// Wavenumbers across the contact, for bodies of half-length up to `half` under loads that are
@@ -682,6 +672,24 @@ impl Resolution {
         }
         breaks.push(top);
         Panels::new(breaks, self.order)
+    }
+}
+
+/// How far from an edge of a body of half-length `half` the loads on either side of it, `ledge`
+/// beyond the contact and without a power, have a logarithm; nothing where they need none.
+///
+/// Near the edge of a quarter-space in plane strain loads s^a on one side are answered by
+/// -K(a) s^a on the other, K(a) = (1 + a) / cos(pi a / 2), and are free loads where K^2 = 1. That
+/// is so for a = 0, and what else acts there does not vanish at the edge: both sides have loads
+/// a ln s, of opposite sign, which act against each other and leave no stress. Polynomials up to
+/// the edge miss a part of each, which bends bodies shorter than the contact is wide by as much as
+/// their loads do. Where all loads are even and reach the edge, both sides have the same panels and
+/// miss the same.
+fn logarithm(ledge: f64, half: f64, part: Part) -> Option<f64> {
+    match (ledge > 0.0, part.bends) {
+        (true, _) => Some(ledge),
+        (_, true) => Some(LAW.min(half)),
+        _ => None,
     }
 }
 

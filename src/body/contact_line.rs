@@ -2,7 +2,7 @@
 //! the gap does more between their nodes than they can follow.
 
 use super::axes::{LAW, Resolution};
-use crate::base::{Corner, Kink, Panels, Parity};
+use crate::base::{Corner, Growth, Kink, Panels, Parity};
 use std::f64::consts::PI;
 
 /// Largest size of the panels beside a kink of the gap, in those at a corner: the pressure is
@@ -97,7 +97,7 @@ impl Resolution {
         features.push((ends[1], self.corner));
         let reach = LAW.min(0.5 * (ends[1] - ends[0]));
         let [first, last] = [(0, 1.0), (1, -1.0)].map(|(i, side)| {
-            exponents[i].map(|exponent| Corner { at: ends[i], side, exponent, reach })
+            exponents[i].map(|m| Corner { at: ends[i], side, growth: Growth::Power(m), reach })
         });
         let corners: Vec<Corner> = first.filter(|_| !symmetric).into_iter().chain(last).collect();
         (self.between_features(&features, parity).with_corners(&corners), parity)

@@ -178,11 +178,12 @@ impl Body {
     ) -> Self {
         let Shape { half, nu } = shape;
         let Part { parity, slides, .. } = part;
-        let surface = if end.freed { resolution.body_axis(contact, half) } else { contact.clone() };
+        let surface =
+            if end.freed { resolution.body_axis(contact, half, part) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = ledge(half - contact.end(), half);
         let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
-        let exponent = corner.map(|c| c.exponent);
+        let exponent = corner.and_then(|c| c.exponent());
         let contact = first..first + contact.len();
         let face = Sources::new(resolution.face_axis(ledge, half, part, exponent));
         let surface = Sources::new(surface);
@@ -416,7 +417,8 @@ impl Body {
 
     /// Displacement f at the contact nodes per P.
     pub(super) fn displacement(&self, k: f64) -> DMatrix<f64> {
-        let mut displacement = Rows::new(&self.surface, self.surface.axis.len());
+        let mut displacement =
+            Rows::new(&self.surface, self.compliance_stencils.len(), self.surface.axis.len());
         let reach = self.reach(k);
         let mut values = Vec::new();
         for (i, stencil) in self.compliance_stencils.iter().enumerate() {
@@ -453,9 +455,10 @@ impl Body {
     /// Compressive stress yy on the end face per load of `kernel` on the surface: T_zy per P, T_sy
     /// per traction along x.
     pub(super) fn surface_matrix(&self, k: f64, kernel: &WaveTable) -> DMatrix<f64> {
-        let mut matrix = Rows::new(&self.surface, self.surface.axis.len());
+        let rows = self.face_len(k);
+        let mut matrix = Rows::new(&self.surface, rows, self.surface.axis.len());
         let mut values = Vec::new();
-        let faces = self.to_face.iter().zip(&self.strips_to_face).take(self.face_len(k));
+        let faces = self.to_face.iter().zip(&self.strips_to_face).take(rows);
         for (i, ((stencil, places), strips)) in faces.enumerate() {
             let z = self.face.axis.nodes()[i];
             matrix.push(|charges, nodes| {
@@ -476,7 +479,7 @@ impl Body {
     /// T_yz: compressive stress zz on z = 0 per q on both end faces.
     pub(super) fn faces_matrix(&self, k: f64, columns: usize) -> DMatrix<f64> {
         let n = self.surface.axis.len();
-        let mut matrix = Rows::new(&self.face, columns);
+        let mut matrix = Rows::new(&self.face, n, columns);
         let mut values = Vec::new();
         for (i, stencils) in self.from_faces.iter().enumerate() {
             let y = self.surface.axis.nodes()[i];
@@ -568,9 +571,10 @@ pub(super) struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    /// No rows yet; `columns` first nodes are kept.
-    pub fn new(sources: &'a Sources, columns: usize) -> Self {
-        Self { sources, columns, charges: Vec::new(), nodes: Vec::new() }
+    /// No rows yet, with room for as many; `columns` first nodes are kept.
+    pub fn new(sources: &'a Sources, rows: usize, columns: usize) -> Self {
+        let charges = Vec::with_capacity(rows * sources.charge_count());
+        Self { sources, columns, charges, nodes: Vec::with_capacity(rows * columns) }
     }
 
     /// Appends a row that `fill` writes over the charges and over the nodes, both initially zero.

@@ -140,7 +140,7 @@ fn corners(line: &Panels, middle: f64, symmetric: bool) -> (Vec<Corner>, Vec<f64
         let corner = folded(own);
         let is_like = |other: &Corner| {
             let apart = (other.at - corner.at).abs();
-            apart <= same && other.side == corner.side && other.exponent == corner.exponent
+            apart <= same && other.side == corner.side && other.growth == corner.growth
         };
         // How far the other side's load reaches on the axis.
         let other = if own.at < middle { to } else { -from };
@@ -186,6 +186,7 @@ fn node_at(axis: &Panels, y: f64) -> Option<Vec<(usize, f64)>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::Growth;
 
     #[test]
     fn the_parts_are_even_and_odd_and_their_sum_is_the_whole() {
@@ -220,7 +221,7 @@ mod tests {
     fn folded_loads_keep_the_power_of_an_end() {
         let line = |exponents: [Option<f64>; 2]| {
             let breaks = vec![-2.0, -1.98, -1.9, -1.5, 0.0, 1.5, 1.9, 1.98, 2.0];
-            let corner = |(at, side, exponent)| Corner { at, side, exponent, reach: 1.0 };
+            let corner = |(at, side, m)| Corner { at, side, growth: Growth::Power(m), reach: 1.0 };
             let [first, last] = [(-2.0, 1.0, exponents[0]), (2.0, -1.0, exponents[1])]
                 .map(|(at, side, exponent)| exponent.map(|m| corner((at, side, m))));
             let corners: Vec<Corner> = first.into_iter().chain(last).collect();

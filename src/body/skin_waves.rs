@@ -273,7 +273,7 @@ fn spread(body: &Body, stencils: &[Stencil], k: f64) -> [DMatrix<f64>; 2] {
     let n = body.surface.axis.len();
     let reach = body.reach(k);
     let even = |u: f64| if u.abs() < reach { 0.5 * k * (-k * u.abs()).exp() } else { 0.0 };
-    let mut rows = [0; 2].map(|_| Rows::new(&body.surface, n));
+    let mut rows = [0; 2].map(|_| Rows::new(&body.surface, n, n));
     for (stencil, &y) in stencils.iter().zip(body.surface.axis.nodes()) {
         let values: Vec<f64> = stencil.offsets().iter().map(|u| even(*u)).collect();
         let signs = stencil.offsets().iter().map(|u| if *u == 0.0 { 0.0 } else { u.signum() });
@@ -299,7 +299,7 @@ fn add_faces(body: &Body, k: &[f64], waves: &mut [Wave]) {
     own[..k.len()].copy_from_slice(k);
     let of_wave = |wave: &Wave| {
         let loads = wave.free.as_ref().map_or(0, |free| free.q.nrows());
-        [0; 3].map(|_| Rows::new(&body.face, loads))
+        [0; 3].map(|_| Rows::new(&body.face, body.surface.axis.len(), loads))
     };
     let mut rows: Vec<[Rows; 3]> = waves.iter().map(of_wave).collect();
     let (unit, reach) = ([[1.0; WAVES]], body.reach(1.0));

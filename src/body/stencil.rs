@@ -366,7 +366,7 @@ fn distances(a: f64, b: f64, own: f64, depth: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::Corner;
+    use crate::base::{Corner, Growth};
 
     #[test]
     fn logarithms_are_integrated_from_any_target() {
@@ -408,7 +408,7 @@ mod tests {
 
     #[test]
     fn loads_that_grow_towards_a_corner_are_integrated_against_logarithms() {
-        let corner = Corner { at: 3.0, side: -1.0, exponent: 0.4, reach: 1.0 };
+        let corner = Corner { at: 3.0, side: -1.0, growth: Growth::Power(0.4), reach: 1.0 };
         let breaks = vec![0.0, 1.2, 2.0, 2.5, 2.8, 3.0];
         let axis = Panels::new(breaks, 5).with_corners(&[corner]);
         let sources = Sources::new(axis.clone());

@@ -214,7 +214,8 @@ impl Layout {
             .collect();
         let (first, last) = (free[0], free[free.len() - 1]);
         let near = UNRESOLVED / problem.compliance.wavenumbers.coarse().end();
-        let corners = axis.corners().iter().filter(|c| c.exponent < ENDLESS_EXPONENT);
+        let corners = axis.corners().iter();
+        let corners = corners.filter(|c| c.exponent().is_some_and(|m| m < ENDLESS_EXPONENT));
         let corners: Vec<f64> = corners.map(|corner| corner.at).collect();
         let modes_at = |(j, y): (usize, &f64)| {
             let tail = j > last || problem.both_ends && j < first;

@@ -70,6 +70,27 @@ fn surfaces_beside_a_contact_on_one_side_of_the_middle_are_free() {
     }
 }
 
+/// Beside the edges of bodies that are loaded off their middle stresses are those of a fine
+/// solution: the even and the odd part of the loads there are large, and act against each other.
+#[test]
+fn stresses_beside_the_edges_of_flush_bodies_converge() {
+    for arm in [0.77, 1.59] {
+        let fine = eccentric(arm, EdgeModel::QuarterSpace, 1e-3);
+        for tolerance in [1e-2, 5e-3] {
+            let own = eccentric(arm, EdgeModel::QuarterSpace, tolerance);
+            for end in [-5.0, 5.0f64] {
+                for (x, off, z) in
+                    [(0.0, 0.003, 0.003), (0.0, 0.01, 0.01), (0.5, 0.0, 0.01), (0.5, 0.003, 0.003)]
+                {
+                    let place = [x, end - off * end.signum(), z];
+                    let [own, fine] = [&own, &fine].map(|s| stress(s, BodyKind::Block, place));
+                    small(&format!("{arm}, {tolerance}, {place:?}"), apart(&own, &fine), tolerance);
+                }
+            }
+        }
+    }
+}
+
 /// Asserts that the stresses of two solutions are mirror images in y = 0. Wavenumbers are summed in
 /// single precision.
 fn mirror_images(what: &str, [one, other]: [&SolvedScene; 2], limit: f64) {
@@ -409,10 +430,11 @@ fn an_offset_is_relative() {
 
 /// Bodies shorter than the contact is wide are plates in bending under all long waves: near k = 0
 /// their equations are close to singular at every resolution. The wave k H = 0.0174 is the lowest
-/// of most; Kirchhoff's plate has k times the turn at k = 0, and it grows by about k H.
+/// of most; Kirchhoff's plate has k times the turn at k = 0, and its edge's torsion adds to it. At
+/// 5e-3 clusters of panels are 1e-4 off, and the equations some 300 times as close to singular.
 #[test]
 fn long_waves_turn_bodies_of_any_length_as_a_plate() {
-    for tolerance in [5e-3, 1e-3, 1e-4] {
+    for (tolerance, limit) in [(5e-3, 0.055), (1e-3, 4e-3), (1e-4, 4e-3)] {
         let resolution = Resolution::for_tolerance(tolerance);
         for (half, nu) in [(0.5, 0.0), (0.5, 0.3), (0.65, 0.45), (1.0, 0.3), (2.0, 0.0), (9.0, 0.3)]
         {
@@ -430,8 +452,8 @@ fn long_waves_turn_bodies_of_any_length_as_a_plate() {
             let moment = moment_of(contact.nodes());
             let turn = moment_of(displacement.as_slice()) / moment;
             let ratio = wave / half * turn / moment / shape.turned();
-            println!("{tolerance} {half} {nu}: {ratio:.4}");
-            assert!((ratio - (1.0 + wave)).abs() < 0.03, "{tolerance} {half} {nu}: {ratio}");
+            let off = ratio - (1.0 + shape.twisted() * wave);
+            small(&format!("{tolerance} {half} {nu}"), off, limit);
         }
     }
 }
