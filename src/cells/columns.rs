@@ -73,7 +73,8 @@ impl Load for Columns<'_> {
 
     fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
         let (edges, steps) = (&self.edges, &self.steps);
-        steps * DMatrix::from_fn(edges.len(), k.len(), |i, j| 2.0 * (k[j] * edges[i]).sin() / k[j])
+        let wave = |i: usize, j: usize| strip::uniform_transform(edges[i], k[j]);
+        steps * DMatrix::from_fn(edges.len(), k.len(), wave)
     }
 
     fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3] {

@@ -9,8 +9,9 @@ use super::ends::FreeEnds;
 use super::pressure::CellPressure;
 use super::profile::nodal;
 use crate::base::{Panels, Parity, StressTensor};
+use crate::kernels::strip;
 use crate::stress::{Field, Load};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// One part in x of the pressures of cells, as waves alone: of fields that only count as
 /// differences.
@@ -23,6 +24,8 @@ struct Part<'a> {
     places: Vec<f64>,
     /// The part at these places: a row for each node.
     nodal: DMatrix<f64>,
+    /// Its integrals along the line.
+    whole: Vec<f64>,
 }
 
 /// Both parts in x of a pressure, with their moments.
@@ -51,7 +54,9 @@ impl<'a> EndLoads<'a> {
                 share * 0.5 * (row[nx / 2 + i] + parity.sign() * row[count - 1 - i])
             });
             let places = (0..count).map(|i| cells.grid.x(nx / 2 + i)).collect();
-            let part = Part { axis: ends.axis(), parity, half, places, nodal };
+            let weights = DVector::from_column_slice(ends.axis().weights());
+            let whole = nodal.tr_mul(&weights).iter().copied().collect();
+            let part = Part { axis: ends.axis(), parity, half, places, nodal, whole };
             let moments = ends.moments(&part);
             (part, moments)
         });
@@ -71,16 +76,29 @@ impl<'a> EndLoads<'a> {
 
 impl EndStress<'_> {
     /// What is added at (x, `y`, `z`) for each x of `xs`. On an end face the tractions of the sum
-    /// are zero, which only the caller can tell.
-    pub fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
+    /// are zero, which only the caller can tell. At the points with a far one of `places` for x it
+    /// is the whole stress, that of the resultants.
+    pub fn at(&self, y: f64, z: f64, xs: &[f64], places: &[f64]) -> Vec<StressTensor> {
         let mut sums = vec![StressTensor::default(); xs.len()];
-        for fields in &self.fields {
-            let [freed, mirrored] = fields.each_ref().map(|field| field.at(y, z, xs));
-            for (sum, (own, mirrored)) in sums.iter_mut().zip(freed.iter().zip(mirrored)) {
-                *sum += own.pressure - mirrored.pressure;
+        let (far, near): (Vec<usize>, Vec<usize>) =
+            (0..xs.len()).partition(|i| self.is_far(places[*i], z));
+        let of = |points: &[usize]| -> Vec<f64> { points.iter().map(|i| xs[*i]).collect() };
+        let (far_xs, near_xs) = (of(&far), of(&near));
+        for [freed, mirrored] in &self.fields {
+            for (i, s) in far.iter().zip(freed.by_resultants(y, z, &far_xs)) {
+                sums[*i] += s.pressure;
+            }
+            let [own, all] = [freed, mirrored].map(|field| field.by_waves(y, z, &near_xs));
+            for (i, (own, all)) in near.iter().zip(own.iter().zip(all)) {
+                sums[*i] += own.pressure - all.pressure;
             }
         }
         sums
+    }
+
+    /// Whether the point (`x`, `z`) is far, so that [`EndStress::at`] gives all of its stress.
+    pub fn is_far(&self, x: f64, z: f64) -> bool {
+        self.fields[0][0].is_far(x, z)
     }
 
     /// What the skin of a round surface adds there, see [`Field::skin_at`].
@@ -115,13 +133,24 @@ impl Load for Part<'_> {
                 Parity::Odd => (k * x).sin(),
             };
             // On either side.
-            2.0 * at * 2.0 * (k * self.half).sin() / k
+            2.0 * at * strip::uniform_transform(self.half, k)
         };
         &self.nodal * DMatrix::from_fn(self.places.len(), k.len(), wave)
     }
 
     fn endless(&self, _y: f64, _x: f64, _z: f64) -> [f64; 3] {
         [0.0; 3]
+    }
+
+    fn endless_of_all(&self, x: f64, z: f64) -> [f64; 3] {
+        let mut sum = [0.0; 3];
+        for (place, load) in self.places.iter().zip(&self.whole) {
+            let [own, opposite] = [x - place, x + place].map(|x| strip::uniform(self.half, x, z));
+            for (sum, (own, opposite)) in sum.iter_mut().zip(own.into_iter().zip(opposite)) {
+                *sum += load * (own + self.parity.sign() * opposite);
+            }
+        }
+        sum
     }
 
     fn neighbours(&self, _y: f64) -> Vec<(usize, f64)> {

@@ -157,11 +157,15 @@ pub fn layer(cells: &CellPressure, end: FieldEnd, nu: f64, z: f64) -> Layer {
 }
 
 /// Adds what free ends do, known on the nodes of `axis` along the contact, to a layer at the depth
-/// `z` (C).
+/// `z` (C); at far points it takes the layer's place.
 pub fn add_ends(layer: &mut Layer, grid: &Grid, axis: &Panels, ends: &EndStress, z: f64) {
     let xs: Vec<f64> = (0..grid.nx).map(|i| grid.x(i)).collect();
+    let far: Vec<usize> = (0..grid.nx).filter(|i| ends.is_far(xs[*i], z)).collect();
+    for row in layer.iter_mut().flat_map(|field| field.chunks_exact_mut(grid.nx)) {
+        far.iter().for_each(|i| row[*i] = 0.0);
+    }
     let rows: Vec<Vec<StressTensor>> =
-        axis.nodes().par_iter().map(|y| ends.at(*y, z, &xs)).collect();
+        axis.nodes().par_iter().map(|y| ends.at(*y, z, &xs, &xs)).collect();
     for j in 0..grid.ny {
         for (node, weight) in axis.interpolation(grid.y(j)) {
             for (i, stress) in rows[node].iter().enumerate() {

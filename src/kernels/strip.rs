@@ -85,6 +85,11 @@ pub fn uniform(half_width: f64, x: f64, z: f64) -> [f64; 3] {
     std::array::from_fn(|i| (right[i] - left[i]) / PI)
 }
 
+/// Fourier transform at the wavenumber `k` >= 0 of the unit pressure on |x'| <= `half_width`.
+pub fn uniform_transform(half_width: f64, k: f64) -> f64 {
+    if k == 0.0 { 2.0 * half_width } else { 2.0 * (k * half_width).sin() / k }
+}
+
 /// Pressure of the modes at `x`.
 pub fn pressure(half_width: f64, coefficients: &[f64], x: f64) -> f64 {
     let t = x / half_width;

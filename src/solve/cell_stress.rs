@@ -167,8 +167,8 @@ impl Summed<'_> {
         // Nothing moves along x where the surface is flat, nor in a plane of symmetry.
         let sloped = |x: f64| !self.flat && (x != 0.0 || !self.even);
         let xs: Vec<f64> = points.iter().map(|[x, ..]| *x).collect();
-        let flat = |all: &[f64], _: &[f64]| {
-            vec![self.at(y, z, all).into_iter().map(FlatStress::from).collect()]
+        let flat = |all: &[f64], places: &[f64]| {
+            vec![self.at(y, z, all, places).into_iter().map(FlatStress::from).collect()]
         };
         let mut all = rounded(&xs, &[z], contact, sloped, flat).swap_remove(0);
         if let Some(ends) = self.ends.as_ref().filter(|_| !self.flat) {
@@ -177,11 +177,18 @@ impl Summed<'_> {
         all
     }
 
-    /// The flat body's stresses at `y`, `z` for each x of `xs`.
-    fn at(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
-        let mut found: Vec<StressTensor> = xs.iter().map(|x| self.cells.at(*x, y, z)).collect();
-        let Some(ends) = &self.ends else { return found };
-        found.iter_mut().zip(ends.at(y, z, xs)).for_each(|(sum, more)| *sum += more);
+    /// The flat body's stresses at `y`, `z` for each x of `xs`; the `places` for x decide which of
+    /// them are far.
+    fn at(&self, y: f64, z: f64, xs: &[f64], places: &[f64]) -> Vec<StressTensor> {
+        let Some(ends) = &self.ends else {
+            return xs.iter().map(|x| self.cells.at(*x, y, z)).collect();
+        };
+        let mut found = ends.at(y, z, xs, places);
+        for ((sum, x), place) in found.iter_mut().zip(xs).zip(places) {
+            if !ends.is_far(*place, z) {
+                *sum += self.cells.at(*x, y, z);
+            }
+        }
         if self.faces.iter().any(|face| (face - y).abs() <= self.near) {
             found.iter_mut().for_each(|s| (s.yy, s.xy, s.yz) = (0.0, 0.0, 0.0));
         }

@@ -56,7 +56,7 @@ type Bending = [f64; 5];
 impl Field<'_> {
     /// Whether the point (`x`, `z`) is so far from the contact that its stress is that of the
     /// load's resultants.
-    pub(super) fn is_far(&self, x: f64, z: f64) -> bool {
+    pub(crate) fn is_far(&self, x: f64, z: f64) -> bool {
         let (reach, freed) = (FAR * self.stack.body().half, self.stack.body().end.freed);
         let distant = (x * reach / self.beside()).hypot(z) > reach;
         // Forces along a half-space's surface have no formula here.
@@ -100,12 +100,8 @@ impl Field<'_> {
         let body = self.stack.body();
         let (half, nu) = (body.half, body.nu);
         let moment: f64 = pieces.iter().map(|piece| piece.force * piece.off).sum();
-        let stress = |plane: &dyn Fn(f64) -> [f64; 3], bending: Bending| {
-            let mut own = [0.0; 3];
-            for piece in pieces {
-                let part = plane(piece.y).map(|s| s * piece.length / (2.0 * half));
-                own.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
-            }
+        let stress = |plane: [f64; 3], bending: Bending| {
+            let own = plane.map(|s| s / (2.0 * half));
             let [m_x, m_z, m_xz, q_x, q_z] = bending.map(|of_one| moment * of_one);
             let linear = -1.5 * y / half.powi(3);
             let parabolic = -0.75 * (half * half - y * y) / half.powi(3);
@@ -118,7 +114,7 @@ impl Field<'_> {
                 yz: parabolic * q_z,
             }
         };
-        let mut pressure = stress(&|y| self.pressure.endless(y, x, z), bent(x, z, nu));
+        let mut pressure = stress(self.pressure.endless_of_all(x, z), bent(x, z, nu));
         if z < LAYER * half {
             let [_, _, torque, ..] = bent(x, 0.0, nu);
             let [xz, xy, yz] = untwisted(y, z, half);
@@ -129,7 +125,12 @@ impl Field<'_> {
             pressure.yz -= twist / x * yz;
         }
         let traction = self.traction.map_or(StressTensor::default(), |own| {
-            stress(&|y| own.endless_along(y, x, z), twisted(x, z, nu))
+            let mut plane = [0.0; 3];
+            for piece in pieces {
+                let part = own.endless_along(piece.y, x, z).map(|s| s * piece.length);
+                plane.iter_mut().zip(part).for_each(|(sum, part)| *sum += part);
+            }
+            stress(plane, twisted(x, z, nu))
         });
         FlatStress { pressure, traction }
     }

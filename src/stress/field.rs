@@ -228,13 +228,27 @@ impl<'a> Field<'a> {
         let far: Vec<bool> = places.iter().map(|x| self.is_far(*x, z)).collect();
         let near = xs.iter().zip(&far).filter(|(_, far)| !**far).map(|(x, _)| *x);
         let near: Vec<f64> = near.collect();
-        let mut remainders = self.remainders(y, z, &near).into_iter();
-        let pieces = if far.contains(&true) { self.pieces() } else { Vec::new() };
-        let at = |(&x, far): (&f64, bool)| match far {
-            true => self.far(&pieces, [x, y, z]),
-            false => self.complete(x, y, z, remainders.next().expect("one of each near point")),
-        };
-        xs.iter().zip(far).map(at).collect()
+        let distant = xs.iter().zip(&far).filter(|(_, far)| **far).map(|(x, _)| *x);
+        let mut by_resultants = self.by_resultants(y, z, &distant.collect::<Vec<_>>()).into_iter();
+        let mut by_waves = self.by_waves(y, z, &near).into_iter();
+        let mut at = |far: bool| if far { by_resultants.next() } else { by_waves.next() };
+        far.into_iter().map(|far| at(far).expect("one of each point")).collect()
+    }
+
+    /// [`Field::at`] by the load's resultants, as far points have it.
+    pub(crate) fn by_resultants(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
+        if xs.is_empty() {
+            return Vec::new();
+        }
+        let pieces = self.pieces();
+        xs.iter().map(|x| self.far(&pieces, [*x, y, z])).collect()
+    }
+
+    /// [`Field::at`] by sums of waves, wherever the points are.
+    pub(crate) fn by_waves(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
+        let z = if z < ON_SURFACE { 0.0 } else { z };
+        let remainders = self.remainders(y, z, xs);
+        xs.iter().zip(remainders).map(|(x, rest)| self.complete(*x, y, z, rest)).collect()
     }
 
     /// [`Field::at`], with the contribution of a round surface per C / R.

@@ -48,6 +48,17 @@ pub trait Load: Debug + Sync {
     /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y`.
     fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3];
 
+    /// The integral of [`Load::endless`] over the line.
+    fn endless_of_all(&self, x: f64, z: f64) -> [f64; 3] {
+        let sides = if self.is_symmetric() { 2.0 } else { 1.0 };
+        let mut sum = [0.0; 3];
+        for (y, weight) in self.axis().nodes().iter().zip(self.axis().weights()) {
+            let own = self.endless(*y, x, z);
+            sum.iter_mut().zip(own).for_each(|(sum, s)| *sum += sides * weight * s);
+        }
+        sum
+    }
+
     /// Transforms with the quadrature over the wavenumbers, see [`Wavenumbers::moments`]: a row for
     /// each of the coarse ones, over the nodes.
     fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {

@@ -374,6 +374,48 @@ fn layers_are_the_stresses_at_points_by_every_model() {
     }
 }
 
+/// Points so far from the contact that the load's resultants alone count: those of a smooth
+/// contact are the line engine's, and heights that rise across the contact move it, and them, by C.
+#[test]
+fn far_points_under_cells_are_the_line_engines() {
+    let smooth = skew(3);
+    let [from, to] = smooth.overlap();
+    let (c_m, unit_m) = (smooth.hertz().c_m, smooth.gap_unit_m());
+    let (half, middle) = (0.5 * (to - from), 0.5 * (from + to));
+    let mut moved = smooth.clone();
+    let (shape, span) = ([41, 11], [8.0 * c_m, (to - from) * c_m]);
+    let steps = [span[0] / 40.0, span[1] / 10.0];
+    let height = |k: usize| 2.0 * unit_m * ((k / shape[1]) as f64 * steps[0] / c_m - 4.0);
+    moved.surface = Some(surface(shape, steps, (0..shape[0] * shape[1]).map(height).collect()));
+    let places = [(30.0, 0.1, 0.0), (25.0, 3.0, 0.4), (-60.0, 20.0, -0.6), (8.0, 70.0, 0.3)];
+    let options = |by: f64| {
+        let at_m = |(x, z, y): (f64, f64, f64)| [x + by, middle + y * half, z].map(|v| v * c_m);
+        let mut options = Options::new(EdgeModel::QuarterSpace);
+        (options.curves, options.bodies) = (Vec::new(), vec![BodyKind::Block]);
+        options.points = places.map(|at| Point { body: BodyKind::Block, at_m: at_m(at) }).to_vec();
+        options
+    };
+    let line = SolvedCase::new(&smooth, &options(0.0)).unwrap().solution();
+    let cells = CellOptions { counts: Some([96, 128]), ..CellOptions::default() };
+    for (name, case, by) in [("smooth", &smooth, 0.0), ("moved", &moved, 1.0)] {
+        let own = options(by);
+        let found = solve_on_cells(case, &own, &cells, &|_, _| {}).unwrap();
+        for (i, (got, want)) in found.solution.points.iter().zip(&line.points).enumerate() {
+            small(&format!("{name}, {:?}", places[i]), crate::common::apart(got, want), 3e-4);
+        }
+        // A layer as deep.
+        let (grid, depth_m) = (&found.pressure.grid, 50.0 * c_m);
+        let layer = layers_on_cells(case, &own, &found.pressure, &[depth_m]).unwrap().remove(0);
+        let (i, j) = (70, 20);
+        let at_m = [grid.x(i) * c_m, (grid.y(j) + middle) * c_m, depth_m];
+        let below = Options { points: vec![Point { body: BodyKind::Block, at_m }], ..own };
+        let want = stress_on_cells(case, &below, &found.pressure).unwrap()[0];
+        let got = layer.stress.each_ref().map(|field| field[j * grid.nx + i]);
+        let off = crate::common::apart(&StressTensor::from_components(got), &want);
+        small(&format!("{name}, layer"), off, 1e-5);
+    }
+}
+
 /// Half-side of a rough patch, beside which the gap is wide (C).
 const PATCH: f64 = 0.95;
 
