@@ -142,7 +142,10 @@ fn sums(
     };
     let fields = PerBody { block: field(BodyKind::Block), roller: field(BodyKind::Roller) };
     let lines = line_loads(pressure, 0.0);
-    let contact = |kind: BodyKind, y: f64| local_contact(scene, &lines, y, fields[kind].faces);
+    let rows = scene.rough.then(|| loaded_rows(pressure, &lines));
+    let rows = rows.as_deref();
+    let contact =
+        |kind: BodyKind, y: f64| local_contact(scene, (&lines, rows), y, fields[kind].faces);
     let curve = |spec: &CurveSpec| -> Vec<RoundStress> {
         let rows: Vec<&[[f64; 3]]> =
             spec.points.chunk_by(|a, b| a[1] == b[1] && a[2] == b[2]).collect();
@@ -196,15 +199,35 @@ impl Summed<'_> {
     }
 }
 
+/// Place, load per length and its moment about x = 0 of each row of cells, with the loads `lines`.
+fn loaded_rows(pressure: &CellPressure, lines: &[LineLoad]) -> Vec<(f64, f64, f64)> {
+    let grid = &pressure.grid;
+    let (a, _) = grid.half_sides();
+    let rows = lines.iter().zip(pressure.pressure.chunks_exact(grid.nx));
+    let row = |(line, row): (&LineLoad, &[f64])| {
+        let moment: f64 = row.iter().enumerate().map(|(i, p)| p * grid.x(i)).sum();
+        (line.y, line.load, 2.0 * a * moment)
+    };
+    rows.map(row).collect()
+}
+
 /// The plane contact that the surface of a body between the `faces` has at `y`: under the load per
-/// length there, where that varies.
-fn local_contact(scene: &Scene, lines: &[LineLoad], y: f64, faces: [f64; 2]) -> LocalContact {
-    if !scene.may_end() {
+/// length there, where that varies, which of a rough contact is that of the `rows` around.
+fn local_contact(
+    scene: &Scene,
+    (lines, rows): (&[LineLoad], Option<&[(f64, f64, f64)]>),
+    y: f64,
+    faces: [f64; 2],
+) -> LocalContact {
+    if !scene.may_end() && rows.is_none() {
         let at = [-scene.half_length, scene.half_length];
         return LocalContact::HERTZ.on_line(y, ContactEnds { at, open: [false; 2] }, faces);
     }
     let ends = contact_ends(lines);
     let place = LocalContact::place(y, ends.at);
+    if let Some(rows) = rows {
+        return LocalContact::under_rows(rows, place).on_line(y, ends, faces);
+    }
     let nearest = lines.iter().min_by(|a, b| (a.y - place).abs().total_cmp(&(b.y - place).abs()));
     LocalContact::carrying(nearest.map_or(0.0, |line| line.load)).on_line(y, ends, faces)
 }

@@ -47,9 +47,9 @@ const POINTS: usize = GROUPS * LANES;
 const GROUPS: usize = 5;
 const LANES: usize = 8;
 
-/// Distance from the contact's end (C) within which its local half-width is not that of the loads
-/// around.
-const END_REACH: f64 = 1.0;
+/// Distance (C) within which the loads are those of a local contact, and from the contact's end
+/// within which its half-width is not that of the loads around.
+const REACH: f64 = 1.0;
 
 /// Nodes of the rule on [-1, 1], and weights that include the Hertz pressure sqrt(1 - t^2).
 type Rule = [[[f64; LANES]; 2]; GROUPS];
@@ -84,6 +84,8 @@ pub struct LocalContact {
     pub half_width: f64,
     /// Its largest pressure, of a semi-elliptic one with the same load (p0).
     pub peak: f64,
+    /// x of its middle (C).
+    middle: f64,
     /// Distances inwards from the line's ends (C), negative beyond them.
     inside: [f64; 2],
     /// How far the body goes on beyond these ends (C).
@@ -96,7 +98,7 @@ impl LocalContact {
 
     /// That of an endless line.
     pub const fn endless(half_width: f64, peak: f64) -> Self {
-        Self { half_width, peak, inside: [f64::INFINITY; 2], ledges: [0.0; 2] }
+        Self { half_width, peak, middle: 0.0, inside: [f64::INFINITY; 2], ledges: [0.0; 2] }
     }
 
     /// The same below `y`, of a line that has these `ends`, on a body with ends of its own. A load
@@ -131,7 +133,7 @@ impl LocalContact {
     /// The place whose load counts at `y`, in a contact that has these `ends`: what is added
     /// depends on the loads within C, of which the steep ends themselves are no measure.
     pub fn place(y: f64, [from, to]: [f64; 2]) -> f64 {
-        let inset = END_REACH.min(0.5 * (to - from));
+        let inset = REACH.min(0.5 * (to - from));
         // Where they leave no room, the two may differ by rounding, in either order.
         y.max(from + inset).min(to - inset)
     }
@@ -143,6 +145,21 @@ impl LocalContact {
         Self::endless(half_width, half_width)
     }
 
+    /// That of rows of cells, each with its place along the line, its load per length (C p0) and
+    /// the moment of that about x = 0: the mean of the rows within C of `place`, as what is added
+    /// there does not follow the load from one row to the next.
+    pub fn under_rows(rows: &[(f64, f64, f64)], place: f64) -> Self {
+        let apart = |(y, ..): &(f64, f64, f64)| (y - place).abs();
+        let nearest = rows.iter().map(apart).fold(f64::INFINITY, f64::min);
+        let reach = REACH.max(nearest);
+        let (mut load, mut moment, mut count) = (0.0, 0.0, 0.0);
+        for (_, own, about) in rows.iter().filter(|row| apart(row) <= reach) {
+            (load, moment, count) = (load + own, moment + about, count + 1.0);
+        }
+        let middle = if load > 0.0 { moment / load } else { 0.0 };
+        Self { middle, ..Self::carrying(load / count) }
+    }
+
     /// Contributions of the loads' tilt and of the surface's drop, by one of [`Kernel`]s, at (`x`,
     /// `z`) (C).
     fn tilted(&self, sums: Kernel, x: f64, z: f64) -> StressTensor {
@@ -150,6 +167,7 @@ impl LocalContact {
         if half_width <= 0.0 {
             return StressTensor::default();
         }
+        let x = x - self.middle;
         let factor = half_width * peak * self.share(x, z) / PI;
         let of_sum = |sum| factor * sum;
         let [xx, zz, xz] = sums(&RULE, x / half_width, z / half_width).map(of_sum);

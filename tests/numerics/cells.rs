@@ -306,6 +306,57 @@ fn round_shape_ends_with_the_contact_on_both_engines() {
     small("root mean square", stress, 8e-4);
 }
 
+/// What a round surface adds to a rough contact follows the loads around a place: a crown in the
+/// heights is that of the line engine, and heights that rise across the contact move it by C, where
+/// the roller's surface is turned by C / R. Under Hertz's mean load in the middle both were up to
+/// 0.015 p0 off.
+#[test]
+fn round_shape_follows_the_loads_of_a_rough_contact() {
+    let text = "name = \"crown\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
+         [block]\nyoung_pa = 210e9\npoisson = 0.3\n[dimensionless]\nW = 1e-3\nS_l = 5.0\nL_r = 1.0";
+    let plain = Case::from_toml(text).unwrap();
+    let crown = format!("{text}\n[block.profile]\nkind = \"crown\"\nradius_m = 0.3");
+    let crown = Case::from_toml(&crown).unwrap();
+    let (c_m, unit_m) = (plain.hertz().c_m, plain.gap_unit_m());
+    let turn = c_m / plain.roller.radius_m;
+    let places = [(0.4, 0.1, 0.15), (-0.3, 0.4, 0.5), (0.7, -0.7, 0.5), (0.0, 0.7, 1.5)];
+    let options = |at: &dyn Fn((f64, f64, f64)) -> [f64; 3]| {
+        let point = |place| Point { body: BodyKind::Roller, at_m: at(place).map(|v| v * c_m) };
+        let points = places.map(point).to_vec();
+        let (curves, bodies) = (Vec::new(), vec![BodyKind::Roller]);
+        Options { points, curves, bodies, ..Options::new(EdgeModel::QuarterSpace) }
+    };
+    for by in [0.0, 1.0] {
+        // A point at a vertical depth lies farther out along the turned surface.
+        let own = options(&|(x, y, z)| [x + by * z * turn, 5.0 * y, z]);
+        let line = SolvedCase::new(&crown, &own).unwrap().solution();
+        let mut rough = plain.clone();
+        let (shape, steps) = ([61, 101], [0.1 * c_m, 0.1 * c_m]);
+        let height = |k: usize| {
+            let (x, y) = ((k / 101) as f64 - 30.0, (k % 101) as f64 - 50.0);
+            0.2 * by * x * unit_m - (0.3 - (0.3f64.powi(2) - (y * steps[1]).powi(2)).sqrt())
+        };
+        rough.surface = Some(surface(shape, steps, (0..61 * 101).map(height).collect()));
+        let cells = CellOptions { counts: Some([160, 160]), ..CellOptions::default() };
+        let moved = options(&|(x, y, z)| [x + by, 5.0 * y, z]);
+        let found = solve_on_cells(&rough, &moved, &cells, &|_, _| {}).unwrap().solution;
+        for (i, (got, flat)) in found.points.iter().zip(&line.points).enumerate() {
+            let StressTensor { xx, yy, zz, xy, xz, yz } = *flat;
+            let (sin, cos) = (by * turn).sin_cos();
+            let want = StressTensor {
+                xx: xx * cos * cos + zz * sin * sin - 2.0 * xz * sin * cos,
+                zz: zz * cos * cos + xx * sin * sin + 2.0 * xz * sin * cos,
+                xz: (xx - zz) * sin * cos + xz * (cos * cos - sin * sin),
+                xy: xy * cos - yz * sin,
+                yz: yz * cos + xy * sin,
+                yy,
+            };
+            let off = crate::common::apart(got, &want);
+            small(&format!("moved by {by} C, {:?}", places[i]), off, 3e-3);
+        }
+    }
+}
+
 /// The tables of docs/performance.md, "Contacts on cells".
 #[test]
 #[ignore = "some minutes"]
