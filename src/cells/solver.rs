@@ -89,7 +89,8 @@ impl Complementarity<'_> {
             let (on_set, relative) = (residual.on_set.sqrt(), residual.relative());
             progress(iterations, relative);
             let tensile = pressure.iter().any(|p| *p < 0.0);
-            if (relative <= tolerance && !tensile) || iterations >= most {
+            let settled = relative <= tolerance && !tensile;
+            if settled || relative.is_nan() || iterations >= most {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 return State { pressure, gap: misfit, motion, residual: relative, iterations };
             }
