@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 
 from .programs import run_program
-from .request import FemError, read_json
+from .request import FemError, is_finite, read_json
 from .scene import BODIES, Scene
 
 # The roller's quarter disc is three patches that meet at one inner point, as an O-grid. Radii are
@@ -488,10 +488,20 @@ def read_summary(folder):
         meshed = read_json(path)
     except FemError as error:
         raise FemError(f"{path}: run the mesh stage first ({error})") from error
-    known = {"options": dict, "contact_ends_c": list, "smallest_c": dict, "axes_c": dict, "bodies": dict,
+    known = {"gmsh": str, "options": dict, "contact_ends_c": list, "smallest_c": dict, "axes_c": dict, "bodies": dict,
              "seconds": dict, "cpu_seconds": float}
     whole = isinstance(meshed, dict) and all(isinstance(meshed.get(k), kind) for k, kind in known.items())
-    if not whole or not all(isinstance(meshed["axes_c"].get(name), list) and meshed["axes_c"][name]
-                            for name in ("x_contact", "y_contact", "z_block")):
+    if not whole or not _is_whole(meshed):
         raise FemError(f"{path}: is not what the mesh stage writes; run the mesh stage again")
     return meshed
+
+
+def _is_whole(meshed):
+    """Whether what is read of ``mesh.json`` later holds numbers: the axes ascending ones."""
+    axes = [meshed["axes_c"].get(name) for name in ("x_contact", "y_contact", "z_block")]
+    ascending = all(
+        isinstance(axis, list) and len(axis) > 1 and all(map(is_finite, axis)) and sorted(set(axis)) == axis
+        for axis in axes
+    )
+    counts = [body.get("unknowns") if isinstance(body, dict) else None for body in meshed["bodies"].values()]
+    return ascending and all(map(is_finite, [*meshed["seconds"].values(), *counts]))

@@ -24,8 +24,8 @@ import numpy as np
 
 from .meshing import write_atomically
 from .request import (
-    SCHEMA, Case, Curve, FemError, Material, MeshOptions, Request, SolverOptions, read_json,
-    read_request,
+    SCHEMA, Case, Curve, FemError, MeshOptions, Request, SolverOptions, check_case_name, material, only_keys, parse_case,
+    positive, read_json, read_request, subtable,
 )
 from .standard_points import EDGE_RANGE, away_from_edge, pressure_lines, standard_curves
 
@@ -41,21 +41,32 @@ def read_cases(path):
     """
     try:
         data = tomllib.loads(Path(path).read_text(encoding="utf-8"))
-    except (OSError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise FemError(f"{path}: cannot be read: {error}") from error
-    cases = {}
-    for name, table in data.items():
-        try:
-            roller, block = table["roller"], table["block"]
-            case = Case.from_dimensionless(
-                name, table["W"], table["S_l"], table["L_r"], roller["radius_m"],
-                Material(roller["young_pa"], roller["poisson"]),
-                Material(block["young_pa"], block["poisson"]),
-            )
-            cases[name] = dataclasses.replace(case, friction=table.get("friction", 0.0))
-        except KeyError as error:
-            raise FemError(f"{path}: case {name} has no {error}") from error
-    return cases
+    return {name: _listed_case(name, table, f"{path}: case {name}") for name, table in data.items()}
+
+
+def _listed_case(name, table, where):
+    """The :class:`Case` of one table of a file of cases."""
+    check_case_name(name, where)
+    if not isinstance(table, dict):
+        raise FemError(f"{where}: must be a table, [{name}], not {table!r}")
+    only_keys(table, {"W", "S_l", "L_r", "friction", "roller", "block"}, where)
+    for key in ("roller", "block", "W", "S_l", "L_r"):
+        if key not in table:
+            raise FemError(f"{where} has no '{key}'")
+    bodies = {}
+    for body, keys in (("roller", {"radius_m"}), ("block", set())):
+        bodies[body] = subtable(table, body, where)
+        only_keys(bodies[body], keys | {"young_pa", "poisson"}, f"{where}.{body}")
+    case = Case.from_dimensionless(
+        name, *(positive(table, key, where) for key in ("W", "S_l", "L_r")),
+        positive(bodies["roller"], "radius_m", f"{where}.roller"),
+        *(material(bodies[body], f"{where}.{body}") for body in ("roller", "block")),
+    )
+    friction = table.get("friction", 0.0)
+    # What follows from the numbers, too, has to be what a request can hold.
+    return parse_case({**case.to_json(), "friction": friction}, where)
 
 
 def standard_request(case, size, **overrides):
@@ -405,6 +416,7 @@ def _finished(work):
     """The run in ``work``: folder, request, and case as a record has it; raise if it cannot be kept."""
     path = work / "request.json"
     request = read_request(path)
+    check_case_name(request.case.name, path)
     if not (work / "fem.json").exists():
         raise FemError(f"{work}: has no fem.json: the run is not finished; run it again")
     _check_summary(work / "fem.json")
@@ -423,21 +435,44 @@ def _finished(work):
     return work, request, case
 
 
+def _check_alike(finished):
+    """Raise :class:`FemError` where runs of one name are not one case by one code on different meshes."""
+    first, sizes = {}, {}
+    for work, request, asked in finished:
+        name = request.case.name
+        known, engine, form = first.setdefault(name, (work, request.engine, asked))
+        if form != asked:
+            raise FemError(f"{work}: holds another case than {known}, and both are called {name}; give one of them")
+        if engine != request.engine:
+            raise FemError(f"{work}: is by {request.engine}, but {known} is by {engine}; keep them in two folders, "
+                           "because each code has its own records")
+        same = sizes.setdefault((name, _written(request.mesh.size)), work)
+        if same != work:
+            raise FemError(f"{work}: is of the same size as {same}; give one of them")
+
+
 def keep(runs, folder, log, study=None):
     """Add finished runs of ``edgeline fem``, the folders ``runs``, to the records in ``folder``, one a case.
 
     ``study``: the built-in study that the cases belong to, for the command in the record. Each run holds
     its request, and so its case: any that the model takes, of several sizes, but for profiles that are
-    tables. What a record holds of that size is replaced. Raises :class:`FemError` where a run is not
-    finished, given twice, damaged or has such a profile, before anything is written, and where it is of
-    another case or code than its record.
+    tables. What a record holds of that size is replaced. Raises :class:`FemError`, before anything is
+    written, where a run is not finished, given twice, damaged or has such a profile, and where it is of
+    another case or code than its record or than another run of its case.
     """
     folders = [Path(work).resolve() for work in runs]
     twice = [work for work, place in zip(runs, folders) if folders.count(place) > 1]
     if twice:
         raise FemError(f"{twice[0]}: is given twice; give each run once")
-    # All are read before the first is added, so that a run that cannot be kept leaves all records alone.
-    for work, request, asked in [_finished(Path(work)) for work in runs]:
+    # All are read and checked before the first is added, so that a run that cannot be kept leaves all records alone.
+    finished = [_finished(Path(work)) for work in runs]
+    _check_alike(finished)
+    for work, request, asked in finished:
+        target = Path(folder) / request.case.name
+        if target.exists():
+            with _locked(target):
+                _known(target, asked, request.engine, f"the run {work}")
+    for work, request, asked in finished:
         target = Path(folder) / request.case.name
         target.mkdir(parents=True, exist_ok=True)
         with _locked(target):

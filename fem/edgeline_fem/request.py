@@ -3,6 +3,7 @@
 import dataclasses
 import json
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -242,20 +243,22 @@ class Request:
         }
 
 
-def _table(parent, key, where):
+def subtable(parent, key, where):
+    """The object ``key`` of ``parent``."""
     value = parent.get(key)
     if not isinstance(value, dict):
         raise FemError(f"{where}: '{key}' is missing or is not an object")
     return value
 
 
-def _only(table, known, where):
+def only_keys(table, known, where):
+    """Raise :class:`FemError` where ``table`` has a key that is not ``known``."""
     unknown = sorted(set(table) - set(known))
     if unknown:
         raise FemError(f"{where}: unknown key '{unknown[0]}'; known are {', '.join(sorted(known))}")
 
 
-def _is_finite(value):
+def is_finite(value):
     """Whether a value is a finite number."""
     try:
         return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
@@ -263,9 +266,10 @@ def _is_finite(value):
         return False
 
 
-def _positive(table, key, where):
+def positive(table, key, where):
+    """A finite number above 0."""
     value = table.get(key)
-    if not _is_finite(value) or value <= 0.0:
+    if not is_finite(value) or value <= 0.0:
         raise FemError(f"{where}: '{key}' must be a finite number above 0, not {value!r}")
     return float(value)
 
@@ -273,7 +277,7 @@ def _positive(table, key, where):
 def _number(table, key, where):
     """A finite number, or ``None`` where there is none."""
     value = table.get(key)
-    if value is not None and not _is_finite(value):
+    if value is not None and not is_finite(value):
         raise FemError(f"{where}: '{key}' must be a finite number, not {value!r}")
     return None if value is None else float(value)
 
@@ -292,10 +296,11 @@ def _profile(table, length_m, where):
     return tuple(map(tuple, points))
 
 
-def _material(table, where):
-    young_pa = _positive(table, "young_pa", where)
+def material(table, where):
+    """A :class:`Material` from the object of a body."""
+    young_pa = positive(table, "young_pa", where)
     poisson = table.get("poisson")
-    if not _is_finite(poisson) or not 0.0 <= poisson < 0.5:
+    if not is_finite(poisson) or not 0.0 <= poisson < 0.5:
         raise FemError(f"{where}: 'poisson' must lie in [0, 0.5), not {poisson!r}")
     return Material(young_pa, float(poisson))
 
@@ -303,7 +308,7 @@ def _material(table, where):
 def _options(cls, table, where):
     """An options dataclass from a JSON object, each value checked against the default's type."""
     fields = {field.name: field for field in dataclasses.fields(cls)}
-    _only(table, fields, where)
+    only_keys(table, fields, where)
     values = {}
     for key, value in table.items():
         default = fields[key].default
@@ -316,10 +321,24 @@ def _options(cls, table, where):
                 raise FemError(f"{where}: '{key}' must be a whole number above 0, not {value!r}")
             values[key] = value
         elif isinstance(default, float):
-            values[key] = _positive(table, key, where)
+            values[key] = positive(table, key, where)
         else:
             values[key] = value
     return cls(**values)
+
+
+def check_case_name(name, where):
+    """Raise :class:`FemError` unless a folder can be named after the case: the rule of case files."""
+    if not re.fullmatch(r"[A-Za-z0-9_-][A-Za-z0-9._-]{0,63}", name):
+        raise FemError(f"{where}: the case's name {name!r} is not valid: a name is 1 to 64 letters, digits, '-', '_' and "
+                       "'.', and does not start with '.'; choose such a name: folders are named after it")
+
+
+def _column_text(name, key, where):
+    """The name of a curve or line, as tables have it."""
+    if not isinstance(name, str) or not name or "," in name:
+        raise FemError(f"{where}: '{key}' must be a name without commas")
+    return name
 
 
 def _points(points, width, where):
@@ -327,7 +346,7 @@ def _points(points, width, where):
     good = isinstance(points, list) and points and all(
         isinstance(p, list)
         and len(p) == width
-        and all(_is_finite(v) for v in p)
+        and all(is_finite(v) for v in p)
         for p in points
     )
     if not good:
@@ -335,24 +354,24 @@ def _points(points, width, where):
     return [[float(v) for v in p] for p in points]
 
 
-def _case(case, where):
+def parse_case(case, where):
     """A :class:`Case` from its JSON object."""
-    _only(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m", "friction"},
+    only_keys(case, {"name", "roller", "block", "force_n", "eccentricity_m", "tilt_rad", "offset_m", "friction"},
           where)
-    roller, block = _table(case, "roller", where), _table(case, "block", where)
+    roller, block = subtable(case, "roller", where), subtable(case, "block", where)
     # The profile's own form is for those who read the request; its points count here.
-    _only(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.roller")
-    _only(block, {"length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.block")
-    lengths = [_positive(body, "length_m", f"{where}.{name}")
+    only_keys(roller, {"radius_m", "length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.roller")
+    only_keys(block, {"length_m", "young_pa", "poisson", "profile_m", "profile"}, f"{where}.block")
+    lengths = [positive(body, "length_m", f"{where}.{name}")
                for name, body in (("roller", roller), ("block", block))]
     parsed = Case(
         name=str(case.get("name", "")),
-        radius_m=_positive(roller, "radius_m", f"{where}.roller"),
+        radius_m=positive(roller, "radius_m", f"{where}.roller"),
         roller_length_m=lengths[0],
         block_length_m=lengths[1],
-        roller=_material(roller, f"{where}.roller"),
-        block=_material(block, f"{where}.block"),
-        force_n=_positive(case, "force_n", where),
+        roller=material(roller, f"{where}.roller"),
+        block=material(block, f"{where}.block"),
+        force_n=positive(case, "force_n", where),
         roller_profile_m=_profile(roller, lengths[0], f"{where}.roller"),
         block_profile_m=_profile(block, lengths[1], f"{where}.block"),
         eccentricity_m=_number(case, "eccentricity_m", where),
@@ -367,7 +386,7 @@ def _case(case, where):
     except (ZeroDivisionError, OverflowError):
         scales = (0.0,)
     # Each number may be legal, and what follows from them out of reach of floating point.
-    if not all(_is_finite(scale) and scale > 0.0 for scale in scales):
+    if not all(is_finite(scale) and scale > 0.0 for scale in scales):
         raise FemError(f"{where}: its half-width and pressure are no finite numbers above 0; check force, "
                        "lengths and moduli and their units")
     if not 0.0 <= parsed.friction <= 1.0:
@@ -388,14 +407,14 @@ def parse_request(data, where="request"):
     """
     if not isinstance(data, dict):
         raise FemError(f"{where}: must be a JSON object")
-    _only(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx",
+    only_keys(data, {"schema", "case", "mesh", "solver", "curves", "pressure_points_m", "gmsh", "engine", "ccx",
                  "contact_ends_m", "large_displacements"}, where)
     if data.get("schema") != SCHEMA:
         raise FemError(f"{where}: 'schema' is {data.get('schema')!r}, this program reads {SCHEMA}")
 
-    parsed = _case(_table(data, "case", where), f"{where}: case")
+    parsed = parse_case(subtable(data, "case", where), f"{where}: case")
 
-    solver = _options(SolverOptions, _table(data, "solver", where) if "solver" in data else {},
+    solver = _options(SolverOptions, subtable(data, "solver", where) if "solver" in data else {},
                       f"{where}: solver")
     if solver.linear not in ("direct", "iterative"):
         raise FemError(f"{where}: solver: 'linear' must be direct or iterative, not {solver.linear!r}")
@@ -408,35 +427,34 @@ def parse_request(data, where="request"):
         at = f"{where}: curves[{number}]"
         if not isinstance(curve, dict):
             raise FemError(f"{at}: must be an object")
-        _only(curve, {"body", "curve", "points_m"}, at)
+        only_keys(curve, {"body", "curve", "points_m"}, at)
         if curve.get("body") not in ("block", "roller"):
             raise FemError(f"{at}: 'body' must be block or roller, not {curve.get('body')!r}")
-        name = curve.get("curve")
-        if not isinstance(name, str) or not name or "," in name:
-            raise FemError(f"{at}: 'curve' must be a name without commas")
+        name = _column_text(curve.get("curve"), "curve", at)
         curves.append(Curve(curve["body"], name, _points(curve.get("points_m"), 3, f"{at}.points_m")))
 
     lines = data.get("pressure_points_m", {})
     if not isinstance(lines, dict):
         raise FemError(f"{where}: 'pressure_points_m' must be an object of lists of points")
     lines = {
-        name: _points(points, 2, f"{where}: pressure_points_m.{name}") for name, points in lines.items()
+        _column_text(name, name, f"{where}: pressure_points_m"): _points(points, 2, f"{where}: pressure_points_m.{name}")
+        for name, points in lines.items()
     }
     programs = {}
     for key, name in (("gmsh", "gmsh"), ("ccx", "CalculiX")):
         programs[key] = data.get(key, key)
-        if not isinstance(programs[key], str) or not programs[key]:
+        if not isinstance(programs[key], str) or not programs[key] or "\0" in programs[key]:
             raise FemError(f"{where}: '{key}' must be the name or path of the {name} program")
     engine = data.get("engine", "fenicsx")
     if engine not in ENGINES:
         raise FemError(f"{where}: 'engine' must be one of {', '.join(ENGINES)}, not {engine!r}")
     contact_ends = data.get("contact_ends_m", [])
-    if not isinstance(contact_ends, list) or not all(_is_finite(y) for y in contact_ends):
+    if not isinstance(contact_ends, list) or not all(is_finite(y) for y in contact_ends):
         raise FemError(f"{where}: 'contact_ends_m' must be a list of finite numbers, not {contact_ends!r}")
     large = data.get("large_displacements", False)
     if not isinstance(large, bool):
         raise FemError(f"{where}: 'large_displacements' must be true or false, not {large!r}")
-    mesh = _options(MeshOptions, _table(data, "mesh", where) if "mesh" in data else {},
+    mesh = _options(MeshOptions, subtable(data, "mesh", where) if "mesh" in data else {},
                     f"{where}: mesh")
     return Request(parsed, mesh, solver, curves, lines, engine=engine, contact_ends_m=tuple(contact_ends),
                    large_displacements=large, **programs)
@@ -445,9 +463,14 @@ def parse_request(data, where="request"):
 def read_json(path):
     """What the JSON file at ``path`` holds; :class:`FemError` if it cannot be read."""
     try:
-        return json.loads(Path(path).read_text(encoding="utf-8"))
+        data = json.loads(Path(path).read_text(encoding="utf-8"))
+        # An escape such as \ud800 alone is legal JSON, but no text that a file or a command can hold.
+        json.dumps(data, ensure_ascii=False).encode()
+        return data
     except OSError as error:
         raise FemError(f"{path}: cannot be read: {error.strerror}") from error
+    except UnicodeEncodeError as error:
+        raise FemError(f"{path}: has a lone surrogate in a text: {error}; remove it") from error
     except (ValueError, RecursionError) as error:
         raise FemError(f"{path}: is not JSON: {error}") from error
 

@@ -42,6 +42,40 @@ def test_cases_file(tmp_path):
         read_cases(path)
 
 
+LISTED = {
+    "W": "1e-4", "S_l": "5.0", "L_r": "0.5", "block": "{ young_pa = 210e9, poisson = 0.3 }",
+    "roller": "{ radius_m = 0.01, young_pa = 210e9, poisson = 0.3 }",
+}
+
+
+@pytest.mark.parametrize(("change", "complaint"), [
+    ({"W": "'1e-4'"}, "case a: 'W' must be a finite number above 0, not '1e-4'"),
+    ({"W": "-1e-4"}, "case a: 'W' must be a finite number above 0"),
+    ({"S_l": "inf"}, "case a: 'S_l' must be a finite number above 0"),
+    ({"roller": "5"}, "case a: 'roller' is missing or is not an object"),
+    ({"block": "{ young_pa = true, poisson = 0.3 }"}, "case a.block: 'young_pa' must be a finite number"),
+    ({"block": "{ young_pa = 210e9, poisson = 0.7 }"}, "case a.block: 'poisson' must lie in"),
+    ({"friction": "'much'"}, "case a: 'friction' must be a finite number"),
+    ({"fricton": "0.1"}, "case a: unknown key 'fricton'; known are L_r, S_l, W, block, friction, roller"),
+])
+def test_a_bad_case_of_the_list_is_named(tmp_path, change, complaint):
+    path = tmp_path / "cases.toml"
+    path.write_text("[a]\n" + "".join(f"{key} = {value}\n" for key, value in {**LISTED, **change}.items()))
+    with pytest.raises(FemError, match=re.escape(f"{path}: ") + complaint):
+        read_cases(path)
+
+
+@pytest.mark.parametrize(("text", "complaint"), [
+    (b"a = 5", r"case a: must be a table, \[a\], not 5"),
+    (b"['../a']", "the case's name '../a' is not valid"),
+    (b"\xff", "cannot be read"),
+])
+def test_what_is_no_list_of_cases_is_refused(tmp_path, text, complaint):
+    (tmp_path / "cases.toml").write_bytes(text)
+    with pytest.raises(FemError, match=complaint):
+        read_cases(tmp_path / "cases.toml")
+
+
 def test_a_record_grows_and_is_not_made_twice(tmp_path):
     case = steel_case(5e-4, 5.0, 1.0)
     lines = []
@@ -143,6 +177,34 @@ def test_a_record_is_of_one_code(tmp_path, engines):
         record(case, 3.0, tmp_path / "kept", print, Run(engine=engines[1]))
     assert {path.name: path.read_bytes() for path in kept.iterdir()} == before
     keep([second], tmp_path / "other", print)
+
+
+@pytest.mark.parametrize(("change", "engine", "complaint"), [
+    ({}, "calculix", "second: is by calculix, but .*first is by fenicsx"),
+    ({"eccentricity_m": 1e-4}, "fenicsx", "second: holds another case than .*first"),
+    ({"name": "other"}, "calculix", "other/record.json: holds meshes by fenicsx, but the run .*second is by calculix"),
+    ({"name": "other", "eccentricity_m": 1e-4}, "fenicsx", "other/record.json: holds another case"),
+    ({"name": "../other"}, "fenicsx", "second/request.json: the case's name '../other' is not valid"),
+    ({"name": ""}, "fenicsx", "second/request.json: the case's name '' is not valid"),
+])
+def test_runs_are_checked_against_each_other_and_their_records_first(tmp_path, change, engine, complaint):
+    case = steel_case(5e-4, 5.0, 1.0)
+    kept = tmp_path / "kept"
+    keep([finish(made_up_run(tmp_path / "before", dataclasses.replace(case, name="other"), 3.0))], kept, print)
+    before = {path: path.read_bytes() for path in kept.rglob("*") if path.is_file()}
+    first = finish(made_up_run(tmp_path / "first", case, 4.0))
+    second = finish(made_up_run(tmp_path / "second", dataclasses.replace(case, **change), 3.0, engine))
+    with pytest.raises(FemError, match=complaint):
+        keep([first, second], kept, print)
+    assert {path: path.read_bytes() for path in kept.rglob("*") if path.is_file()} == before
+
+
+def test_one_run_of_each_size_is_kept(tmp_path):
+    case = steel_case(5e-4, 5.0, 1.0)
+    runs = [finish(made_up_run(tmp_path / name, case, 3.0)) for name in ("one", "two")]
+    with pytest.raises(FemError, match="two: is of the same size as .*one; give one of them"):
+        keep(runs, tmp_path / "kept", print)
+    assert not (tmp_path / "kept").exists()
 
 
 @pytest.mark.parametrize("profile", [{"kind": "table", "file": "drop.csv"}, {}])

@@ -83,6 +83,9 @@ def change(data, path, value):
         (["curves", 0, "body"], "ball", "'body' must be block or roller"),
         (["curves", 0, "points_m"], [[0.0, 1.0]], "points of 3 finite numbers"),
         (["gmsh"], "", "'gmsh' must be"),
+        (["gmsh"], "a\0b", "'gmsh' must be"),
+        (["pressure_points_m", "a,b"], [[0.0, 0.0]], "pressure_points_m: 'a,b' must be a name without commas"),
+        (["pressure_points_m", ""], [[0.0, 0.0]], "pressure_points_m: '' must be a name without commas"),
         (["curves"], 5, "'curves' must be a list of objects, not 5"),
         (["curves"], None, "'curves' must be a list of objects, not None"),
         (["case", "name"], 5, "'name' must be a text"),
@@ -111,6 +114,10 @@ def test_the_command_line_fails_with_code_2_and_leaves_nothing(tmp_path):
     done = run_stage("mesh", request, tmp_path / "out")
     assert done.returncode == 2 and "is not JSON" in done.stderr
 
+    request.write_text(json.dumps({**sound(), "gmsh": "\ud800"}))
+    done = run_stage("mesh", request, tmp_path / "out")
+    assert done.returncode == 2 and "has a lone surrogate in a text" in done.stderr, done.stderr
+
     data = sound()
     data["gmsh"] = "no-such-gmsh"
     request.write_text(json.dumps(data))
@@ -120,7 +127,13 @@ def test_the_command_line_fails_with_code_2_and_leaves_nothing(tmp_path):
 
     done = run_stage("solve", request, tmp_path / "out")
     assert done.returncode == 2 and "run the mesh stage first" in done.stderr
-    for stage in ("points", "solve"):
-        (tmp_path / "out" / "mesh.json").write_text("{}")
-        done = run_stage(stage, request, tmp_path / "out")
-        assert done.returncode == 2 and "run the mesh stage again" in done.stderr, done.stderr
+    meshed = {"gmsh": "4", "options": {}, "contact_ends_c": [], "smallest_c": {}, "bodies": {"block": {"unknowns": 3}},
+              "axes_c": dict.fromkeys(("x_contact", "y_contact", "z_block"), [0.0, 1.0]), "seconds": {"block": 1.0},
+              "cpu_seconds": 1.0}
+    for bad in ({}, {**meshed, "seconds": {"block": "1"}}, {**meshed, "bodies": {"block": 3}}, {**meshed, "gmsh": None},
+                *({**meshed, "axes_c": {**meshed["axes_c"], "y_contact": axis}}
+                  for axis in ([0.0, "1"], [0.0], [0.0, None], [1.0, 0.0], [0.0, [1.0]], 5))):
+        (tmp_path / "out" / "mesh.json").write_text(json.dumps(bad))
+        for stage in ("points", "solve"):
+            done = run_stage(stage, request, tmp_path / "out")
+            assert done.returncode == 2 and "run the mesh stage again" in done.stderr, (bad, done.stderr)
