@@ -305,6 +305,10 @@ fn read_base(root: &Table, path: &Path, table: &Table, factors: &[Factor]) -> Re
         if key.path == "load.approach_m" {
             return Err(entry.refuse(OTHER_FORCES, "vary load.force_n instead"));
         }
+        if key.table() == "fatigue" {
+            let remedy = "remove it: `edgeline fatigue` takes a case for each level";
+            return Err(entry.refuse("a study tells nothing of fatigue", remedy));
+        }
         if let Some(given) = root.find(key.path) {
             let reason = format!("the factor {} sets it", factor.name());
             return Err(given.refuse(reason, "remove it, or the factor"));

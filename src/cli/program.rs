@@ -7,6 +7,7 @@ use super::{
 };
 use crate::base::Result;
 use crate::case::Case;
+use crate::host::let_large_files_fail;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::path::Path;
@@ -75,6 +76,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(if e.use_stderr() { 2 } else { 0 });
         }
     };
+    let_large_files_fail();
     let outcome = match arguments.command {
         Command::Solve(own) => on_case(&own.case, || solve::run(&own)),
         Command::Fatigue(own) => on_case(&own.case, || fatigue::run(&own)),

@@ -23,7 +23,7 @@ pub(crate) use {
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,
-    signals::check_interrupt,
+    signals::{check_interrupt, let_large_files_fail},
     text::{csv_fault, read_text},
 };
 

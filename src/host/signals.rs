@@ -1,8 +1,9 @@
 //! Requests to stop (Ctrl-C, SIGTERM, SIGHUP). While a child runs they are noted, and the child is
-//! ended first; otherwise they have their default effect.
+//! ended first; otherwise they have their default effect. The signal at the limit of a file's size
+//! (SIGXFSZ) is left to the write that meets the limit.
 
 use crate::base::{Error, Result};
-use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
 use signal_hook::flag;
 use std::fs;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -31,6 +32,14 @@ static WATCH: LazyLock<Watch> = LazyLock::new(|| {
     }
     watch
 });
+
+/// Makes a write beyond the largest size of a file (`ulimit -f`) fail with an error as any other,
+/// where the signal would end the process without a message. Children have the signal's default
+/// effect.
+pub(crate) fn let_large_files_fail() {
+    // What the flag says is known from the error of the write.
+    let _ = flag::register(SIGXFSZ, Arc::new(AtomicBool::new(false)));
+}
 
 /// Whether `signal` is ignored on purpose (nohup).
 fn is_ignored(signal: i32) -> bool {

@@ -112,7 +112,7 @@ fn words(run: &StudyRun, effects: &Effects) -> String {
         ));
         return text;
     };
-    text.push_str(&outstanding(&ranked, &lenth, &describe));
+    text.push_str(&outstanding(&ranked, &lenth, unit, &describe));
     if let Some(curvature) = analysis.curvature {
         let (beyond, so) = if curvature.abs() > lenth.me {
             ("beyond", "the response bends between the levels")
@@ -139,8 +139,14 @@ fn sum_of_terms(run: &StudyRun, effect: &Effect) -> String {
     name
 }
 
-/// The effects, largest first, that exceed Lenth's limits.
-fn outstanding(ranked: &[&Effect], lenth: &Lenth, describe: &dyn Fn(&Effect) -> String) -> String {
+/// The effects, largest first, that exceed Lenth's limits, which are in `unit`.
+fn outstanding(
+    ranked: &[&Effect],
+    lenth: &Lenth,
+    unit: &str,
+    describe: &dyn Fn(&Effect) -> String,
+) -> String {
+    let [me, sme] = [lenth.me, lenth.sme].map(|limit| format!("{} {unit}", significant(limit, 2)));
     let with = |verdict: Verdict| -> Vec<String> {
         let chosen = ranked.iter().filter(|e| lenth.verdict(e.value) == verdict);
         chosen.map(|e| describe(e)).collect()
@@ -148,28 +154,46 @@ fn outstanding(ranked: &[&Effect], lenth: &Lenth, describe: &dyn Fn(&Effect) -> 
     let (active, likely) = (with(Verdict::Active), with(Verdict::Likely));
     match (active.is_empty(), likely.is_empty()) {
         (true, true) => format!(
-            "; no effect stands out of the others by Lenth's margin of error ({}), the largest \
-             is that of {}",
-            significant(lenth.me, 2),
+            "; no effect stands out of the others by Lenth's margin of error ({me}), the \
+             largest is that of {}",
             describe(ranked[0])
         ),
         (true, false) => format!(
-            "; beyond Lenth's margin of error ({}), though not beyond the simultaneous one, is \
-             {}",
-            significant(lenth.me, 2),
+            "; beyond Lenth's margin of error ({me}), though not beyond the simultaneous one, \
+             is {}",
             likely.join(" and ")
         ),
         (false, none_likely) => {
             let text = format!(
-                "; beyond Lenth's simultaneous margin of error ({}): {}",
-                significant(lenth.sme, 2),
+                "; beyond Lenth's simultaneous margin of error ({sme}): {}",
                 active.join(", ")
             );
             if none_likely {
                 return text;
             }
-            let me = significant(lenth.me, 2);
             text + &format!("; beyond the single one ({me}): {}", likely.join(", "))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{Effect, Lenth, outstanding};
+
+    /// Limits have the unit of the effects that they are compared with.
+    #[test]
+    fn limits_are_told_with_their_unit() {
+        let effect = |value| Effect { factors: vec![0], value, aliases: Vec::new() };
+        let said = |values: &[f64]| {
+            let effects: Vec<Effect> = values.iter().map(|v| effect(*v)).collect();
+            let lenth = Lenth { pse: 1e6, me: 2.5e6, sme: 6e6 };
+            let ranked: Vec<&Effect> = effects.iter().collect();
+            outstanding(&ranked, &lenth, "Pa", &|effect| format!("{}", effect.value))
+        };
+        assert!(said(&[1e6]).contains("margin of error (2.5e6 Pa), the largest is that of"));
+        assert!(said(&[3e6]).contains("margin of error (2.5e6 Pa), though not beyond"));
+        let all = said(&[7e6, 3e6]);
+        assert!(all.contains("simultaneous margin of error (6e6 Pa): 7000000"), "{all}");
+        assert!(all.contains("beyond the single one (2.5e6 Pa): 3000000"), "{all}");
     }
 }

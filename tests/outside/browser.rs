@@ -155,3 +155,22 @@ fn the_page_works_in_a_browser() {
     assert_eq!(page.text("document.getElementById('chart').getAttribute('aria-label')"), shown);
     assert_eq!(page.complaints("file:"), Vec::<String>::new());
 }
+
+/// On a narrow screen the page of a solution is no wider than that, and its pictures scroll: drawn
+/// as wide as the screen, what is written in them could not be read.
+#[test]
+fn the_page_of_a_solution_fits_a_narrow_screen() {
+    let Some(program) = browser() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let solve = ["solve", "flush-short", "--tolerance", "1e-2", "--plots", "--out", "run"];
+    succeeded(&mut edgeline(folder.path(), &solve));
+    let mut page = Page::open(&program, &folder.path().join("run/summary.html"));
+    page.resize(390, 844);
+    page.wait("innerWidth === 390");
+    assert_eq!(page.eval("document.documentElement.scrollWidth <= innerWidth"), json!(true));
+    let widths = page.text(
+        "[...document.querySelectorAll('figure svg')].map((e) => e.clientWidth >= 700).join()",
+    );
+    assert!(widths.starts_with("true") && !widths.contains("false"), "{widths}");
+    assert_eq!(page.complaints("file:"), Vec::<String>::new());
+}
