@@ -188,7 +188,7 @@ mod tests {
             let effects: Vec<Effect> = values.iter().map(|v| effect(*v)).collect();
             let lenth = Lenth { pse: 1e6, me: 2.5e6, sme: 6e6 };
             let ranked: Vec<&Effect> = effects.iter().collect();
-            outstanding(&ranked, &lenth, "Pa", &|effect| format!("{}", effect.value))
+            outstanding(&ranked, &lenth, "Pa", &|effect: &Effect| format!("{}", effect.value))
         };
         assert!(said(&[1e6]).contains("margin of error (2.5e6 Pa), the largest is that of"));
         assert!(said(&[3e6]).contains("margin of error (2.5e6 Pa), though not beyond"));
