@@ -232,7 +232,7 @@ fn solve_once(
 }
 
 fn not_converged(iterations: usize, residual: f64) -> Error {
-    let remedy = "ask for a coarser [accuracy] tolerance if it is below 0.1, check the case's lengths, or take --engine cells";
+    let remedy = "ask for a coarser [accuracy] tolerance if it is below 0.1, check the case's lengths, or take --engine cells, as a contact in several parts along the line needs";
     Error::NotConverged { iterations, residual, remedy: remedy.into() }
 }
 

@@ -9,7 +9,7 @@ use super::solved::wanted_curves;
 use crate::base::{HertzScales, PerBody, StressTensor};
 use crate::case::Case;
 use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
-use crate::stress::round::{ContactEnds, LocalContact, add_skins, rounded};
+use crate::stress::round::{ContactEnds, LocalContact, RowLoad, add_skins, rounded};
 use crate::stress::{
     BodyField, BodyKind, CurveSpec, FlatStress, LineLoad, RoundStress, StressCurve, Work,
 };
@@ -142,7 +142,7 @@ fn sums(
     };
     let fields = PerBody { block: field(BodyKind::Block), roller: field(BodyKind::Roller) };
     let lines = line_loads(pressure, 0.0);
-    let rows = scene.rough.then(|| loaded_rows(pressure, &lines));
+    let rows = scene.rough.then(|| row_loads(pressure, &lines));
     let rows = rows.as_deref();
     let contact =
         |kind: BodyKind, y: f64| local_contact(scene, (&lines, rows), y, fields[kind].faces);
@@ -199,14 +199,14 @@ impl Summed<'_> {
     }
 }
 
-/// Place, load per length and its moment about x = 0 of each row of cells, with the loads `lines`.
-fn loaded_rows(pressure: &CellPressure, lines: &[LineLoad]) -> Vec<(f64, f64, f64)> {
+/// The loads of the rows of cells, with those per length of `lines`.
+fn row_loads(pressure: &CellPressure, lines: &[LineLoad]) -> Vec<RowLoad> {
     let grid = &pressure.grid;
     let (a, _) = grid.half_sides();
     let rows = lines.iter().zip(pressure.pressure.chunks_exact(grid.nx));
     let row = |(line, row): (&LineLoad, &[f64])| {
         let moment: f64 = row.iter().enumerate().map(|(i, p)| p * grid.x(i)).sum();
-        (line.y, line.load, 2.0 * a * moment)
+        RowLoad { y: line.y, load: line.load, moment: 2.0 * a * moment }
     };
     rows.map(row).collect()
 }
@@ -215,7 +215,7 @@ fn loaded_rows(pressure: &CellPressure, lines: &[LineLoad]) -> Vec<(f64, f64, f6
 /// length there, where that varies, which of a rough contact is that of the `rows` around.
 fn local_contact(
     scene: &Scene,
-    (lines, rows): (&[LineLoad], Option<&[(f64, f64, f64)]>),
+    (lines, rows): (&[LineLoad], Option<&[RowLoad]>),
     y: f64,
     faces: [f64; 2],
 ) -> LocalContact {

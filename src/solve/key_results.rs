@@ -71,7 +71,7 @@ impl KeySolution {
     /// found first if the approach is given in its place. The largest stress is sought on all
     /// standard curves, but for straight and parallel bodies without sliding at tolerances from
     /// 5e-3 on: a search along the curves in the plane x = 0 finds it there within 3e-3 p0 at 1e-2
-    /// and 2e-3 at 5e-3 (a test of this module checks that).
+    /// and 2e-3 at 5e-3 (a test of this module checks that), of very unlike bodies within 6.5e-3.
     ///
     /// # Errors
     /// [`crate::base::Error::NotConverged`] when the contact does not settle.

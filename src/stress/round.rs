@@ -92,6 +92,17 @@ pub struct LocalContact {
     ledges: [f64; 2],
 }
 
+/// The load of a row of cells across the contact.
+#[derive(Debug, Clone, Copy)]
+pub struct RowLoad {
+    /// Its place along the line (C).
+    pub y: f64,
+    /// Its load per length (C p0).
+    pub load: f64,
+    /// The moment of that about x = 0 (C^2 p0).
+    pub moment: f64,
+}
+
 impl LocalContact {
     /// The Hertz contact of the mean load.
     pub const HERTZ: LocalContact = LocalContact::endless(1.0, 1.0);
@@ -145,16 +156,15 @@ impl LocalContact {
         Self::endless(half_width, half_width)
     }
 
-    /// That of rows of cells, each with its place along the line, its load per length (C p0) and
-    /// the moment of that about x = 0: the mean of the rows within C of `place`, as what is added
-    /// there does not follow the load from one row to the next.
-    pub fn under_rows(rows: &[(f64, f64, f64)], place: f64) -> Self {
-        let apart = |(y, ..): &(f64, f64, f64)| (y - place).abs();
+    /// That of `rows` of cells: the mean of those within C of `place`, as what is added there does
+    /// not follow the load from one row to the next.
+    pub fn under_rows(rows: &[RowLoad], place: f64) -> Self {
+        let apart = |row: &RowLoad| (row.y - place).abs();
         let nearest = rows.iter().map(apart).fold(f64::INFINITY, f64::min);
         let reach = REACH.max(nearest);
         let (mut load, mut moment, mut count) = (0.0, 0.0, 0.0);
-        for (_, own, about) in rows.iter().filter(|row| apart(row) <= reach) {
-            (load, moment, count) = (load + own, moment + about, count + 1.0);
+        for row in rows.iter().filter(|row| apart(row) <= reach) {
+            (load, moment, count) = (load + row.load, moment + row.moment, count + 1.0);
         }
         let middle = if load > 0.0 { moment / load } else { 0.0 };
         Self { middle, ..Self::carrying(load / count) }

@@ -4,8 +4,8 @@
 //! standard deviation of a result is the root of the sum of (df/dx_i s_i)^2, the derivatives taken
 //! over one deviation to both sides (JCGM 100:2008, 5.1.2). A Latin hypercube (McKay, Beckman and
 //! Conover, Technometrics 21 (1979) 239) has one sample in each of equally likely strata of every
-//! input; it sees what is not linear, too. Both use places in metres that do not move with the
-//! inputs.
+//! input, and no correlation between inputs; it sees what is not linear, too. Both use places in
+//! metres that do not move with the inputs.
 
 use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
@@ -293,11 +293,33 @@ fn results(
 }
 
 /// Points of a Latin hypercube in `inputs` directions, as deviations of a normal distribution.
+/// Inputs are independent, so the points are ordered to have no correlation: by chance two inputs
+/// would have one of some samples^(-1/2), which changes the deviation of what depends on both.
 fn latin_hypercube(inputs: usize, samples: usize, seed: u64) -> Vec<Vec<f64>> {
     let normal = Normal::new(0.0, 1.0).expect("a positive deviation");
     let mut points = unit_hypercube(inputs, samples, seed);
     points.iter_mut().flatten().for_each(|part| *part = normal.inverse_cdf(*part));
+    // One pass leaves a tenth of the correlations, further ones half of that.
+    for input in (0..3).flat_map(|_| 1..inputs) {
+        uncorrelate(&mut points, input);
+    }
     points
+}
+
+/// Reorders the values of one input among the `points` by what the inputs before it do not explain
+/// (ranked Gram-Schmidt: Owen, J. Am. Stat. Assoc. 89 (1994) 1517). The strata stay.
+fn uncorrelate(points: &mut [Vec<f64>], input: usize) {
+    let mut rest: Vec<f64> = points.iter().map(|point| point[input]).collect();
+    let mut values = rest.clone();
+    for before in 0..input {
+        let along: f64 = points.iter().zip(&rest).map(|(point, r)| point[before] * r).sum();
+        let square: f64 = points.iter().map(|point| point[before].powi(2)).sum();
+        rest.iter_mut().zip(&*points).for_each(|(r, point)| *r -= along / square * point[before]);
+    }
+    let mut ranked: Vec<usize> = (0..points.len()).collect();
+    ranked.sort_by(|a, b| rest[*a].total_cmp(&rest[*b]));
+    values.sort_by(f64::total_cmp);
+    ranked.into_iter().zip(values).for_each(|(point, value)| points[point][input] = value);
 }
 
 /// Points of a Latin hypercube of `inputs` directions, each between 0 and 1.
@@ -352,6 +374,19 @@ mod tests {
         assert_ne!(points, latin_hypercube(3, 50, 8));
     }
 
+    /// By chance correlations of 32 samples would have a root mean square of 0.18.
+    #[test]
+    fn samples_of_independent_inputs_are_uncorrelated() {
+        for seed in 1..=20 {
+            let points = latin_hypercube(4, 32, seed);
+            let product = |i: usize, j: usize| points.iter().map(|p| p[i] * p[j]).sum::<f64>();
+            for (i, j) in [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)] {
+                let correlation = product(i, j) / (product(i, i) * product(j, j)).sqrt();
+                assert!(correlation.abs() < 0.07, "seed {seed}, {i} and {j}: {correlation}");
+            }
+        }
+    }
+
     /// Of a longer block, whose most stressed point lies at the overlap's end.
     #[test]
     fn the_critical_stress_is_that_of_all_curves() {
@@ -392,7 +427,7 @@ mod tests {
         assert!((relative(centre.parts[1]) - 0.020).abs() < 1e-3, "{centre:?}");
         assert!((relative(centre.first_order) - 0.032).abs() < 2e-3, "{centre:?}");
         // The samples say the same, within what 32 of them can.
-        assert!((centre.deviation / centre.first_order - 1.0).abs() < 0.15, "{centre:?}");
+        assert!((centre.deviation / centre.first_order - 1.0).abs() < 0.1, "{centre:?}");
         assert!(centre.interval[0] < centre.value && centre.value < centre.interval[1]);
         let on_line = found.curves.iter().find(|(place, _)| place.body.is_none()).unwrap();
         assert!((on_line.1.value / centre.value - 1.0).abs() < 1e-3);
