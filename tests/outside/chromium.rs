@@ -13,6 +13,10 @@ use std::time::{Duration, Instant};
 
 const PATIENCE: Duration = Duration::from_secs(60);
 
+/// Whether the page is there and, if it has scripts, they have said so.
+const READY: &str = "location.href !== 'about:blank' && document.readyState === 'complete' && \
+     (!document.scripts.length || document.documentElement.dataset.ready === 'yes')";
+
 /// A page in its own browser.
 pub struct Page {
     child: Child,
@@ -119,7 +123,7 @@ impl Page {
         }
         page.resize(1280, 900);
         page.call("Page.navigate", json!({ "url": url }));
-        page.wait("document.documentElement?.dataset.ready === 'yes'");
+        page.wait(READY);
         page
     }
 
