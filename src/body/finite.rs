@@ -10,7 +10,7 @@ use super::axes::{PLATE_FADES, Resolution};
 use super::end::End;
 use super::part::Part;
 use super::stencil::{Image, Peak, Sources, Stencil};
-use crate::base::{Panels, Parity, StressTensor, ledge, linear};
+use crate::base::{Corner, Growth, Panels, Parity, StressTensor, ledge, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
@@ -165,6 +165,9 @@ fn images(half: f64, end: &End, parity: Parity, resolution: &Resolution) -> Vec<
     }
     images
 }
+
+/// The least distance from an edge, in the lengths of the panel there.
+const BESIDE: f64 = 1e-3;
 
 impl Body {
     /// A body of this `shape` with end faces `end`, under one `part` of the loads on `contact`, an
@@ -323,6 +326,15 @@ impl Body {
     /// On a loaded surface itself the stress kernels vary only over lengths of 1/k.
     fn stress_stencil(&self, from: &Sources, images: &[Image], along: f64, depth: f64) -> Stencil {
         Stencil::new(from, images, along, depth, 2.0 / self.resolution.k_max, Peak::Kink)
+    }
+
+    /// The least distance from the edge (C) at which stresses on the surface are those of the loads
+    /// there. At the edge itself those of both faces have no limit, only their sum has one.
+    pub fn beside_edge(&self) -> f64 {
+        let (axis, last) = (&self.surface.axis, self.surface.axis.panel_count() - 1);
+        let [from, to] = axis.panel(last);
+        let grows = |corner: Corner| corner.side < 0.0 && corner.growth == Growth::Logarithm;
+        if axis.corner_of(last).is_some_and(grows) { BESIDE * (to - from) } else { 0.0 }
     }
 
     /// The nodes of `surface` that belong to the contact.

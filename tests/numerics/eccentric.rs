@@ -86,6 +86,16 @@ fn stresses_beside_the_edges_of_flush_bodies_converge() {
                     let [own, fine] = [&own, &fine].map(|s| stress(s, BodyKind::Block, place));
                     small(&format!("{arm}, {tolerance}, {place:?}"), apart(&own, &fine), tolerance);
                 }
+                // Both faces' loads grow without bound up to the edge itself, not the stress.
+                for x in [0.9, 1.7] {
+                    let [on, beside] = [0.0, 1e-3 * end.signum()]
+                        .map(|off| stress(&own, BodyKind::Roller, [x, end - off, 0.0]));
+                    small(
+                        &format!("{arm}, {tolerance}, {x}"),
+                        (on.xx - beside.xx).abs(),
+                        tolerance,
+                    );
+                }
             }
         }
     }
