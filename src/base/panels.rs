@@ -107,7 +107,7 @@ impl Panels {
             for (leveled, x) in self.leveled[own.clone()].iter_mut().zip(&self.nodes[own.clone()]) {
                 *leveled = 1.0 / law.power(*x, ends[1] - ends[0]);
             }
-            if law.growth == Growth::Logarithm && self.order > 1 {
+            if self.logarithm_of(panel).is_some() {
                 self.set_logarithm(law, own, ends[1] - ends[0]);
             }
             if self.corner_of(panel).is_some() {

@@ -542,12 +542,12 @@ impl Resolution {
     /// needs the finest panels; at a corner farther from the load the fields vary over that
     /// distance.
     fn end_panel(&self, ledge: f64) -> f64 {
-        if ledge > 0.0 { (ledge / 16.0).max(self.corner / 16.0) } else { self.corner }
+        if ledge > 0.0 { ledge.max(self.corner) / 16.0 } else { self.corner }
     }
 
     /// The `contact` on one side of a body's middle, continued by panels to the middle and to the
     /// end face at `half`, graded towards the contact and the face.
-    pub fn body_axis(&self, contact: &Panels, half: f64, part: Part) -> Panels {
+    pub fn body_axis(&self, contact: &Panels, half: f64, edge: Option<Edge>) -> Panels {
         let mut breaks = contact.breaks().to_vec();
         let near = breaks[0];
         if ledge(near, half) > 0.0 {
@@ -561,19 +561,17 @@ impl Resolution {
             let inward = self.graded(self.end_panel(ledge).min(0.5 * ledge), ledge);
             breaks.extend(inward[..inward.len() - 1].iter().rev().map(|s| half - s));
         }
+        // A power of the contact's own end is already among its corners.
         let at = breaks[breaks.len() - 1];
-        let last = contact.corner_of(contact.panel_count() - 1);
-        let has_power = ledge == 0.0 && last.is_some_and(|corner| corner.side < 0.0);
-        let reach = logarithm(ledge, half, part).filter(|_| !has_power);
-        let edge = reach.map(|reach| Corner { at, side: -1.0, growth: Growth::Logarithm, reach });
+        let edge =
+            edge.filter(|edge| edge.growth == Growth::Logarithm).map(|edge| edge.corner(at, -1.0));
         let corners: Vec<Corner> = contact.corners().iter().copied().chain(edge).collect();
         Panels::new(breaks, self.order).with_corners(&corners)
     }
 
     /// Panels of the depth along an end face, graded towards the edge, deep enough for the
-    /// smallest wavenumber. Its loads grow with the `exponent` towards the edge, if any.
-    pub fn face_axis(&self, ledge: f64, half: f64, part: Part, exponent: Option<f64>) -> Panels {
-        let parity = part.parity;
+    /// smallest wavenumber.
+    pub fn face_axis(&self, ledge: f64, half: f64, parity: Parity, edge: Option<Edge>) -> Panels {
         // Loads on the face of a body much shorter than the contact is wide have no longer tail.
         let deepest = (self.face_reach / self.smallest_wavenumber(half, parity)).max(FACE_TAIL);
         let mut s = self.graded(self.end_panel(ledge), FACE_TAIL);
@@ -590,11 +588,7 @@ impl Resolution {
         if deepest > FACE_TAIL {
             s.push(deepest);
         }
-        let growth = match exponent {
-            Some(exponent) => Some((Growth::Power(exponent), LAW)),
-            None => logarithm(ledge, half, part).map(|reach| (Growth::Logarithm, reach)),
-        };
-        let edge = growth.map(|(growth, reach)| Corner { at: 0.0, side: 1.0, growth, reach });
+        let edge = edge.map(|edge| edge.corner(0.0, 1.0));
         Panels::new(s, self.order).with_corners(edge.as_slice())
     }
 
@@ -675,21 +669,42 @@ impl Resolution {
     }
 }
 
-/// How far from an edge of a body of half-length `half` the loads on either side of it, `ledge`
-/// beyond the contact and without a power, have a logarithm; nothing where they need none.
-///
-/// Near the edge of a quarter-space in plane strain loads s^a on one side are answered by
-/// -K(a) s^a on the other, K(a) = (1 + a) / cos(pi a / 2), and are free loads where K^2 = 1. That
-/// is so for a = 0, and what else acts there does not vanish at the edge: both sides have loads
-/// a ln s, of opposite sign, which act against each other and leave no stress. Polynomials up to
-/// the edge miss a part of each, which bends bodies shorter than the contact is wide by as much as
-/// their loads do. Where all loads are even and reach the edge, both sides have the same panels and
-/// miss the same.
-fn logarithm(ledge: f64, half: f64, part: Part) -> Option<f64> {
-    match (ledge > 0.0, part.bends) {
-        (true, _) => Some(ledge),
-        (_, true) => Some(LAW.min(half)),
-        _ => None,
+/// How the loads on both faces of a body grow towards their common edge, and how far from it.
+#[derive(Debug, Clone, Copy)]
+pub struct Edge {
+    /// How they grow.
+    pub growth: Growth,
+    reach: f64,
+}
+
+impl Edge {
+    /// That of a body of half-length `half` under one `part` of the loads on `contact`, an axis on
+    /// one side of its middle; none where polynomials do.
+    ///
+    /// Near the edge of a quarter-space in plane strain loads s^a on one side are answered by
+    /// -K(a) s^a on the other, K(a) = (1 + a) / cos(pi a / 2), and are free loads where K^2 = 1.
+    /// That is so for a = 0, and what else acts there does not vanish at the edge: both sides have
+    /// loads a ln s, of opposite sign, which act against each other and leave no stress.
+    /// Polynomials up to the edge miss a part of each, which bends bodies shorter than the contact
+    /// is wide by as much as their loads do. Where all loads are even and reach the edge, both
+    /// sides have the same panels and miss the same.
+    pub fn new(contact: &Panels, half: f64, part: Part) -> Option<Self> {
+        let ledge = ledge(half - contact.end(), half);
+        let logarithm = |reach| Some(Self { growth: Growth::Logarithm, reach });
+        if ledge > 0.0 {
+            return logarithm(ledge);
+        }
+        let end = contact.corner_of(contact.panel_count() - 1).filter(|corner| corner.side < 0.0);
+        match end {
+            Some(Corner { growth, .. }) => Some(Self { growth, reach: LAW }),
+            None if part.bends => logarithm(LAW.min(half)),
+            None => None,
+        }
+    }
+
+    /// The corner at the place `at` of an axis whose loads are on this `side` of it.
+    fn corner(&self, at: f64, side: f64) -> Corner {
+        Corner { at, side, growth: self.growth, reach: self.reach }
     }
 }
 
@@ -720,9 +735,8 @@ mod tests {
                 all.iter().flat_map(|r| [1e-3, 0.1, 0.5, 1.0, 2.0, 50.0, 1e4].map(|half| (r, half)))
             {
                 for parity in [Parity::Even, Parity::Odd] {
-                    let part = Part { parity, bends: parity == Parity::Odd, slides: false };
                     for ledge in [0.0, 0.3 * half, 1.0] {
-                        let depths = resolution.face_axis(ledge, half, part, None);
+                        let depths = resolution.face_axis(ledge, half, parity, None);
                         assert!(depths.end() >= FACE_TAIL, "{half} {parity:?}: {depths:?}");
                     }
                 }

@@ -6,7 +6,7 @@
 //! units of C. A layer's displacement is f p with u = (1 - nu^2)/(pi E) f p, so a half-space's f is
 //! 2 K0(k |y|).
 
-use super::axes::{PLATE_FADES, Resolution};
+use super::axes::{Edge, PLATE_FADES, Resolution};
 use super::end::End;
 use super::part::Part;
 use super::stencil::{Image, Peak, Sources, Stencil};
@@ -181,14 +181,13 @@ impl Body {
     ) -> Self {
         let Shape { half, nu } = shape;
         let Part { parity, slides, .. } = part;
+        let edge = Edge::new(contact, half, part);
         let surface =
-            if end.freed { resolution.body_axis(contact, half, part) } else { contact.clone() };
+            if end.freed { resolution.body_axis(contact, half, edge) } else { contact.clone() };
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = ledge(half - contact.end(), half);
-        let corner = surface.corner_of(surface.panel_count() - 1).filter(|c| c.side < 0.0);
-        let exponent = corner.and_then(|c| c.exponent());
         let contact = first..first + contact.len();
-        let face = Sources::new(resolution.face_axis(ledge, half, part, exponent));
+        let face = Sources::new(resolution.face_axis(ledge, half, parity, edge));
         let surface = Sources::new(surface);
         let images = images(half, &end, parity, resolution);
         // An image that the displacement weighs has its full weight in the stresses.

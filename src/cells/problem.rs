@@ -9,7 +9,7 @@ use super::linear::Linear;
 use super::pressure::CellPressure;
 use super::solver::{Complementarity, State};
 use super::whole::WholeConvolution;
-use crate::base::{Error, Parity, Result};
+use crate::base::{Error, Parity, Result, Secants};
 use crate::contact::Gap;
 use crate::host::check_memory;
 use std::f64::consts::PI;
@@ -18,8 +18,8 @@ use std::sync::Arc;
 /// Cells in a direction below which no coarser grid gives a start.
 const COARSEST: usize = 48;
 
-/// Most held tilts that are tried for the one that a load leads to, and what the second one moves
-/// the line's ends by (C^2 / (2 R)).
+/// Most held tilts that are tried for the one that a load leads to, and how far the line's ends
+/// move (C^2 / (2 R)) at one that moves the load's resultant by some half of the line.
 const MOST_TILTS: usize = 200;
 const FIRST_TILT: f64 = 0.01;
 
@@ -147,7 +147,7 @@ impl CellProblem {
     /// A contact that is free to tilt, under a load whose line of action lies at `arm`, by the held
     /// tilt at which the pressures' resultant lies there. On few cells, of two asperities or one
     /// row, force and moment leave the iteration no freedom; a held tilt leaves it some. The
-    /// resultant moves towards the side that is tilted deeper, so that false position finds it.
+    /// resultant moves towards the side that is tilted deeper.
     fn solve_balanced(
         &self,
         gap: &dyn Gap,
@@ -167,32 +167,17 @@ impl CellProblem {
             last = Some(found.clone());
             Ok((moment / found.pressure.iter().sum::<f64>() - arm, found))
         };
-        let mut step = FIRST_TILT / grid.half_length;
-        // The tilts below and above the wanted one, with what the resultant is off.
-        let mut ends: [Option<(f64, f64)>; 2] = [None; 2];
-        let (mut tilt, mut kept, mut off) = (0.0, None, f64::INFINITY);
+        // Both in units in which the one is about the other.
+        let unit = FIRST_TILT / grid.half_length;
+        let (mut secants, mut tilt, mut off) = (Secants::new(), 0.0, f64::INFINITY);
         for _ in 0..MOST_TILTS {
-            let (by, found) = held(tilt)?;
-            off = by.abs() / grid.half_length;
+            let (by, found) = held(unit * tilt)?;
+            let value = by / grid.half_length;
+            off = value.abs();
             if off <= self.tolerance {
                 return Ok(found);
             }
-            let side = usize::from(by > 0.0);
-            ends[side] = Some((tilt, by));
-            match &mut ends {
-                [Some((low, below)), Some((high, above))] => {
-                    // Of an end that stays a second time half of its distance counts (Illinois).
-                    if kept == Some(side) {
-                        *[&mut *above, &mut *below][side] *= 0.5;
-                    }
-                    kept = Some(side);
-                    tilt = *low + (*high - *low) * *below / (*below - *above);
-                }
-                _ => {
-                    tilt += if side == 0 { step } else { -step };
-                    step *= 2.0;
-                }
-            }
+            tilt = secants.next(tilt, value);
         }
         Err(Error::NotConverged {
             iterations,

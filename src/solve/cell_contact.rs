@@ -2,8 +2,7 @@
 
 use super::cell_deep::DeepMotion;
 use super::scene::{Scene, Tilt};
-use super::secants::Secants;
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, Secants};
 use crate::case::Case;
 use crate::cells::{CellPressure, CellProblem, CellTilt, Detrend, Grid, Heights, RoughGap, WIDER};
 use crate::contact::{Gap, Shaped};

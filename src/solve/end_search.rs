@@ -1,6 +1,6 @@
 //! The search for an end of a contact.
 
-use super::secants::Secants;
+use crate::base::Secants;
 use crate::contact::ContactEnd;
 
 /// On a line that is longer than the contact the last nodes carry nothing, and the others tell the

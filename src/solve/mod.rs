@@ -24,7 +24,6 @@ mod passage;
 #[cfg(feature = "cli")]
 mod peak;
 mod scene;
-mod secants;
 mod shaping;
 mod solved;
 mod solved_scene;

@@ -5,9 +5,8 @@ use super::deep::{self, Touch};
 use super::end_search::EndSearch;
 use super::first_guess::MARGIN;
 use super::scene::{Scene, SceneBody, Tilt};
-use super::secants::Secants;
 use crate::base::stop::go_on;
-use crate::base::{BodyKind, Error, Panels, Result, Wavenumbers};
+use crate::base::{BodyKind, Error, Panels, Result, Secants, Wavenumbers};
 use crate::body::{LoadedLine, Placed, Resolution, Shape, SkinLine, Skins, Stack};
 use crate::contact::{
     self, Compliance, ContactEnd, ContactSettings, ContactSolution, Problem, Rotation, Shaped,

@@ -195,10 +195,8 @@ impl<'a> PartTarget<'a> {
     fn new(loaded: &Loaded<'a>, waves: &'a Waves, part: usize, y: f64, z: f64) -> Self {
         let (body, loads) = (&loaded.stack.parts()[part].0, &waves.parts[part]);
         let y = y - loaded.stack.middle;
-        let eta = match z > 0.0 {
-            true => off_middle(body, y),
-            false => off_middle(body, y).min(body.half - body.beside_edge()),
-        };
+        let beside = if z > 0.0 { 0.0 } else { body.beside_edge() };
+        let eta = off_middle(body, y).min(body.half - beside);
         let (lowest, shears) = (waves.k[0], shears(body, waves));
         let faces = body
             .end

@@ -10,7 +10,7 @@ const FALLS: [f64; 2] = [-8.0, -1.0];
 /// The search for the zero of a function whose slope is about 1, or at least of one sign: by
 /// secants, and within two arguments whose values are of different signs as soon as both are known.
 #[derive(Debug)]
-pub(super) struct Secants {
+pub(crate) struct Secants {
     /// The slope that is known.
     slope: f64,
     /// Its limits.
