@@ -30,23 +30,25 @@ pub fn stress_along(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f
 /// Real and imaginary part of F / pi and of z F' / pi, see [`stress`].
 fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] {
     let (t, d) = (x / half_width, z / half_width);
-    // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1; for z >= 0 its imaginary part is <= 0.
-    let (a, b) = (t * t - d * d - 1.0, 2.0 * t * d);
-    let modulus = a.hypot(b);
-    let mut re = (0.5 * (modulus + a).max(0.0)).sqrt();
-    let mut im = (0.5 * (modulus - a).max(0.0)).sqrt();
-    if t < 0.0 {
-        re = -re;
-    }
-    // The root with positive imaginary part in the upper half plane, and Re of the sign of t.
-    if d == 0.0 && t.abs() >= 1.0 {
-        im = 0.0;
-    }
-    let (mut wr, mut wi) = (t - re, d - im);
-    let norm = wr.hypot(wi);
-    if norm > 1.0 {
-        (wr, wi) = (wr / norm, wi / norm);
-    }
+    // The root of zeta^2 - 1 with a positive imaginary part in the upper half plane, and a real one
+    // of the sign of t. Its smaller part follows from the larger one: as a difference it would
+    // vanish far away and next to the surface.
+    let modulus = (t - 1.0).hypot(d) * (t + 1.0).hypot(d);
+    let a = (t - 1.0) * (t + 1.0) - d * d;
+    let (re, im) = if modulus == 0.0 {
+        (0.0, 0.0)
+    } else if a >= 0.0 {
+        let re = (0.5 * (modulus + a)).sqrt().copysign(t);
+        (re, t * d / re)
+    } else {
+        let im = (0.5 * (modulus - a)).sqrt();
+        (t * d / im, im)
+    };
+    // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1, as the inverse of the sum: for z >= 0
+    // its imaginary part is <= 0.
+    let (sum_re, sum_im) = (t + re, d + im);
+    let norm = sum_re * sum_re + sum_im * sum_im;
+    let (wr, wi) = (sum_re / norm, -sum_im / norm);
     // Powers w^(2m+1); dw/dzeta = -w / sqrt(zeta^2 - 1).
     let (sqr, sqi) = (wr * wr - wi * wi, 2.0 * wr * wi);
     let (mut pr, mut pi) = (wr, wi);
@@ -221,6 +223,22 @@ mod tests {
         assert!((on_surface[0] + p).abs() < 1e-12 && (on_surface[1] + p).abs() < 1e-12);
         assert!(stress(a, &MODES, 2.0, 0.0).iter().all(|s| s.abs() < 1e-12));
         assert!(stress(a, &MODES, a, 0.0).iter().all(|s| s.is_finite()));
+    }
+
+    #[test]
+    fn far_away_the_strip_is_a_line_load() {
+        // Of all modes the first alone carries a force, a pi / 2.
+        let (a, nearest) = (1.3, 1e-6);
+        let force = 0.5 * PI * a * MODES[0];
+        for (x, z) in [(1e5, 3.0), (-1e7, 3.0), (1e9, 1e9), (1e12, 0.5), (2.0, 1e9), (1e30, 1e20)] {
+            let square: f64 = x * x + z * z;
+            let scale = -2.0 * force / PI * z / square / square;
+            let want = [scale * x * x, scale * z * z, scale * x * z];
+            let got = stress(a, &MODES, x, z);
+            let off = got.iter().zip(&want).fold(0.0, |m: f64, (g, w)| m.max((g - w).abs()));
+            assert!(off < nearest * (scale * square).abs(), "at {x} {z}: {got:?} {want:?}");
+            assert!((got[1] - want[1]).abs() < nearest * want[1].abs(), "at {x} {z}: {got:?}");
+        }
     }
 
     #[test]

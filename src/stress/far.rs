@@ -165,16 +165,11 @@ impl Field<'_> {
 /// The integrals over the wavenumber k of e^(-k z) / pi times cos(k x), k z cos(k x), sin(k x),
 /// k z sin(k x), k cos(k x) and k sin(k x).
 fn integrals(x: f64, z: f64) -> [f64; 6] {
-    let square = x * x + z * z;
-    let fourth = PI * square * square;
-    [
-        z / (PI * square),
-        z * (z * z - x * x) / fourth,
-        x / (PI * square),
-        2.0 * x * z * z / fourth,
-        (z * z - x * x) / fourth,
-        2.0 * x * z / fourth,
-    ]
+    let r = x.hypot(z);
+    let (s, c) = (x / r, z / r);
+    let (one, double) = (1.0 / (PI * r), c * c - s * s);
+    let integrals = [c, c * double, s, 2.0 * s * c * c, double / r, 2.0 * s * c / r];
+    integrals.map(|integral| one * integral)
 }
 
 /// The plate under a moment at x = 0 of its edge.
