@@ -5,7 +5,7 @@ use crate::base::{Error, Result};
 use crate::host::csv_fault;
 use csv::{ErrorKind, ReaderBuilder, StringRecord};
 use std::fs::File;
-use std::io::Read;
+use std::io::{BufRead, BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// Rows in their order, each the texts of its columns.
@@ -91,11 +91,24 @@ impl Table {
     }
 
     fn reader(&self) -> Result<csv::Reader<Box<dyn Read + Send + '_>>> {
-        let source: Box<dyn Read + Send> = match &self.text {
+        Ok(ReaderBuilder::new().trim(csv::Trim::All).from_reader(self.source()?))
+    }
+
+    fn source(&self) -> Result<Box<dyn Read + Send + '_>> {
+        Ok(match &self.text {
             Some(text) => Box::new(text.as_bytes()),
             None => Box::new(File::open(&self.path).map_err(|e| self.unread(e))?),
-        };
-        Ok(ReaderBuilder::new().trim(csv::Trim::All).from_reader(source))
+        })
+    }
+
+    /// Number of empty lines from a byte on. To the reader they belong to the row behind them.
+    fn empty_lines(&self, from: u64) -> usize {
+        let Ok(source) = self.source() else { return 0 };
+        let mut rest = BufReader::new(source);
+        if std::io::copy(&mut rest.by_ref().take(from), &mut std::io::sink()).is_err() {
+            return 0;
+        }
+        rest.lines().map_while(|line| line.ok().filter(String::is_empty)).count()
     }
 
     fn unread(&self, source: std::io::Error) -> Error {
@@ -103,7 +116,7 @@ impl Table {
     }
 
     fn broken(&self, error: csv::Error) -> Error {
-        let line = error.position().map(|p| p.line() as usize);
+        let line = error.position().map(|p| p.line() as usize + self.empty_lines(p.byte()));
         let fault = csv_fault(&error);
         match error.into_kind() {
             ErrorKind::Io(source) => self.unread(source),

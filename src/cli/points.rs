@@ -3,7 +3,7 @@
 use crate::base::number::stated;
 use crate::base::{Error, Result};
 use crate::case::Case;
-use crate::host::{check_memory, csv_fault, read_input};
+use crate::host::{check_memory, csv_fault, csv_line, read_input};
 use crate::solve::{Extent, Outside, Point};
 use crate::stress::BodyKind;
 use serde::Deserialize;
@@ -51,9 +51,9 @@ pub(super) fn read(path: &Path, case: &Case) -> Result<Vec<Point>> {
 /// As `--points`: [`Error::File`] with the line of the first row that is not a point in a body of
 /// `case`.
 pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
-    let refuse = |line: Option<u64>, message: String| Error::File {
+    let refuse = |line: Option<usize>, message: String| Error::File {
         path: path.to_path_buf(),
-        line: line.map(|l| l as usize),
+        line,
         message,
         remedy: "give the columns body,x_m,y_m,z_m: block or roller, and metres; z is the depth \
                  into that body"
@@ -63,12 +63,7 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
         .comment(Some(b'#'))
         .trim(csv::Trim::All)
         .from_reader(text.as_bytes());
-    // A record begins where the one before it ended: comments and empty lines are before it.
-    let line_of = |at: &csv::Position| {
-        let rest = text.get(at.byte() as usize..).unwrap_or_default();
-        let other = |line: &&str| line.is_empty() || line.starts_with('#');
-        at.line() + rest.lines().take_while(other).count() as u64
-    };
+    let line_of = |at: &csv::Position| csv_line(text, at);
     let of_csv = |e: csv::Error| refuse(e.position().map(line_of), csv_fault(&e));
     let header = reader.headers().map_err(of_csv)?.clone();
     let mut sorted: Vec<&str> = header.iter().collect();

@@ -49,6 +49,15 @@ pub fn csv_fault(error: &csv::Error) -> String {
     }
 }
 
+/// The line of a record of the CSV table `text`, from 1. A record begins where the one before it
+/// ended: comments, which begin with #, and empty lines are before it.
+#[cfg(feature = "cli")]
+pub fn csv_line(text: &str, at: &csv::Position) -> usize {
+    let rest = text.get(at.byte() as usize..).unwrap_or_default();
+    let other = |line: &&str| line.is_empty() || line.starts_with('#');
+    at.line() as usize + rest.lines().take_while(other).count()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

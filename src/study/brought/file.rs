@@ -5,7 +5,7 @@ use super::statements::{Axes, KEYS, Statements, System, Unit, body_of};
 use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result, StressTensor};
 use crate::case::Case;
-use crate::host::{check_memory, read_input};
+use crate::host::{check_memory, csv_fault, csv_line, read_input};
 use crate::solve::{Extent, Outside};
 use crate::stress::{Curves, PressureLine, StressCurve};
 use crate::study::errors::POINTS;
@@ -92,8 +92,8 @@ impl BroughtFile {
             .delimiter(delimiter(text))
             .trim(csv::Trim::All)
             .from_reader(text.as_bytes());
-        let place = |e: &csv::Error| e.position().map(|p| p.line() as usize);
-        let of_csv = |e: csv::Error| refuse(path, place(&e), e.to_string());
+        let line_of = |at: &csv::Position| csv_line(text, at);
+        let of_csv = |e: csv::Error| refuse(path, e.position().map(line_of), csv_fault(&e));
         let header = reader.headers().map_err(of_csv)?.clone();
         let line = reader.position().line().saturating_sub(1).max(1) as usize;
         let (columns, ignored) = find_columns(&header, &statements)
@@ -104,7 +104,8 @@ impl BroughtFile {
             return Err(refuse(path, None, message.to_string()));
         }
         for record in reader.records() {
-            table.take(&record.map_err(of_csv)?)?;
+            let record = record.map_err(of_csv)?;
+            table.take(&record, record.position().map(line_of))?;
         }
         let (curves, widths, points) = table.finish()?;
         let name = statements.name.clone().unwrap_or(stem);
@@ -329,9 +330,8 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Takes in a row.
-    fn take(&mut self, record: &csv::StringRecord) -> Result<()> {
-        let line = record.position().map(|p| p.line() as usize);
+    /// Takes in a row, which stands in this line.
+    fn take(&mut self, record: &csv::StringRecord, line: Option<usize>) -> Result<()> {
         let path = self.path;
         let at = |column: &Column, message: String| {
             let place = format!("column {} ({}): {message}", column.at + 1, column.header);
