@@ -84,12 +84,21 @@ pub struct Explorer {
 /// Takes a port of the loopback interface, any free one for 0, for a page that begins with `case`.
 ///
 /// # Errors
-/// [`Error::Io`] when the port is taken or the system has none.
+/// [`Error::Value`] when the port cannot be had, [`Error::Io`] when the system has none.
 pub fn serve(case: Case, port: u16) -> Result<Explorer> {
     let io = |source| Error::Io {
         action: "listen at",
         path: format!("127.0.0.1:{port}").into(),
         source,
+    };
+    let refused = |source: std::io::Error| match port {
+        0 => io(source),
+        _ => Error::Value {
+            key: "--port".into(),
+            value: port.to_string(),
+            reason: source.to_string(),
+            remedy: "give another one, or leave it out for any free one".into(),
+        },
     };
     let runtime = tokio::runtime::Builder::new_current_thread()
         .enable_io()
@@ -97,7 +106,7 @@ pub fn serve(case: Case, port: u16) -> Result<Explorer> {
         .build()
         .map_err(io)?;
     let address = SocketAddr::from((Ipv4Addr::LOCALHOST, port));
-    let listener = runtime.block_on(TcpListener::bind(address)).map_err(io)?;
+    let listener = runtime.block_on(TcpListener::bind(address)).map_err(refused)?;
     let address = listener.local_addr().map_err(io)?;
     Ok(Explorer { runtime, listener, address, token: secret()?, case })
 }
