@@ -117,8 +117,8 @@ pub enum Error {
         /// The signal, e.g. 2 for Ctrl-C.
         signal: i32,
     },
-    /// A folder that is in use by another run.
-    #[error("{} is in use by another run{}; wait for it, or give another folder", path.display(), pid.map(|p| format!(" (process {p})")).unwrap_or_default())]
+    /// A folder or a file that is in use by another run.
+    #[error("{} is in use by another run{}; wait for it, or give another path", path.display(), pid.map(|p| format!(" (process {p})")).unwrap_or_default())]
     Busy {
         /// The folder.
         path: PathBuf,

@@ -571,7 +571,10 @@ fn two_runs_do_not_share_a_folder() {
     file.lock().unwrap();
     let mut sweep = edgeline(folder, &["sweep", "sweep.toml", "--out", "s.csv"]);
     let said = refused(&mut sweep);
-    assert!(said.contains("s.csv is in use by another run"), "{said}");
+    assert!(
+        said.contains("s.csv is in use by another run; wait for it, or give another path"),
+        "{said}"
+    );
     drop(file);
     succeeded(&mut sweep);
 }
