@@ -77,7 +77,7 @@ impl Sweep {
                 path: path.to_path_buf(),
                 line: None,
                 message: "a sweep in TOML gives all parameters itself".into(),
-                remedy: "leave out --base, or give a CSV table".into(),
+                remedy: "leave out --base, or give a CSV table, whose name ends in .csv".into(),
             });
         }
         Sweep::read_toml(path)

@@ -26,7 +26,7 @@ use std::time::Instant;
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file in which numbers may be lists or ranges (TOML), or a table with a column for
-    /// each parameter (CSV)
+    /// each parameter (CSV, if its name ends in .csv)
     #[arg(value_hint = ValueHint::FilePath)]
     file: PathBuf,
     /// The file of the results, CSV or, if its name ends in .parquet, Parquet; existing rows are
