@@ -40,7 +40,9 @@ impl LinearProblem<'_> {
         let solution = linear::solve(matrix, right).ok_or_else(|| Error::NotConverged {
             iterations: 0,
             residual: f64::INFINITY,
-            remedy: "the collocation matrix is singular: check the case's lengths".into(),
+            remedy: "the collocation matrix is singular: check the case's lengths, and how near \
+                     its load is to an end, or take --engine cells"
+                .into(),
         })?;
         Ok(solution.column(0).into_owned())
     }

@@ -364,7 +364,9 @@ fn check_width(value: f64, limit: f64) -> Result<()> {
         law: WIDTH,
         value,
         limit,
-        remedy: "take the longer direction as y (exchange the radii of roller and profile), or --engine cells"
-            .into(),
+        remedy:
+            "take the longer direction as y (exchange the radii of roller and profile), bring a \
+                 load that is near to an end to the middle, or take --engine cells"
+                .into(),
     })
 }

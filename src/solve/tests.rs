@@ -89,6 +89,17 @@ fn bad_grids_are_refused() {
     assert!(said.starts_with("z of point 1 (roller)"), "{said}");
 }
 
+/// A load this near to an end leaves hardly any contact to solve.
+#[test]
+fn a_load_at_the_very_end_is_refused_with_what_to_do() {
+    let text = builtin_case("eccentric-half").unwrap().unwrap().to_toml();
+    let mut case = Case::from_toml(&text).unwrap();
+    case.accuracy.tolerance = 5e-2;
+    case.load.eccentricity_m = Some(0.4999 * case.roller.length_m);
+    let refused = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).err().unwrap();
+    assert!(refused.to_string().contains("--engine cells"), "{refused}");
+}
+
 /// The case of a file, at a tolerance and without curves.
 fn solved(toml: &str, tolerance: f64) -> SolvedCase {
     solved_by(EdgeModel::QuarterSpace, toml, tolerance)
