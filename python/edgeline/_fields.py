@@ -80,8 +80,17 @@ def plot_curve(solution: Solution, curve: str, body: str, ax: Axes | None) -> Ax
     ax = ax or _axes()
     axis = max("xyz", key=lambda name: float(np.ptp(curves[f"{name}_m"][on_it])))
     place = 1e3 * curves[f"{axis}_m"][on_it]
-    for name in COMPONENTS:
-        ax.plot(place, 1e-6 * curves[f"sigma_{name}_pa"][on_it], label=f"$\\sigma_{{{name}}}$")
+    # Curves that lie upon each other have marks at different places.
+    every = max(1, len(place) // 8)
+    for i, (name, mark) in enumerate(zip(COMPONENTS, "osv^Dx", strict=True)):
+        ax.plot(
+            place,
+            1e-6 * curves[f"sigma_{name}_pa"][on_it],
+            label=f"$\\sigma_{{{name}}}$",
+            marker=mark,
+            markevery=(i * every // len(COMPONENTS), every),
+            markersize=5,
+        )
     ax.plot(place, 1e-6 * curves["von_mises_pa"][on_it], "k--", label="von Mises")
     ax.set(xlabel=f"{axis} (mm)", ylabel="stress (MPa)", title=f"{body}, {curve}")
     ax.legend()

@@ -196,7 +196,10 @@ def test_plots_show_pressure_and_curves(solution: edgeline.Solution) -> None:
     line = ax.lines[0]
     assert np.max(line.get_ydata()) == pytest.approx(1e-6 * solution.summary["p_max_pa"], rel=0.1)
     assert solution.plot(ax=ax) is ax
-    assert len(solution.plot("depth-centre", "roller").lines) == 7
+    lines = solution.plot("depth-centre", "roller").lines
+    # Without colour, too, no two look alike.
+    looks = {(line.get_linestyle(), line.get_marker()) for line in lines}
+    assert len(lines) == len(looks) == 7
     pyplot.close("all")
     with pytest.raises(edgeline.Error, match="give one of .*depth-centre"):
         solution.plot("depth-center")
