@@ -9,7 +9,7 @@
 use super::axes::{Edge, PLATE_FADES, Resolution};
 use super::end::End;
 use super::part::Part;
-use super::stencil::{Image, Peak, Sources, Stencil};
+use super::stencil::{Image, PIECE_NODES, Peak, Sources, Stencil};
 use crate::base::{Corner, Growth, Panels, Parity, StressTensor, ledge, linear};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
@@ -179,6 +179,19 @@ impl Body {
         part: Part,
         resolution: &Resolution,
     ) -> Self {
+        let piece_nodes = resolution.order.max(PIECE_NODES);
+        Self::with_pieces(contact, shape, end, part, resolution, piece_nodes)
+    }
+
+    /// The same, with `piece_nodes` Gauss nodes on pieces of panels.
+    pub(super) fn with_pieces(
+        contact: &Panels,
+        shape: Shape,
+        end: End,
+        part: Part,
+        resolution: &Resolution,
+        piece_nodes: usize,
+    ) -> Self {
         let Shape { half, nu } = shape;
         let Part { parity, slides, .. } = part;
         let edge = Edge::new(contact, half, part);
@@ -187,8 +200,8 @@ impl Body {
         let first = surface.nodes().partition_point(|y| *y < contact.breaks()[0]);
         let ledge = ledge(half - contact.end(), half);
         let contact = first..first + contact.len();
-        let face = Sources::new(resolution.face_axis(ledge, half, parity, edge));
-        let surface = Sources::new(surface);
+        let face = resolution.face_axis(ledge, half, parity, edge);
+        let [face, surface] = [face, surface].map(|axis| Sources::new(axis, piece_nodes));
         let images = images(half, &end, parity, resolution);
         // An image that the displacement weighs has its full weight in the stresses.
         let full = End { image_weight: end.image_weight.map(|_| 1.0), ..end };

@@ -52,6 +52,10 @@ const RESOLUTION: Resolution = Resolution {
     reach: 14.0,
 };
 
+/// Gauss nodes of a piece of a panel: pairs of forces have a stronger pole than loads, and four
+/// nodes made stresses jump by 0.04 C / R from one depth to the next.
+const PIECE_NODES: usize = 8;
+
 /// The least wavenumber times a body's half-length that has a skin: under longer waves the body is
 /// a plate whose surface carries no stress beside the load.
 const LONGEST: f64 = 0.35;
@@ -107,7 +111,7 @@ impl Skins {
         let bends = fold.parities().contains(&Parity::Odd);
         let body = |&parity: &Parity| {
             let part = Part { parity, bends, slides: false };
-            Body::new(fold.axis(), shape, end, part, &resolution)
+            Body::with_pieces(fold.axis(), shape, end, part, &resolution, PIECE_NODES)
         };
         let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
         let of_body = |body: &Body| OnSurface::new(body, k).skins(&tables);

@@ -57,14 +57,17 @@ const CLUSTER_DISTANCE: f64 = 3.3;
 /// A panel's own Gauss nodes are used from this distance, r = 3.3.
 const PANEL_DISTANCE: f64 = 1.8;
 
-/// The Gauss nodes of a piece of a panel, at least four, are used from this distance, r = 2.6.
+/// The Gauss nodes of a piece of a panel are used from this distance, r = 2.6.
 /// Panels that double have their middle nodes at a distance of exactly 1.5 from their neighbours,
 /// and rounding would decide.
 const PIECE_DISTANCE: f64 = 1.49;
 
+/// The least number of these for the kernels of loads, which are logarithms and peaks.
+pub(super) const PIECE_NODES: usize = 4;
+
 impl Sources {
-    /// Clusters of an axis's panels.
-    pub fn new(axis: Panels) -> Self {
+    /// Clusters of an axis's panels, whose pieces have `piece_nodes` Gauss nodes.
+    pub fn new(axis: Panels, piece_nodes: usize) -> Self {
         let order = axis.order();
         let mut clusters = vec![Cluster {
             panels: 0..axis.panel_count(),
@@ -102,7 +105,7 @@ impl Sources {
             }
         }
         let (piece_rule, steep_rule) =
-            (gauss_legendre(order.max(4)), crowded_legendre(order + MORE_NODES, POWER));
+            (gauss_legendre(piece_nodes), crowded_legendre(order + MORE_NODES, POWER));
         Self { axis, clusters, places, charges, piece_rule, steep_rule }
     }
 
@@ -371,7 +374,7 @@ mod tests {
     #[test]
     fn logarithms_are_integrated_from_any_target() {
         let axis = Panels::new(vec![0.0, 2.0, 2.5, 2.8, 2.95, 3.0], 5);
-        let sources = Sources::new(axis.clone());
+        let sources = Sources::new(axis.clone(), axis.order().max(PIECE_NODES));
         let direct = [Image { sign: 1.0, shift: 0.0, weight: 1.0 }];
         let mirrored = [Image { sign: -1.0, shift: 6.0, weight: 1.0 }];
         // int_0^3 -ln|y - s| ds for f = 1.
@@ -411,7 +414,7 @@ mod tests {
         let corner = Corner { at: 3.0, side: -1.0, growth: Growth::Power(0.4), reach: 1.0 };
         let breaks = vec![0.0, 1.2, 2.0, 2.5, 2.8, 3.0];
         let axis = Panels::new(breaks, 5).with_corners(&[corner]);
-        let sources = Sources::new(axis.clone());
+        let sources = Sources::new(axis.clone(), axis.order().max(PIECE_NODES));
         let f = |s: f64| if s < 2.0 { 0.0 } else { (3.0 - s).powf(-0.4) };
         let direct = [Image { sign: 1.0, shift: 0.0, weight: 1.0 }];
         for y in [0.5, 1.9, 2.4, 2.7, 2.95, 2.999, 3.0, 3.05, 4.0] {
@@ -445,7 +448,7 @@ mod tests {
 
     #[test]
     fn a_few_columns_of_charges_are_added_as_many_are() {
-        let sources = Sources::new(Panels::new(vec![0.0, 1.0, 1.5, 1.8], 3));
+        let sources = Sources::new(Panels::new(vec![0.0, 1.0, 1.5, 1.8], 3), PIECE_NODES);
         let (count, kept) = (sources.charge_count(), 7);
         let charge = |i: usize| ((7 * i + 3) % 11) as f64;
         let scattered = |columns: usize| {

@@ -173,7 +173,7 @@ fn check_points(case: &Case, curve: &str, count: impl Fn(&[f64; 3]) -> bool) -> 
     let pairs = line.at.iter().zip(line.stress.iter().zip(&points));
     for (_, (a, b)) in pairs.filter(|(at, _)| count(at)) {
         let pairs = a.components().into_iter().zip(b.components());
-        small("line and point", pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), 5e-4);
+        small("line and point", pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), 1.5e-3);
     }
     line.at
 }
@@ -185,6 +185,36 @@ fn lines_into_short_bodies_are_their_points() {
     case.accuracy.first_order = true;
     let at = check_points(&case, "depth-end-x0.7", |_| true);
     assert!(at[at.len() - 1][2] > 5.0 * 0.7);
+}
+
+/// What the skin adds changes smoothly from one depth to the next, off all planes of symmetry: by
+/// 0.04 C / R less smoothly where pieces of panels had the nodes that loads need.
+#[test]
+fn what_the_skin_adds_has_no_steps() {
+    let mut case = straight(3e-3, 7.3, 0.8).with_tolerance(1e-2);
+    let c_m = case.hertz().c_m;
+    (case.pose.offset_m, case.load.eccentricity_m) = (0.9 * c_m, Some(0.6 * c_m));
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves.clear();
+    let (columns, depths) = ([[0.4, -3.1], [2.2, 2.7], [1.3, 6.6]], 120);
+    let at = |[x, y]: [f64; 2], i: i32| [x, y, 0.05 * 60f64.powf(f64::from(i) / 119.0)];
+    let places = columns.iter().flat_map(|column| (0..depths).map(|i| at(*column, i)));
+    let point = |at: [f64; 3]| Point { body: BodyKind::Roller, at_m: at.map(|v| v * c_m) };
+    options.points = places.map(point).collect();
+    let [flat, round] = [false, true].map(|order| {
+        case.accuracy.first_order = order;
+        solve(&case, &options).unwrap().points
+    });
+    let curvature = c_m / case.roller.radius_m;
+    let pairs = round.iter().zip(&flat).map(|(a, b)| (a.components(), b.components()));
+    let added: Vec<[f64; 6]> =
+        pairs.map(|(a, b)| std::array::from_fn(|i| (a[i] - b[i]) / curvature)).collect();
+    for (column, added) in columns.iter().zip(added.chunks(depths as usize)) {
+        let worst = added
+            .windows(3)
+            .flat_map(|w| (0..6).map(|i| (w[1][i] - 0.5 * (w[0][i] + w[2][i])).abs()));
+        small(&format!("second differences at {column:?}"), worst.fold(0.0, f64::max), 5e-3);
+    }
 }
 
 /// Beside a face from which the contact has lifted off, stresses on the surface vary with the
