@@ -1,13 +1,16 @@
 //! Whether the tolerance keeps its promise, and at what price: the largest error of the pressure
 //! and of every stress on the standard curves, against a resolution far finer, in tolerances.
 //!
-//! `cargo bench --bench promise -- hold SCENES` measures scenes that no search has seen, at every
-//! decade, and `-- hold SCENES real` rollers with profiles, eccentric loads and offsets; `-- causes
-//! KIND TOLERANCE SCENE` tells the errors of one scene when one part of its resolution after the
-//! other is the limit's, and `-- limit SCENES` what the limit itself is worth; `-- search KIND
-//! TOLERANCE [STEPS]` looks for the cheapest resolution (KIND: endless, finite, singular) that
-//! keeps the promise on scenes of its own, by small random steps from the present one. The table
-//! in `src/body/axes.rs` is made from what it prints.
+//! `cargo bench --bench promise -- hold SCENES [KIND] [TOLERANCES]` measures scenes that no search
+//! has seen: a number of them or FROM..TO, of one kind or of straight and centred ones, at every
+//! decade or at tolerances such as 1e-2,1e-3. The kind `real` has rollers with profiles, eccentric
+//! loads and offsets. `-- causes KIND TOLERANCE SCENE` tells the errors of one scene when one part
+//! of its resolution after the other is the limit's, and `-- limit SCENES` what the limit itself is
+//! worth. `-- search KIND TOLERANCE STEPS [PARTS]` looks for the cheapest resolution (endless,
+//! finite, singular) that keeps the promise on scenes of its own, by small random steps from the
+//! present one, with PARTS such as order=4,corner=0.01 changed at first: from some places small
+//! steps lead nowhere. `-- try KIND TOLERANCE SCENES PARTS ...` shows errors and time of scenes
+//! (10003,10009) with each of such changes. The table in `src/body/axes.rs` is made from these.
 //!
 //! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where
 //! the tangent of the pressure is vertical, and the same around a flush end.
@@ -18,6 +21,7 @@ use edgeline::case::{Case, Factors, ProfileKind, ProfileSpec};
 use edgeline::solve::{Scene, SceneBody, SolvedScene};
 use edgeline::stress::CurveSpec;
 use edgeline::stress::curves::curves_on;
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// Left out around a singular corner, and around the edge of the contact on the surface (C).
@@ -417,13 +421,47 @@ impl Random {
     }
 }
 
-fn search(kind: Kind, tolerance: f64, steps: usize) {
+/// The present resolution of a straight and centred scene with `parts` changed, such as
+/// order=4,corner=0.01; none if a part is not one of it.
+fn changed(scene: &Scene, tolerance: f64, parts: &str) -> Option<Resolution> {
+    // Such scenes have the same at both ends.
+    let [exponent, _] = scene.corner_exponents();
+    let own = Resolution::of(tolerance, &scene.end(BodyKind::Block), exponent, true);
+    let mut all = serde_json::to_value(own).ok()?;
+    for part in parts.split(',').filter(|part| !part.is_empty()) {
+        let (name, value) = part.split_once('=')?;
+        let value: serde_json::Value = value.parse().ok()?;
+        let place = all.get_mut(name)?;
+        *place = if place.is_array() { [value.clone(), value].into() } else { value };
+    }
+    serde_json::from_value(all).ok()
+}
+
+/// Errors of pressure and stresses of `scenes` in tolerances, and the mean time, with each of these
+/// changes of the present resolution.
+fn attempt(kind: Kind, tolerance: f64, scenes: &[usize], changes: &[&str]) -> Option<()> {
+    let scenes: Vec<Known> = scenes.iter().filter_map(|i| Known::new(kind, *i)).collect();
+    for parts in changes {
+        let (mut time, mut errors) = (0.0, String::new());
+        for known in &scenes {
+            let resolution = changed(&known.scene, tolerance, parts)?;
+            let scene = Scene { tolerance, ..known.scene.clone() };
+            let began = processor_time();
+            let solved = SolvedScene::with_resolution(&scene, &resolution).ok()?;
+            let stress = stresses(&solved, &known.places.curves);
+            time += processor_time() - began;
+            let (pressure, stress, _) = known.errors_of(&values(&solved, &known.places, stress));
+            errors += &format!(" {:.2}/{:.2}", pressure / tolerance, stress / tolerance);
+        }
+        println!("{parts}:{errors}, {:.1} ms", 1e3 * time / scenes.len() as f64);
+    }
+    Some(())
+}
+
+fn search(kind: Kind, tolerance: f64, steps: usize, parts: &str) -> Option<()> {
     let count = if tolerance < 5e-4 { 10 } else { 24 };
     let scenes: Vec<Known> = (0..count).filter_map(|i| Known::new(kind, 10_000 + i)).collect();
-    let end = scenes[0].scene.end(BodyKind::Block);
-    // Straight and centred scenes have the same at both ends.
-    let [exponent, _] = scenes[0].scene.corner_exponents();
-    let mut best = Resolution::of(tolerance, &end, exponent);
+    let mut best = changed(&scenes[0].scene, tolerance, parts)?;
     let first = price(&scenes, &best, tolerance, f64::INFINITY);
     println!("{kind:?} {tolerance:e}: at first {first:?}");
     let mut least = first.map_or(f64::INFINITY, cost);
@@ -436,15 +474,16 @@ fn search(kind: Kind, tolerance: f64, steps: usize) {
             println!("{step}: worst {:.2}, {:.3} s: {best:?}", found.0, found.1);
         }
     }
+    Some(())
 }
 
-fn hold(count: usize, kinds: &[Kind]) {
+fn hold(scenes: Range<usize>, kinds: &[Kind], tolerances: &[f64]) {
     println!("kind,scene,tolerance,pressure,stress,attempt,seconds,where");
-    let mut shares = vec![Vec::new(); TOLERANCES.len()];
-    for index in 0..count {
+    let mut shares = vec![Vec::new(); tolerances.len()];
+    for index in scenes {
         let kind = kinds[index % kinds.len()];
         let Some(known) = Known::new(kind, index) else { continue };
-        for (tolerance, shares) in TOLERANCES.iter().zip(&mut shares) {
+        for (tolerance, shares) in tolerances.iter().zip(&mut shares) {
             let scene = Scene { tolerance: *tolerance, ..known.scene.clone() };
             let began = processor_time();
             match SolvedScene::new(&scene) {
@@ -465,7 +504,7 @@ fn hold(count: usize, kinds: &[Kind]) {
             }
         }
     }
-    for (tolerance, shares) in TOLERANCES.iter().zip(shares) {
+    for (tolerance, shares) in tolerances.iter().zip(shares) {
         for kind in kinds {
             let mut own: Vec<f64> = shares.iter().filter(|s| s.0 == *kind).map(|s| s.1).collect();
             own.sort_by(f64::total_cmp);
@@ -566,6 +605,23 @@ fn limit(count: usize) {
     }
 }
 
+fn usage() -> ExitCode {
+    eprintln!(
+        "error: give hold SCENES [KIND] [TOLERANCES], limit SCENES, causes KIND TOLERANCE SCENE, \
+         search KIND TOLERANCE STEPS [PARTS], or try KIND TOLERANCE SCENES PARTS ...; the kinds are \
+         endless, finite, singular and real"
+    );
+    ExitCode::from(2)
+}
+
+/// The scenes of a number of them, or of FROM..TO.
+fn range(word: &str) -> Option<Range<usize>> {
+    let Some((from, to)) = word.split_once("..") else {
+        return word.parse().ok().map(|count| 0..count);
+    };
+    Some(from.parse().ok()?..to.parse().ok()?)
+}
+
 fn main() -> ExitCode {
     rayon::ThreadPoolBuilder::new().num_threads(1).build_global().expect("it is the first pool");
     // Cargo passes --bench.
@@ -583,32 +639,45 @@ fn main() -> ExitCode {
         ["causes", of, tolerance, index] if kind(of).is_some() => {
             let numbers = (number(tolerance), index.parse::<usize>().ok());
             let (Some(of), (Some(tolerance), Some(index))) = (kind(of), numbers) else {
-                return ExitCode::from(2);
+                return usage();
             };
             causes(of, tolerance, index);
         }
-        [] => hold(12, &STRAIGHT),
-        ["hold", count] if number(count).is_some() => {
-            hold(number(count).unwrap_or(0.0) as usize, &STRAIGHT);
-        }
-        ["hold", count, "real"] if number(count).is_some() => {
-            hold(number(count).unwrap_or(0.0) as usize, &[Kind::Real]);
+        [] => hold(0..12, &STRAIGHT, &TOLERANCES),
+        ["hold", scenes, rest @ ..] if range(scenes).is_some() => {
+            let scenes = range(scenes).unwrap_or_default();
+            let own = rest.first().and_then(|word| kind(word));
+            let kinds = own.map_or(STRAIGHT.to_vec(), |kind| vec![kind]);
+            let tolerances = match &rest[usize::from(own.is_some())..] {
+                [] => Some(TOLERANCES.to_vec()),
+                [list] => list.split(',').map(number).collect(),
+                _ => None,
+            };
+            let Some(tolerances) = tolerances else { return usage() };
+            hold(scenes, &kinds, &tolerances);
         }
         ["limit", count] if number(count).is_some() => limit(number(count).unwrap_or(0.0) as usize),
-        ["search", of, tolerance, steps] if kind(of).is_some() => {
+        ["search", of, tolerance, steps, parts @ ..] if parts.len() < 2 => {
             let numbers = (number(tolerance), number(steps));
             let (Some(of), (Some(tolerance), Some(steps))) = (kind(of), numbers) else {
-                return ExitCode::from(2);
+                return usage();
             };
-            search(of, tolerance, steps as usize);
+            let parts = parts.first().copied().unwrap_or_default();
+            if search(of, tolerance, steps as usize, parts).is_none() {
+                return usage();
+            }
         }
-        _ => {
-            eprintln!(
-                "error: give hold SCENES [real], limit SCENES, causes KIND TOLERANCE SCENE, or search KIND TOLERANCE STEPS; \
-                 the kinds are endless, finite, singular and real"
-            );
-            return ExitCode::from(2);
+        ["try", of, tolerance, scenes, changes @ ..] => {
+            let scenes: Option<Vec<usize>> = scenes.split(',').map(|i| i.parse().ok()).collect();
+            let (Some(of), Some(tolerance), Some(scenes)) = (kind(of), number(tolerance), scenes)
+            else {
+                return usage();
+            };
+            if attempt(of, tolerance, &scenes, changes).is_none() {
+                return usage();
+            }
         }
+        _ => return usage(),
     }
     ExitCode::SUCCESS
 }

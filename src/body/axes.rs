@@ -84,8 +84,8 @@ pub struct Resolution {
     pub reach: f64,
 }
 
-/// The tolerances that have levels of their own.
-const TOLERANCES: [f64; 5] = [3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
+/// The tolerances that have levels of their own. A table that has fewer lacks the first ones.
+const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Largest distance between half-widths that follow a gap, in the length within which it turns, and
 /// the least one (C): nearer to each other than the shortest waves are long they would be noise.
@@ -101,11 +101,215 @@ const SHORTER: f64 = 3.0;
 /// A share this small is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The levels where the pressure at the contact's end has a limit, at each of [`TOLERANCES`].
+/// The levels of straight bodies that are symmetric about the contact's middle, where the pressure
+/// at its end has a limit, at each of [`TOLERANCES`].
 ///
 /// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of
-/// some scenes within the tolerance; `-- hold` measures others. These and the next ones lie between
-/// what it proposed and finer ones, where the tests of fields, approaches and ends asked for them.
+/// some scenes within the tolerance, and `-- try` shows what a change does; `-- hold` measures
+/// others. These and the next ones are between what they proposed and finer ones.
+const STRAIGHT_FINITE: [Resolution; 6] = [
+    Resolution {
+        order: 2,
+        corner: 0.06,
+        corner_ratio: 3.0,
+        ratio: 2.9,
+        modes: 3,
+        spacing: [0.15; 2],
+        k_max: 12.0,
+        k_order: 2,
+        k_step: 4.26,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 5.93,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.045,
+        corner_ratio: 3.0,
+        ratio: 2.6,
+        modes: 5,
+        spacing: [0.12; 2],
+        k_max: 13.0,
+        k_order: 2,
+        k_step: 2.8,
+        k_min: 0.05,
+        k_ratio: 6.0,
+        images: 1,
+        face_reach: 8.5,
+        reach: 9.0,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.03,
+        corner_ratio: 2.6,
+        ratio: 2.1,
+        modes: 5,
+        spacing: [0.07; 2],
+        k_max: 26.0,
+        k_order: 4,
+        k_step: 5.0,
+        k_min: 0.05,
+        k_ratio: 6.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.012,
+        corner_ratio: 2.4,
+        ratio: 2.4,
+        modes: 5,
+        spacing: [0.053; 2],
+        k_max: 36.0,
+        k_order: 4,
+        k_step: 5.0,
+        k_min: 0.035,
+        k_ratio: 7.0,
+        images: 1,
+        face_reach: 12.0,
+        reach: 9.2,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.0055,
+        corner_ratio: 2.5,
+        ratio: 2.3,
+        modes: 8,
+        spacing: [0.02; 2],
+        k_max: 140.0,
+        k_order: 4,
+        k_step: 6.0,
+        k_min: 0.01,
+        k_ratio: 3.2,
+        images: 2,
+        face_reach: 19.0,
+        reach: 15.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.002,
+        corner_ratio: 2.2,
+        ratio: 1.85,
+        modes: 8,
+        spacing: [0.02; 2],
+        k_max: 220.0,
+        k_order: 5,
+        k_step: 3.8,
+        k_min: 0.004,
+        k_ratio: 2.2,
+        images: 4,
+        face_reach: 17.0,
+        reach: 20.0,
+    },
+];
+
+/// The same where the pressure grows without bound at a free end: the loads on the end face do so
+/// too, and carry much from next to the corner. Its panels are many times smaller, and grow fast.
+const STRAIGHT_SINGULAR: [Resolution; 6] = [
+    Resolution {
+        order: 3,
+        corner: 0.02,
+        corner_ratio: 6.4,
+        ratio: 3.5,
+        modes: 2,
+        spacing: [0.12; 2],
+        k_max: 20.0,
+        k_order: 2,
+        k_step: 3.23,
+        k_min: 0.037,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 5.2,
+    },
+    Resolution {
+        order: 3,
+        corner: 0.01,
+        corner_ratio: 7.29,
+        ratio: 2.7,
+        modes: 3,
+        spacing: [0.12; 2],
+        k_max: 20.0,
+        k_order: 3,
+        k_step: 3.0,
+        k_min: 0.05,
+        k_ratio: 5.0,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.007,
+        corner_ratio: 7.29,
+        ratio: 2.7,
+        modes: 3,
+        spacing: [0.13; 2],
+        k_max: 60.0,
+        k_order: 4,
+        k_step: 4.0,
+        k_min: 0.05,
+        k_ratio: 4.95,
+        images: 1,
+        face_reach: 10.0,
+        reach: 8.0,
+    },
+    Resolution {
+        order: 4,
+        corner: 0.0025,
+        corner_ratio: 6.0,
+        ratio: 2.5,
+        modes: 4,
+        spacing: [0.06; 2],
+        k_max: 70.0,
+        k_order: 5,
+        k_step: 4.0,
+        k_min: 0.03,
+        k_ratio: 5.32,
+        images: 1,
+        face_reach: 14.0,
+        reach: 8.7,
+    },
+    Resolution {
+        order: 5,
+        corner: 0.0013,
+        corner_ratio: 5.8,
+        ratio: 2.3,
+        modes: 7,
+        spacing: [0.04; 2],
+        k_max: 200.0,
+        k_order: 6,
+        k_step: 5.5,
+        k_min: 0.005,
+        k_ratio: 2.8,
+        images: 2,
+        face_reach: 17.0,
+        reach: 15.0,
+    },
+    Resolution {
+        order: 7,
+        corner: 0.0007,
+        corner_ratio: 3.42,
+        ratio: 2.0,
+        modes: 8,
+        spacing: [0.03; 2],
+        k_max: 200.0,
+        k_order: 6,
+        k_step: 4.0,
+        k_min: 0.003,
+        k_ratio: 2.2,
+        images: 4,
+        face_reach: 18.0,
+        reach: 16.0,
+    },
+];
+
+/// The levels of all other bodies where the pressure has a limit. Loads that bend bodies need more
+/// nodes: long waves turn these as 1 / k, and what clusters of panels and panels of wavenumbers
+/// leave out counts a hundred times. The tests of fields, approaches and ends chose them.
 const FINITE: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -189,8 +393,7 @@ const FINITE: [Resolution; 5] = [
     },
 ];
 
-/// The same where the pressure grows without bound at a free end: the loads on the end face do so
-/// too, and carry much from next to the corner. Its panels are many times smaller, and grow fast.
+/// The same where the pressure grows without bound at a free end.
 const SINGULAR: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -416,18 +619,21 @@ const ENDLESS: [Resolution; 5] = [
 
 impl Resolution {
     /// The tightest tolerance that has a resolution of its own.
-    pub const FINEST: f64 = TOLERANCES[4];
+    pub const FINEST: f64 = TOLERANCES[5];
 
     /// Smallest tolerance with a coarse resolution.
-    pub const COARSE: f64 = TOLERANCES[2];
+    pub const COARSE: f64 = TOLERANCES[3];
 
     /// The resolution of a body with end faces `end`, under a pressure that is singular at the
-    /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`].
-    pub fn of(tolerance: f64, end: &End, corner: Option<f64>) -> Self {
-        let levels = match (end.image_weight, corner) {
-            (None, _) => &ENDLESS,
-            (Some(_), Some(_)) => &SINGULAR,
-            (Some(_), None) => &FINITE,
+    /// contact's end with the exponent `corner`, if any: see [`Resolution::for_tolerance`]. Bodies
+    /// that are all `straight`, and symmetric about the contact's middle, need less than others.
+    pub fn of(tolerance: f64, end: &End, corner: Option<f64>, straight: bool) -> Self {
+        let levels: &[Self] = match (end.image_weight, corner, straight) {
+            (None, ..) => &ENDLESS,
+            (Some(_), Some(_), true) => &STRAIGHT_SINGULAR,
+            (Some(_), None, true) => &STRAIGHT_FINITE,
+            (Some(_), Some(_), false) => &SINGULAR,
+            (Some(_), None, false) => &FINITE,
         };
         Self::between(levels, tolerance)
     }
@@ -473,11 +679,12 @@ impl Resolution {
     }
 
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.
-    fn between(levels: &[Self; 5], tolerance: f64) -> Self {
-        let at = tolerance.clamp(Self::FINEST, TOLERANCES[0]);
+    fn between(levels: &[Self], tolerance: f64) -> Self {
+        let tolerances = &TOLERANCES[TOLERANCES.len() - levels.len()..];
+        let at = tolerance.clamp(Self::FINEST, tolerances[0]);
         let next =
-            TOLERANCES.iter().position(|level| *level <= at).unwrap_or(TOLERANCES.len() - 1).max(1);
-        let [wide, tight] = [next - 1, next].map(|i| TOLERANCES[i]);
+            tolerances.iter().position(|level| *level <= at).unwrap_or(tolerances.len() - 1).max(1);
+        let [wide, tight] = [next - 1, next].map(|i| tolerances[i]);
         let share = (wide / at).ln() / (wide / tight).ln();
         let (from, to) = (&levels[next - 1], &levels[next]);
         let mixed = |of: fn(&Self) -> f64| of(from) * (of(to) / of(from)).powf(share);

@@ -59,12 +59,7 @@ impl LinearProblem<'_> {
         let cosines: Vec<Vec<Tile>> = nodes.clone().map(|i| self.cosines(i)).collect();
         for j in nodes {
             let transforms = self.transforms(j);
-            // Columns and factors of the node's modes, the singular one last.
-            let columns: Vec<Vec<(usize, f64)>> = layout
-                .modes(j)
-                .map(|mode| vec![(mode, 1.0)])
-                .chain([layout.singular_parts(j, self.slopes).collect()])
-                .collect();
+            let columns = self.columns(j);
             for (i, cosines) in cosines.iter().enumerate() {
                 let entries = &self.operator.entries(i, j)[..self.operator.count(i, j)];
                 let rows = layout.unknowns(i);
@@ -78,6 +73,13 @@ impl LinearProblem<'_> {
                 }
             }
         }
+    }
+
+    /// Columns and factors of node `j`'s modes, the singular one last.
+    fn columns(&self, j: usize) -> Vec<Vec<(usize, f64)>> {
+        let mut columns = self.layout.mode_parts(j);
+        columns.push(self.layout.singular_parts(j, self.slopes).collect());
+        columns
     }
 
     /// Cosines at the points of node `i`, tile by tile at all wavenumbers; zero where a wavenumber
@@ -139,28 +141,25 @@ impl LinearProblem<'_> {
     /// Adds the plane, screened part and the gap.
     fn add_local(&self, matrix: &mut DMatrix<f64>, right: &mut DMatrix<f64>) {
         let layout = self.layout;
-        let most = layout.counts.iter().copied().max().unwrap_or(0);
-        let mut local = vec![0.0; most];
         for (i, &a) in self.half_widths.iter().enumerate() {
-            let modes = layout.modes(i);
-            let singular: Vec<(usize, f64)> = layout.singular_parts(i, self.slopes).collect();
+            let columns = self.columns(i);
+            // Of the node's modes, and of the singular one.
+            let mut modes = vec![0.0; layout.counts[i]];
             for (row, t) in layout.unknowns(i).zip(layout.points(i)) {
-                let amplitude = strip::logarithmic(a, t, &mut local[..modes.len()]);
-                for (m, value) in modes.clone().zip(&local) {
-                    matrix[(row, m)] += 2.0 / PI * value;
-                }
-                for (column, factor) in &singular {
-                    matrix[(row, *column)] += 2.0 / PI * factor * amplitude;
-                }
+                let mut singular = 2.0 / PI * strip::logarithmic(a, t, &mut modes);
+                modes.iter_mut().for_each(|sum| *sum *= 2.0 / PI);
                 for ([_, sin, turn], weight) in screened(a, t) {
                     // sqrt(1-t^2) U_2m = sin((2m+1) f), by the recurrence in steps of 2 f.
                     let (mut before, mut here) = (-sin, sin);
-                    for column in modes.clone() {
-                        matrix[(row, column)] += weight * here * sin;
+                    for sum in &mut modes {
+                        *sum += weight * here * sin;
                         (before, here) = (here, turn * here - before);
                     }
-                    for (column, factor) in &singular {
-                        matrix[(row, *column)] += weight * factor;
+                    singular += weight;
+                }
+                for (columns, displaced) in columns.iter().zip(modes.iter().chain([&singular])) {
+                    for (column, factor) in columns {
+                        matrix[(row, *column)] += factor * displaced;
                     }
                 }
                 right[row] = -self.problem.gap(a * t, self.operator.axis.nodes()[i]);

@@ -19,6 +19,12 @@ const UNRESOLVED: f64 = 0.1;
 const UNRESOLVED_MODES: usize = 3;
 const ENDLESS_EXPONENT: f64 = 0.5;
 
+/// Modes that a node without an independent half-width has of its own, where the pressure has a
+/// limit at the end. Its higher ones are small, change slowly along the line, and are interpolated
+/// as its half-width is: nodes beside each other, with all modes of their own, would make noise of
+/// them that pressures between the nodes show.
+const OWN_MODES: usize = 3;
+
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
 
@@ -49,8 +55,9 @@ pub(super) type Shares = [(usize, f64); CUBIC];
 /// determines the change of their half-width. Next to the end of the line the nodes are closer than
 /// the shortest wave, and independent half-widths would be noise. They are interpolated from those
 /// of the free nodes, at least `spacing` apart, in the [`STEEPENING`] power of the distance from
-/// the end. A node beyond the last free one whose pressure would be tensile loses modes, the higher
-/// ones first; with none left it carries no pressure.
+/// the end, and so are higher modes, see [`OWN_MODES`]. A node beyond the last free one whose
+/// pressure would be tensile loses modes, the higher ones first; with none left it carries no
+/// pressure.
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     /// The free nodes, ascending.
@@ -60,8 +67,10 @@ pub(super) struct Layout {
     /// Whether the contact narrows to a tip towards the end next to each node: it is the square of
     /// the half-width that is interpolated then.
     pub narrows: Vec<bool>,
-    /// Modes of each node.
+    /// Modes of each node, with those that are interpolated.
     pub counts: Vec<usize>,
+    /// Modes of each node that are unknowns, the lowest ones.
+    own: Vec<usize>,
     /// The first unknown of each node, and the end.
     starts: Vec<usize>,
 }
@@ -186,7 +195,7 @@ impl Layout {
         let narrows: Vec<bool> =
             axis.nodes().iter().map(|y| narrows(problem, &contact, *y)).collect();
         let knots = knots(problem, &contact, &free);
-        let shares = axis
+        let shares: Vec<Shares> = axis
             .nodes()
             .iter()
             .zip(&narrows)
@@ -232,8 +241,20 @@ impl Layout {
             };
             settings.modes.min(most)
         };
-        let counts = axis.nodes().iter().enumerate().map(modes_at).collect();
-        let mut layout = Self { free, shares, narrows, counts, starts: Vec::new() };
+        let mut counts: Vec<usize> = axis.nodes().iter().enumerate().map(modes_at).collect();
+        let mut own = counts.clone();
+        for j in 0..counts.len() {
+            let is_free = free.binary_search(&j).is_ok();
+            if is_free || narrows[j] || problem.is_steep(axis.nodes()[j]) {
+                continue;
+            }
+            own[j] = counts[j].min(OWN_MODES);
+            // Those that all of the free nodes have.
+            let of_free = shares[j].iter().filter(|(_, share)| *share != 0.0);
+            let known = of_free.map(|(at, _)| counts[free[*at]]).min().unwrap_or(0);
+            counts[j] = counts[j].min(known).max(own[j]);
+        }
+        let mut layout = Self { free, shares, narrows, counts, own, starts: Vec::new() };
         layout.number();
         layout
     }
@@ -242,7 +263,7 @@ impl Layout {
     fn number(&mut self) {
         let mut next = 0;
         self.starts.clear();
-        for (j, modes) in self.counts.iter().enumerate() {
+        for (j, modes) in self.own.iter().enumerate() {
             self.starts.push(next);
             next += modes + usize::from(self.is_free(j));
         }
@@ -284,9 +305,27 @@ impl Layout {
         self.starts[j]..self.starts[j + 1]
     }
 
-    /// The modes of node `j`.
+    /// The modes of node `j` that are unknowns.
     pub fn modes(&self, j: usize) -> Range<usize> {
-        self.starts[j]..self.starts[j] + self.counts[j]
+        self.starts[j]..self.starts[j] + self.own[j]
+    }
+
+    /// All modes of node `j` in terms of the unknowns: columns and factors of each.
+    pub fn mode_parts(&self, j: usize) -> Vec<Vec<(usize, f64)>> {
+        let own = self.modes(j).map(|mode| vec![(mode, 1.0)]);
+        let interpolated = (self.own[j]..self.counts[j]).map(|mode| {
+            let shares = self.shares[j].iter().filter(|(_, share)| *share != 0.0);
+            shares.map(|(at, share)| (self.starts[self.free[*at]] + mode, *share)).collect()
+        });
+        own.chain(interpolated).collect()
+    }
+
+    /// The coefficients of all modes of node `j`.
+    pub fn coefficients(&self, j: usize, unknowns: &DVector<f64>) -> Vec<f64> {
+        let sum = |parts: &Vec<(usize, f64)>| {
+            parts.iter().map(|(column, factor)| factor * unknowns[*column]).sum()
+        };
+        self.mode_parts(j).iter().map(sum).collect()
     }
 
     /// The singular mode of the free node `j`.
@@ -296,7 +335,7 @@ impl Layout {
 
     /// Unknowns of all nodes; those of rigid motions follow.
     pub fn len(&self) -> usize {
-        self.starts[self.counts.len()]
+        self.starts[self.own.len()]
     }
 
     /// The amplitude of node `j`'s singular mode in terms of those of the free nodes: columns and
@@ -337,7 +376,7 @@ impl Layout {
         let [first, last] = [0, self.free.len() - 1].map(|at| self.free[at]);
         let behind = (0..first).filter(|_| both_ends).chain(last + 1..self.counts.len());
         for j in behind {
-            let c = &unknowns.as_slice()[self.modes(j)];
+            let c = &self.coefficients(j, unknowns);
             let is_tensile = |modes: &[f64]| {
                 (0..=SHAPE_POINTS).any(|i| {
                     // Just inside the edge the sign is that of the slope.
@@ -353,6 +392,7 @@ impl Layout {
                 _ => 2,
             };
             self.counts[j] = left;
+            self.own[j] = self.own[j].min(left);
             released = true;
         }
         self.number();

@@ -93,4 +93,12 @@ impl Problem<'_> {
         let before = if self.both_ends { y - self.axis.breaks()[0] } else { f64::INFINITY };
         before.min(self.axis.end() - y)
     }
+
+    /// Whether the pressure grows without limit towards the end next to `y`.
+    pub(super) fn is_steep(&self, y: f64) -> bool {
+        let [from, to] = [self.axis.breaks()[0], self.axis.end()];
+        let end = if self.both_ends && y - from < to - y { from } else { to };
+        let corners = self.axis.corners().iter();
+        corners.filter(|corner| corner.exponent().is_some()).any(|corner| corner.at == end)
+    }
 }

@@ -200,7 +200,7 @@ fn solve_once(
         let worst = singular.iter().fold(0.0, |worst: f64, s| worst.max(s.abs()));
         let steeper = if worst <= NEAR { NEAR_STEEPER } else { STEEPER };
         for (j, slope) in slopes.iter_mut().enumerate() {
-            *slope = edge_slope(&unknowns.as_slice()[layout.modes(j)], steeper);
+            *slope = edge_slope(&layout.coefficients(j, &unknowns), steeper);
         }
         last = worst;
         let shrunk = layout.shrunk(problem, &contact, &unknowns);
@@ -321,7 +321,7 @@ fn carrying(
     let axis = problem.axis;
     let n = axis.len();
     let mut coefficients: Vec<Vec<f64>> =
-        (0..n).map(|j| unknowns.as_slice()[layout.modes(j)].to_vec()).collect();
+        (0..n).map(|j| layout.coefficients(j, unknowns)).collect();
     // Load and its first two moments about y = 0.
     let carried = |coefficients: &[Vec<f64>]| -> [f64; 3] {
         let mut sums = [0.0; 3];

@@ -73,7 +73,7 @@ impl Scene {
         let known = self.corner_exponents();
         let exponents = [0, 1].map(|side| known[side].filter(|_| self.reaches(ends, side)));
         let largest = exponents.into_iter().flatten().reduce(f64::max);
-        Resolution::of(tolerance, &self.end(BodyKind::Block), largest)
+        Resolution::of(tolerance, &self.end(BodyKind::Block), largest, !self.may_end())
     }
 
     /// Whether a load beside the middle of a short body with free ends bends it.

@@ -203,7 +203,7 @@ mod tests {
             let [few, many] = [50, 2000].map(|count| laminae(&solved, count));
             for all in [&few, &many] {
                 let sum: f64 = all.iter().map(|l| l.load_n).sum();
-                assert!((sum / force - 1.0).abs() < 1e-6, "{method}: {sum} of {force}");
+                assert!((sum / force - 1.0).abs() < 2e-6, "{method}: {sum} of {force}");
             }
             // Forty thin slices are one thick one.
             for (thick, thin) in few.iter().zip(many.chunks(40)) {

@@ -1,10 +1,11 @@
 //! The strength of the contact's end, and the only fitted number of the `guilbault` model.
 //! Lengths are in units of C, stresses in units of p0.
 
-use crate::common::{CORNER, apart, scene, small};
+use crate::common::{CORNER, apart, scene, small, worse};
+use edgeline::base::PerBody;
 use edgeline::body::{EdgeModel, GAMMA, Resolution, transition};
 use edgeline::solve::edge::{self, EdgeStrength, Side};
-use edgeline::solve::{Scene, SolvedScene};
+use edgeline::solve::{Scene, SceneBody, SolvedScene};
 use edgeline::stress::curves::{CURVE_NAMES, standard_curves};
 use edgeline::stress::{BodyKind, away_from_edge};
 
@@ -30,6 +31,27 @@ fn exponents_of_corners_are_the_known_ones() {
     assert!((m - 1.0 / 3.0).abs() < 1e-9, "{m}");
     for model in [EdgeModel::QuarterSpace, EdgeModel::Mirror] {
         assert_eq!(exponent(1.0, 0.3, model), None);
+    }
+}
+
+/// Beside a flush end nodes are closer to each other than their half-widths are independent. With
+/// all modes of their own they would have noise that pressures between them show: 0.9 and 1.1
+/// tolerances at these ends.
+#[test]
+fn pressures_between_the_nodes_beside_a_flush_end_converge() {
+    for (half, nu, share) in [(2.8674, [0.315, 0.436], 0.484), (3.4893, [0.411, 0.200], 0.517)] {
+        let body = |nu, share| SceneBody::straight(half, nu, share);
+        let bodies = PerBody { block: body(nu[0], share), roller: body(nu[1], 1.0 - share) };
+        let scene = Scene::symmetric(bodies, EdgeModel::QuarterSpace, 1e-3);
+        let solved = SolvedScene::new(&scene).unwrap();
+        let fine = SolvedScene::new(&Scene { tolerance: 1e-4, ..scene.clone() }).unwrap();
+        for x in [0.0, 0.4, 0.8] {
+            let worst = (0..=200).fold(0.0, |worst, i| {
+                let y = half - 0.03 * 20f64.powf(f64::from(i) / 200.0);
+                worse(worst, (solved.pressure.at(x, y) - fine.pressure.at(x, y)).abs())
+            });
+            small(&format!("S_l {half}, x = {x}"), worst, 0.7 * scene.tolerance);
+        }
     }
 }
 
@@ -88,7 +110,7 @@ fn edges_without_load_are_free_of_stress() {
             let near = stresses(&own, 0.5 * ledge, 0.0)[0].yy.abs();
             for off in [0.02, 0.005, 0.001] {
                 let yy = stresses(&own, off, 0.0)[0].yy;
-                let limit = 0.2 * tolerance + near * (off / (0.5 * ledge)).powf(1.7);
+                let limit = 0.5 * tolerance + near * (off / (0.5 * ledge)).powf(1.7);
                 small(&format!("{length_ratio}, {tolerance}, yy {off} C from the edge"), yy, limit);
             }
             for (off, z) in [(0.01, 0.01), (0.003, 0.003), (0.0, 0.02), (0.03, 0.0), (0.05, 0.02)] {
