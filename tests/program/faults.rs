@@ -561,7 +561,7 @@ fn two_runs_do_not_share_a_folder() {
     ] {
         let said = refused(&mut command);
         let wanted = format!("is in use by another run (process {})", first.id());
-        assert!(said.contains(&wanted) && said.contains("give another folder"), "{said}");
+        assert!(said.contains(&wanted) && said.contains("give another path"), "{said}");
     }
     kill(first.id() as i32, libc::SIGTERM);
     let done = first.wait_with_output().unwrap();
