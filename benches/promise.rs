@@ -297,6 +297,19 @@ impl Known {
         if (from..=to).contains(&y) { before + share * (after - before) } else { 0.0 }
     }
 
+    /// The scene at a resolution: errors of pressure and stresses in tolerances, and the processor
+    /// time (s); none if it fails or is solved coarser than asked.
+    fn tried(&self, resolution: &Resolution, tolerance: f64) -> Option<([f64; 2], f64)> {
+        let scene = Scene { tolerance, ..self.scene.clone() };
+        let began = processor_time();
+        let solved = SolvedScene::with_resolution(&scene, resolution).ok()?;
+        let stress = stresses(&solved, &self.places.curves);
+        let time = processor_time() - began;
+        let (pressure, stress, _) = self.errors_of(&values(&solved, &self.places, stress));
+        let same = solved.contact.coarser.is_none();
+        same.then_some(([pressure, stress].map(|error| error / tolerance), time))
+    }
+
     /// The largest errors of pressure and stresses, and where they are.
     fn errors(&self, solved: &SolvedScene) -> (f64, f64, String) {
         let stress = stresses(solved, &self.places.curves);
@@ -364,17 +377,9 @@ fn price(
 ) -> Option<(f64, f64)> {
     let (mut worst, mut time) = (0.0f64, 0.0);
     for known in scenes {
-        let scene = Scene { tolerance, ..known.scene.clone() };
-        let began = processor_time();
-        let solved = SolvedScene::with_resolution(&scene, resolution).ok()?;
-        let stress = stresses(&solved, &known.places.curves);
-        time += processor_time() - began;
-        let found = values(&solved, &known.places, stress);
-        if solved.contact.coarser.is_some() {
-            return None;
-        }
-        let (pressure, stress, _) = known.errors_of(&found);
-        worst = worst.max(pressure / tolerance).max(stress / tolerance);
+        let ([pressure, stress], own) = known.tried(resolution, tolerance)?;
+        time += own;
+        worst = worst.max(pressure).max(stress);
         if cost((worst, time)) > most {
             return None;
         }
@@ -445,13 +450,12 @@ fn attempt(kind: Kind, tolerance: f64, scenes: &[usize], changes: &[&str]) -> Op
         let (mut time, mut errors) = (0.0, String::new());
         for known in &scenes {
             let resolution = changed(&known.scene, tolerance, parts)?;
-            let scene = Scene { tolerance, ..known.scene.clone() };
-            let began = processor_time();
-            let solved = SolvedScene::with_resolution(&scene, &resolution).ok()?;
-            let stress = stresses(&solved, &known.places.curves);
-            time += processor_time() - began;
-            let (pressure, stress, _) = known.errors_of(&values(&solved, &known.places, stress));
-            errors += &format!(" {:.2}/{:.2}", pressure / tolerance, stress / tolerance);
+            let Some(([pressure, stress], own)) = known.tried(&resolution, tolerance) else {
+                errors += " none";
+                continue;
+            };
+            time += own;
+            errors += &format!(" {pressure:.2}/{stress:.2}");
         }
         println!("{parts}:{errors}, {:.1} ms", 1e3 * time / scenes.len() as f64);
     }

@@ -120,7 +120,7 @@ pub enum Error {
     /// A folder or a file that is in use by another run.
     #[error("{} is in use by another run{}; wait for it, or give another path", path.display(), pid.map(|p| format!(" (process {p})")).unwrap_or_default())]
     Busy {
-        /// The folder.
+        /// The folder or the file.
         path: PathBuf,
         /// The other run's process, where it is known.
         pid: Option<u32>,

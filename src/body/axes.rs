@@ -101,170 +101,12 @@ const SHORTER: f64 = 3.0;
 /// A share this small is rounding.
 const ROUNDING: f64 = 1e-12;
 
-/// The levels of straight bodies that are symmetric about the contact's middle, where the pressure
-/// at its end has a limit, at each of [`TOLERANCES`].
+/// The levels where the pressure at the contact's end has a limit, at the last of [`TOLERANCES`].
 ///
 /// `cargo bench --bench promise -- search` proposes levels, the cheapest that keep the errors of
 /// some scenes within the tolerance, and `-- try` shows what a change does; `-- hold` measures
-/// others. These and the next ones are between what they proposed and finer ones.
-const STRAIGHT_FINITE: [Resolution; 6] = [
-    Resolution {
-        order: 2,
-        corner: 0.06,
-        corner_ratio: 3.0,
-        ratio: 2.9,
-        modes: 3,
-        spacing: [0.15; 2],
-        k_max: 12.0,
-        k_order: 2,
-        k_step: 4.26,
-        k_min: 0.05,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 5.93,
-    },
-    Resolution {
-        order: 3,
-        corner: 0.045,
-        corner_ratio: 3.0,
-        ratio: 2.6,
-        modes: 5,
-        spacing: [0.12; 2],
-        k_max: 13.0,
-        k_order: 2,
-        k_step: 2.8,
-        k_min: 0.05,
-        k_ratio: 6.0,
-        images: 1,
-        face_reach: 8.5,
-        reach: 9.0,
-    },
-    Resolution {
-        order: 3,
-        corner: 0.03,
-        corner_ratio: 2.6,
-        ratio: 2.1,
-        modes: 5,
-        spacing: [0.07; 2],
-        k_max: 26.0,
-        k_order: 4,
-        k_step: 5.0,
-        k_min: 0.05,
-        k_ratio: 6.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 8.0,
-    },
-    Resolution {
-        order: 4,
-        corner: 0.012,
-        corner_ratio: 2.4,
-        ratio: 2.4,
-        modes: 5,
-        spacing: [0.053; 2],
-        k_max: 36.0,
-        k_order: 4,
-        k_step: 5.0,
-        k_min: 0.035,
-        k_ratio: 7.0,
-        images: 1,
-        face_reach: 12.0,
-        reach: 9.2,
-    },
-    Resolution {
-        order: 5,
-        corner: 0.0055,
-        corner_ratio: 2.5,
-        ratio: 2.3,
-        modes: 8,
-        spacing: [0.02; 2],
-        k_max: 140.0,
-        k_order: 4,
-        k_step: 6.0,
-        k_min: 0.01,
-        k_ratio: 3.2,
-        images: 2,
-        face_reach: 19.0,
-        reach: 15.0,
-    },
-    Resolution {
-        order: 7,
-        corner: 0.002,
-        corner_ratio: 2.2,
-        ratio: 1.85,
-        modes: 8,
-        spacing: [0.02; 2],
-        k_max: 220.0,
-        k_order: 5,
-        k_step: 3.8,
-        k_min: 0.004,
-        k_ratio: 2.2,
-        images: 4,
-        face_reach: 17.0,
-        reach: 20.0,
-    },
-];
-
-/// The same where the pressure grows without bound at a free end: the loads on the end face do so
-/// too, and carry much from next to the corner. Its panels are many times smaller, and grow fast.
-const STRAIGHT_SINGULAR: [Resolution; 6] = [
-    Resolution {
-        order: 3,
-        corner: 0.02,
-        corner_ratio: 6.4,
-        ratio: 3.5,
-        modes: 2,
-        spacing: [0.12; 2],
-        k_max: 20.0,
-        k_order: 2,
-        k_step: 3.23,
-        k_min: 0.037,
-        k_ratio: 5.0,
-        images: 1,
-        face_reach: 10.0,
-        reach: 5.2,
-    },
-    SINGULAR[0],
-    SINGULAR[1],
-    Resolution {
-        order: 4,
-        corner: 0.0025,
-        corner_ratio: 6.0,
-        ratio: 2.5,
-        modes: 4,
-        spacing: [0.06; 2],
-        k_max: 70.0,
-        k_order: 5,
-        k_step: 4.0,
-        k_min: 0.03,
-        k_ratio: 5.32,
-        images: 1,
-        face_reach: 14.0,
-        reach: 8.7,
-    },
-    Resolution {
-        order: 5,
-        corner: 0.0013,
-        corner_ratio: 5.8,
-        ratio: 2.3,
-        modes: 7,
-        spacing: [0.04; 2],
-        k_max: 200.0,
-        k_order: 6,
-        k_step: 5.5,
-        k_min: 0.005,
-        k_ratio: 2.8,
-        images: 2,
-        face_reach: 17.0,
-        reach: 15.0,
-    },
-    SINGULAR[4],
-];
-
-/// The levels of all other bodies where the pressure has a limit. Loads that bend bodies need more
-/// nodes: long waves turn these as 1 / k, and what clusters of panels and panels of wavenumbers
-/// leave out counts a hundred times. The tests of fields, approaches and ends chose them.
+/// others. These and the next ones lie between what it proposed and finer ones, where the tests of
+/// fields, approaches and ends asked for them.
 const FINITE: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -348,7 +190,8 @@ const FINITE: [Resolution; 5] = [
     },
 ];
 
-/// The same where the pressure grows without bound at a free end.
+/// The same where the pressure grows without bound at a free end: the loads on the end face do so
+/// too, and carry much from next to the corner. Its panels are many times smaller, and grow fast.
 const SINGULAR: [Resolution; 5] = [
     Resolution {
         order: 3,
@@ -430,6 +273,87 @@ const SINGULAR: [Resolution; 5] = [
         face_reach: 18.0,
         reach: 16.0,
     },
+];
+
+/// Those of straight bodies that are symmetric about the contact's middle, by what is other than at
+/// the levels of all bodies. Nothing bends such bodies: long waves turn others as 1 / k, and what
+/// clusters of panels and panels of wavenumbers leave out counts a hundred times.
+const STRAIGHT_FINITE: [Resolution; 6] = [
+    Resolution { order: 2, ratio: 2.9, k_order: 2, k_step: 4.26, reach: 5.93, ..FINITE[0] },
+    Resolution {
+        corner: 0.045,
+        ratio: 2.6,
+        modes: 5,
+        spacing: [0.12; 2],
+        k_max: 13.0,
+        k_order: 2,
+        k_step: 2.8,
+        k_ratio: 6.0,
+        face_reach: 8.5,
+        reach: 9.0,
+        ..FINITE[0]
+    },
+    Resolution {
+        order: 3,
+        corner: 0.03,
+        ratio: 2.1,
+        modes: 5,
+        spacing: [0.07; 2],
+        k_max: 26.0,
+        k_order: 4,
+        k_step: 5.0,
+        k_ratio: 6.0,
+        ..FINITE[1]
+    },
+    Resolution {
+        order: 4,
+        ratio: 2.4,
+        modes: 5,
+        spacing: [0.053; 2],
+        k_min: 0.035,
+        k_ratio: 7.0,
+        reach: 9.2,
+        ..FINITE[2]
+    },
+    Resolution {
+        order: 5,
+        ratio: 2.3,
+        modes: 8,
+        spacing: [0.02; 2],
+        k_max: 140.0,
+        face_reach: 19.0,
+        ..FINITE[3]
+    },
+    Resolution {
+        ratio: 1.85,
+        k_max: 220.0,
+        k_order: 5,
+        k_step: 3.8,
+        k_min: 0.004,
+        k_ratio: 2.2,
+        face_reach: 17.0,
+        ..FINITE[4]
+    },
+];
+
+/// The same of straight bodies where the pressure grows without bound.
+const STRAIGHT_SINGULAR: [Resolution; 6] = [
+    Resolution {
+        corner: 0.02,
+        corner_ratio: 6.4,
+        ratio: 3.5,
+        modes: 2,
+        k_order: 2,
+        k_step: 3.23,
+        k_min: 0.037,
+        reach: 5.2,
+        ..SINGULAR[0]
+    },
+    SINGULAR[0],
+    SINGULAR[1],
+    Resolution { order: 4, corner_ratio: 6.0, ratio: 2.5, ..SINGULAR[2] },
+    Resolution { order: 5, corner: 0.0013, ratio: 2.3, reach: 15.0, ..SINGULAR[3] },
+    SINGULAR[4],
 ];
 
 /// Those of contacts that end before their bodies do at both ends: the pressure falls to zero

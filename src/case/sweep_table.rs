@@ -2,10 +2,10 @@
 
 use super::levels::MAX_ROWS;
 use crate::base::{Error, Result};
-use crate::host::csv_fault;
-use csv::{ErrorKind, ReaderBuilder, StringRecord};
+use crate::host::{csv_fault, csv_line_from};
+use csv::{ErrorKind, Position, ReaderBuilder, StringRecord};
 use std::fs::File;
-use std::io::{BufRead, BufReader, Read};
+use std::io::{BufReader, Read};
 use std::path::{Path, PathBuf};
 
 /// Rows in their order, each the texts of its columns.
@@ -101,14 +101,14 @@ impl Table {
         })
     }
 
-    /// Number of empty lines from a byte on. To the reader they belong to the row behind them.
-    fn empty_lines(&self, from: u64) -> usize {
-        let Ok(source) = self.source() else { return 0 };
+    /// The line of a row, from 1; that of its reader if the table cannot be read again.
+    fn line(&self, at: &Position) -> usize {
+        let source = self.source().unwrap_or_else(|_| Box::new(std::io::empty()));
         let mut rest = BufReader::new(source);
-        if std::io::copy(&mut rest.by_ref().take(from), &mut std::io::sink()).is_err() {
-            return 0;
+        match std::io::copy(&mut rest.by_ref().take(at.byte()), &mut std::io::sink()) {
+            Ok(_) => csv_line_from(at, rest, false),
+            Err(_) => at.line() as usize,
         }
-        rest.lines().map_while(|line| line.ok().filter(String::is_empty)).count()
     }
 
     fn unread(&self, source: std::io::Error) -> Error {
@@ -116,7 +116,7 @@ impl Table {
     }
 
     fn broken(&self, error: csv::Error) -> Error {
-        let line = error.position().map(|p| p.line() as usize + self.empty_lines(p.byte()));
+        let line = error.position().map(|at| self.line(at));
         let fault = csv_fault(&error);
         match error.into_kind() {
             ErrorKind::Io(source) => self.unread(source),

@@ -172,12 +172,9 @@ fn shares_of_cubic(y: f64, knots: &[Knot; CUBIC]) -> Shares {
 
 /// Whether the contact ends before the bodies do towards the end next to `y`.
 fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
-    let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
-    if problem.both_ends && y - from < to - y {
-        problem.open[0] || contact.start > 0
-    } else {
-        problem.open[1] || contact.end < problem.axis.len()
-    }
+    let receded = [contact.start > 0, contact.end < problem.axis.len()];
+    let side = problem.side_of(y);
+    problem.open[side] || receded[side]
 }
 
 impl Layout {
@@ -391,8 +388,7 @@ impl Layout {
                 1 | 2 => 1,
                 _ => 2,
             };
-            self.counts[j] = left;
-            self.own[j] = self.own[j].min(left);
+            (self.counts[j], self.own[j]) = (left, left);
             released = true;
         }
         self.number();

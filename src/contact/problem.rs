@@ -94,10 +94,14 @@ impl Problem<'_> {
         before.min(self.axis.end() - y)
     }
 
+    /// The side of the end of the contact next to `y`.
+    pub(super) fn side_of(&self, y: f64) -> usize {
+        usize::from(!self.both_ends || y - self.axis.breaks()[0] >= self.axis.end() - y)
+    }
+
     /// Whether the pressure grows without limit towards the end next to `y`.
     pub(super) fn is_steep(&self, y: f64) -> bool {
-        let [from, to] = [self.axis.breaks()[0], self.axis.end()];
-        let end = if self.both_ends && y - from < to - y { from } else { to };
+        let end = [self.axis.breaks()[0], self.axis.end()][self.side_of(y)];
         let corners = self.axis.corners().iter();
         corners.filter(|corner| corner.exponent().is_some()).any(|corner| corner.at == end)
     }

@@ -24,7 +24,7 @@ pub(crate) use {
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,
     signals::{check_interrupt, let_large_files_fail},
-    text::{csv_fault, csv_line, read_text},
+    text::{csv_fault, csv_line, csv_line_from, read_text},
 };
 
 pub(crate) use inputs::{read_input, remember_input};

@@ -49,13 +49,18 @@ pub fn csv_fault(error: &csv::Error) -> String {
     }
 }
 
-/// The line of a record of the CSV table `text`, from 1. A record begins where the one before it
-/// ended: comments, which begin with #, and empty lines are before it.
+/// The line of a record of the CSV table `text`, from 1, whose comments begin with #.
 #[cfg(feature = "cli")]
 pub fn csv_line(text: &str, at: &csv::Position) -> usize {
-    let rest = text.get(at.byte() as usize..).unwrap_or_default();
-    let other = |line: &&str| line.is_empty() || line.starts_with('#');
-    at.line() as usize + rest.lines().take_while(other).count()
+    csv_line_from(at, text.as_bytes().get(at.byte() as usize..).unwrap_or_default(), true)
+}
+
+/// The same with the `rest` of a table from the record on. It begins where the one before it ended:
+/// empty lines are before it, and comments, if the table has some.
+#[cfg(feature = "cli")]
+pub fn csv_line_from(at: &csv::Position, rest: impl std::io::BufRead, comments: bool) -> usize {
+    let other = |line: &String| line.is_empty() || comments && line.starts_with('#');
+    at.line() as usize + rest.lines().map_while(|line| line.ok().filter(other)).count()
 }
 
 #[cfg(test)]

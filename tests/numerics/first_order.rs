@@ -160,9 +160,14 @@ fn only_free_ends_have_the_terms() {
     }
 }
 
-/// Refuses a curve in the roller of `case` whose stresses are not those at the points that `count`;
-/// gives all its points.
-fn check_points(case: &Case, curve: &str, count: impl Fn(&[f64; 3]) -> bool) -> Vec<[f64; 3]> {
+/// Refuses a curve in the roller of `case` whose stresses are not within a `limit` those at the
+/// points that `count`; gives all its points.
+fn check_points(
+    case: &Case,
+    curve: &str,
+    limit: f64,
+    count: impl Fn(&[f64; 3]) -> bool,
+) -> Vec<[f64; 3]> {
     let mut options = Options::new(EdgeModel::QuarterSpace);
     let line = solved(case).curves.curve(BodyKind::Roller, curve).unwrap().clone();
     let c_m = case.hertz().c_m;
@@ -173,7 +178,7 @@ fn check_points(case: &Case, curve: &str, count: impl Fn(&[f64; 3]) -> bool) -> 
     let pairs = line.at.iter().zip(line.stress.iter().zip(&points));
     for (_, (a, b)) in pairs.filter(|(at, _)| count(at)) {
         let pairs = a.components().into_iter().zip(b.components());
-        small("line and point", pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), 1.5e-3);
+        small("line and point", pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max), limit);
     }
     line.at
 }
@@ -183,7 +188,7 @@ fn check_points(case: &Case, curve: &str, count: impl Fn(&[f64; 3]) -> bool) -> 
 fn lines_into_short_bodies_are_their_points() {
     let mut case = straight(2e-2, 0.7, 1.0).with_tolerance(5e-3);
     case.accuracy.first_order = true;
-    let at = check_points(&case, "depth-end-x0.7", |_| true);
+    let at = check_points(&case, "depth-end-x0.7", 1.5e-3, |_| true);
     assert!(at[at.len() - 1][2] > 5.0 * 0.7);
 }
 
@@ -226,5 +231,5 @@ fn the_surface_beside_an_open_face_is_its_points() {
     case.load.eccentricity_m = Some(1e-3);
     let ends = solved(&case).summary.contact_y_m.map(|y| y / case.hertz().c_m);
     assert!(ends[0] > -8.0, "{ends:?}");
-    check_points(&case, "surface-along-y", |[_, y, _]| *y < 0.0);
+    check_points(&case, "surface-along-y", 5e-4, |[_, y, _]| *y < 0.0);
 }

@@ -144,7 +144,7 @@ fn points_between_do_not_matter() {
         small(&format!("change in tolerances of {:e}", levels[level]), change, 2.0);
         if level < 3 {
             // What interpolation adds to the largest error stays within half a tolerance.
-            assert!(max <= (1.1 * direct_max).max(0.5) && rms[0] <= 1.1 * rms[1]);
+            assert!(max <= (1.08 * direct_max).max(0.5) && rms[0] <= 1.1 * rms[1]);
         }
     }
     assert!(found[2][0] < 1.0 && found[3][0] < 1.0);
@@ -346,7 +346,7 @@ fn every_direction_converges() {
             // change by 3e-4 with fewer modes and by 5e-4 with more.
             let falls = |coarse: f64, usual: f64| usual <= coarse.max(5e-4);
             assert!(falls(coarse.0, usual.0) && falls(coarse.1, usual.1), "{name}: {errors:?}");
-            assert!(usual.0 <= 5e-4 && usual.1 <= 7e-4, "{name}: {errors:?}");
+            assert!(usual.0 <= 5e-4 && usual.1 <= 5.5e-4, "{name}: {errors:?}");
         }
     }
 }
