@@ -19,8 +19,8 @@
 //! shrinks under the load, and is rounder there.
 //!
 //! All of this is a small part of the stresses, so that it has axes and wavenumbers of its own, few
-//! for any tolerance. Slopes along k ask for something else than the solution's: that nothing is
-//! cut off at one wavenumber and not at the next.
+//! where C / R is small beside the tolerance. Slopes along k ask for something else than the
+//! solution's: that nothing is cut off at one wavenumber and not at the next.
 
 use super::axes::Resolution;
 use super::finite::Body;
@@ -34,27 +34,140 @@ use nalgebra::DMatrix;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// The resolution of a skin, but for its smallest wavenumber.
-const RESOLUTION: Resolution = Resolution {
-    order: 4,
-    corner: 0.05,
+/// How finely a skin is resolved.
+#[derive(Debug)]
+struct Level {
+    /// The largest error of pressures and stresses (p0 C / R) in straight scenes, 0.1 C and more
+    /// from a corner.
+    error: f64,
+    /// The resolution, but for its smallest wavenumber.
+    resolution: Resolution,
+    /// Gauss nodes of a piece of a panel: pairs of forces have a stronger pole than loads.
+    piece_nodes: usize,
+    /// See [`Skins::nodes_per_e`].
+    nodes_per_e: f64,
+}
+
+/// The coarsest resolution.
+const COARSEST: Resolution = Resolution {
+    order: 3,
+    corner: 0.079,
     corner_ratio: 4.0,
-    ratio: 2.3,
+    ratio: 2.8,
     modes: 0,
     spacing: [0.0; 2],
-    k_max: 9.0,
-    k_order: 4,
-    k_step: 3.0,
+    k_max: 3.5,
+    k_order: 2,
+    k_step: 4.0,
     k_min: 0.0,
-    k_ratio: 5.0,
+    k_ratio: 4.0,
     images: 1,
-    face_reach: 14.0,
-    reach: 14.0,
+    face_reach: 9.0,
+    reach: 7.0,
 };
 
-/// Gauss nodes of a piece of a panel: pairs of forces have a stronger pole than loads, and four
-/// nodes made stresses jump by 0.04 C / R from one depth to the next.
-const PIECE_NODES: usize = 8;
+/// From the coarsest to the finest.
+const LEVELS: [Level; 6] = [
+    Level { error: 0.3, resolution: COARSEST, piece_nodes: 4, nodes_per_e: 0.3 },
+    Level {
+        error: 0.1,
+        resolution: Resolution {
+            order: 4,
+            corner: 0.086,
+            ratio: 2.6,
+            k_max: 4.0,
+            k_order: 2,
+            k_step: 3.8,
+            k_ratio: 3.9,
+            face_reach: 11.4,
+            reach: 10.0,
+            ..COARSEST
+        },
+        piece_nodes: 4,
+        nodes_per_e: 0.35,
+    },
+    Level {
+        error: 0.05,
+        resolution: Resolution {
+            order: 4,
+            corner: 0.05,
+            ratio: 2.5,
+            k_max: 6.0,
+            k_order: 3,
+            k_step: 2.0,
+            k_ratio: 4.5,
+            face_reach: 11.5,
+            reach: 9.0,
+            ..COARSEST
+        },
+        piece_nodes: 6,
+        nodes_per_e: 0.6,
+    },
+    Level {
+        error: 0.03,
+        resolution: Resolution {
+            order: 5,
+            corner: 0.025,
+            ratio: 2.7,
+            k_max: 12.7,
+            k_order: 5,
+            k_step: 4.4,
+            k_ratio: 6.0,
+            face_reach: 7.8,
+            reach: 10.0,
+            ..COARSEST
+        },
+        piece_nodes: 6,
+        nodes_per_e: 1.7,
+    },
+    Level {
+        error: 0.02,
+        resolution: Resolution {
+            order: 5,
+            corner: 0.012,
+            ratio: 2.5,
+            k_max: 21.7,
+            k_order: 5,
+            k_step: 4.4,
+            k_ratio: 4.25,
+            face_reach: 9.0,
+            reach: 10.0,
+            ..COARSEST
+        },
+        piece_nodes: 6,
+        nodes_per_e: 1.8,
+    },
+    Level {
+        error: 0.006,
+        resolution: Resolution {
+            order: 6,
+            corner: 0.005,
+            ratio: 2.4,
+            k_max: 45.0,
+            k_order: 5,
+            k_step: 4.0,
+            k_ratio: 3.5,
+            face_reach: 10.0,
+            reach: 11.0,
+            ..COARSEST
+        },
+        piece_nodes: 7,
+        nodes_per_e: 2.2,
+    },
+];
+
+/// Loads turn the bodies that they bend the more the longer the waves are: their errors are this
+/// many times as large, and their wavenumbers grow no faster than this.
+const BENDING_ERROR: f64 = 4.0;
+const BENDING_RATIO: f64 = 3.0;
+
+impl Level {
+    /// The coarsest whose error (p0 C / R) is at most the `wanted` one.
+    fn within(wanted: f64) -> &'static Self {
+        let fine = LEVELS.iter().find(|level| level.error <= wanted);
+        fine.unwrap_or(&LEVELS[LEVELS.len() - 1])
+    }
+}
 
 /// The least wavenumber times a body's half-length that has a skin: under longer waves the body is
 /// a plate whose surface carries no stress beside the load.
@@ -86,6 +199,9 @@ pub struct Skins {
     pub bodies: Vec<Body>,
     /// The wavenumbers; those of the first panel have no skin.
     pub wavenumbers: Wavenumbers,
+    /// Nodes of interpolations of its stresses along lines, per factor e of the distance from what
+    /// they vary with.
+    pub nodes_per_e: f64,
     /// Stresses of loads along x and apart from lines along x.
     pub tables: [Arc<WaveTable>; 2],
     /// The loads on each of the bodies at each wavenumber from the second panel on.
@@ -95,12 +211,22 @@ pub struct Skins {
 }
 
 impl Skins {
-    /// The skin of a body with free end faces and this C / R: beyond R from a load the surface is
-    /// no longer near its tangent plane, and waves that long have no skin.
-    pub fn new(line: SkinLine, Placed { middle, shape, end }: Placed, curvature: f64) -> Self {
+    /// The skin of a body with free end faces and this C / R, for errors of about `error` (p0 C /
+    /// R): beyond R from a load the surface is no longer near its tangent plane, and waves that
+    /// long have no skin.
+    pub fn new(
+        line: SkinLine,
+        Placed { middle, shape, end }: Placed,
+        curvature: f64,
+        error: f64,
+    ) -> Self {
         let longest = (LONGEST / shape.half).max(curvature.abs());
-        let resolution = Resolution { k_min: longest, ..RESOLUTION };
         let SkinLine { ends, exponents, kinks, symmetric } = line;
+        let level = Level::within(if symmetric { error } else { error / BENDING_ERROR });
+        let mut resolution = Resolution { k_min: longest, ..level.resolution };
+        if !symmetric {
+            resolution.k_ratio = resolution.k_ratio.min(BENDING_RATIO);
+        }
         let (line, _) = resolution.contact_line(ends, exponents, kinks, symmetric);
         let fold = Fold::new(&line, middle, symmetric);
         let coarse = wavenumbers(&resolution, longest);
@@ -111,13 +237,14 @@ impl Skins {
         let bends = fold.parities().contains(&Parity::Odd);
         let body = |&parity: &Parity| {
             let part = Part { parity, bends, slides: false };
-            Body::with_pieces(fold.axis(), shape, end, part, &resolution, PIECE_NODES)
+            Body::with_pieces(fold.axis(), shape, end, part, &resolution, level.piece_nodes)
         };
         let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
         let of_body = |body: &Body| OnSurface::new(body, k).skins(&tables);
         let (loads, compliances) = bodies.iter().map(of_body).unzip();
         let wavenumbers = Wavenumbers::new(coarse, resolution.k_step);
-        Self { middle, line, fold, bodies, wavenumbers, tables, loads, compliances }
+        let nodes_per_e = level.nodes_per_e;
+        Self { middle, line, fold, bodies, wavenumbers, nodes_per_e, tables, loads, compliances }
     }
 
     /// The loads on body number `part` at coarse wavenumber number `i`; none of the first panel.
@@ -250,7 +377,7 @@ mod tests {
         let (shape, end) = (Shape { half, nu }, EdgeModel::QuarterSpace.end(nu, None));
         let ends = [-half, half];
         let line = SkinLine { ends, exponents: [None; 2], kinks: &[], symmetric: true };
-        let skins = Skins::new(line, Placed { middle: 0.0, shape, end }, 0.03);
+        let skins = Skins::new(line, Placed { middle: 0.0, shape, end }, 0.03, 0.03);
         let axis = &skins.line;
         for (k, waves) in [(0.6, 0.0), (1.7, 0.0), (0.6, 1.0), (1.7, 1.0), (1.7, 2.0)] {
             let [mut all, mut of_ends] = [0; 2].map(|_| [DMatrix::zeros(axis.len(), axis.len())]);

@@ -246,7 +246,8 @@ impl Trial<'_> {
             let sharper = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
             let curvature = others.map(|kind| curvatures[kind]).fold(0.0, sharper);
             let line = SkinLine { ends: line.ends, exponents, kinks: &gap.kinks, symmetric };
-            (curvature != 0.0).then(|| Skins::new(line, placed(kind), curvature))
+            let error = self.accuracy.tolerance / curvature.abs();
+            (curvature != 0.0).then(|| Skins::new(line, placed(kind), curvature, error))
         };
         let skins: Vec<Option<Skins>> = distinct.iter().map(skin).collect();
         let condition = checked_condition(&bodies)?;

@@ -16,10 +16,6 @@ use std::sync::{Arc, Mutex};
 /// forces apart have no stress, and above this depth that of all of them hardly varies.
 const LEAST_DEPTH: f64 = 0.05;
 
-/// Nodes of interpolations along lines, per factor e of the distance from what the stresses vary
-/// with.
-const NODES_PER_E: f64 = 1.3;
-
 /// Distance from an end face (C) within which stresses vary with that, where the contact ends
 /// farther from it.
 const BESIDE_FACE: f64 = 1.5;
@@ -116,7 +112,8 @@ impl<'a> SkinField<'a> {
         let own: Vec<f64> = xs.iter().copied().filter(near).collect();
         let felt = zs.iter().filter(|z| **z <= deepest && !own.is_empty());
         let places: Vec<f64> = felt.map(|z| z.max(LEAST_DEPTH).ln()).collect();
-        let mut rows = sampled(&places, |t| self.below(y, t.exp(), &own)).into_iter();
+        let per_e = self.skins.nodes_per_e;
+        let mut rows = sampled(&places, per_e, |t| self.below(y, t.exp(), &own)).into_iter();
         let of_depth = |z: &f64| {
             let row = if *z <= deepest { rows.next() } else { None };
             let mut row = row.into_iter().flatten().map(|s| self.meeting(s, y, *z));
@@ -150,7 +147,7 @@ impl<'a> SkinField<'a> {
             let place = |i: &usize| ((side * (ys[*i] - middle) - end) / depth).asinh();
             let places: Vec<f64> = own.iter().map(place).collect();
             let at = |t: f64| self.below(middle + side * (end + depth * t.sinh()), depth, &[0.0]);
-            for (i, found) in own.into_iter().zip(sampled(&places, at)) {
+            for (i, found) in own.into_iter().zip(sampled(&places, self.skins.nodes_per_e, at)) {
                 stresses[i] = self.meeting(found[0], ys[i], z);
             }
         }
@@ -199,12 +196,17 @@ impl<'a> SkinField<'a> {
     }
 }
 
-/// The stresses `at` each of the `places`, by interpolation where that takes fewer of them.
-fn sampled(places: &[f64], at: impl Fn(f64) -> Vec<StressTensor>) -> Vec<Vec<StressTensor>> {
+/// The stresses `at` each of the `places`, by interpolation between `per_unit` nodes where that
+/// takes fewer of them.
+fn sampled(
+    places: &[f64],
+    per_unit: f64,
+    at: impl Fn(f64) -> Vec<StressTensor>,
+) -> Vec<Vec<StressTensor>> {
     let [from, to] = places
         .iter()
         .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], t| [low.min(*t), high.max(*t)]);
-    let nodes = (NODES_PER_E * (to - from)).max(0.0).ceil() as usize + 2;
+    let nodes = (per_unit * (to - from)).max(0.0).ceil() as usize + 2;
     if places.len() <= nodes || from >= to {
         return places.iter().map(|t| at(*t)).collect();
     }
