@@ -307,7 +307,7 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
     },
     Resolution {
         order: 4,
-        ratio: 2.4,
+        ratio: 2.3,
         modes: 5,
         spacing: [0.053; 2],
         k_min: 0.035,
@@ -317,6 +317,7 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
     },
     Resolution {
         order: 5,
+        corner: 0.0045,
         ratio: 2.3,
         modes: 8,
         spacing: [0.02; 2],
@@ -351,8 +352,8 @@ const STRAIGHT_SINGULAR: [Resolution; 6] = [
     },
     SINGULAR[0],
     SINGULAR[1],
-    Resolution { order: 4, corner_ratio: 6.0, ratio: 2.5, ..SINGULAR[2] },
-    Resolution { order: 5, corner: 0.0013, ratio: 2.3, reach: 15.0, ..SINGULAR[3] },
+    Resolution { order: 4, corner: 0.002, corner_ratio: 6.0, ratio: 2.4, ..SINGULAR[2] },
+    Resolution { order: 5, corner: 0.0009, ratio: 2.3, reach: 15.0, ..SINGULAR[3] },
     SINGULAR[4],
 ];
 

@@ -26,7 +26,7 @@ use super::axes::Resolution;
 use super::finite::Body;
 use super::fold::Fold;
 use super::part::Part;
-use super::skin_waves::{BEFORE, OnSurface, Skin, SkinCompliances};
+use super::skin_waves::{BEFORE, NEAR_FACE, OnSurface, Skin, SkinCompliances};
 use super::stack::Placed;
 use crate::base::{Kink, Panels, Parity, Wavenumbers, spline};
 use crate::kernels::wave::{Direction, WaveTable};
@@ -161,6 +161,11 @@ const LEVELS: [Level; 6] = [
 const BENDING_ERROR: f64 = 4.0;
 const BENDING_RATIO: f64 = 3.0;
 
+/// The largest panel at a corner of bodies that are pressed at one end alone: at the other one what
+/// is even and what is odd about the middle has to cancel, of which coarser panels leave up to 10 C
+/// / R p0 within 0.2 C.
+const CANCELLING_CORNER: f64 = 0.005;
+
 impl Level {
     /// The coarsest whose error (p0 C / R) is at most the `wanted` one.
     fn within(wanted: f64) -> &'static Self {
@@ -226,6 +231,11 @@ impl Skins {
         let mut resolution = Resolution { k_min: longest, ..level.resolution };
         if !symmetric {
             resolution.k_ratio = resolution.k_ratio.min(BENDING_RATIO);
+            let faces = [middle - shape.half, middle + shape.half];
+            let [lower, upper] = [0, 1].map(|end| (faces[end] - ends[end]).abs() < NEAR_FACE);
+            if lower != upper {
+                resolution.corner = resolution.corner.min(CANCELLING_CORNER);
+            }
         }
         let (line, _) = resolution.contact_line(ends, exponents, kinks, symmetric);
         let fold = Fold::new(&line, middle, symmetric);

@@ -17,7 +17,7 @@ pub(super) const BEFORE: usize = 2;
 /// Distance from an end face (C) within which the tension of the skin is taken to vanish, as it
 /// does on the face, and the displacement to be one: what the nodes at the corner have of them are
 /// differences of large numbers.
-const NEAR_FACE: f64 = 0.05;
+pub(super) const NEAR_FACE: f64 = 0.05;
 
 /// Number of wavenumbers whose polynomial in ln k gives slopes and values between them.
 const WIDTH: usize = 5;
