@@ -189,6 +189,8 @@ pub struct SkinLine<'a> {
     pub kinks: &'a [Kink],
     /// Whether it is one half of a contact that is symmetric about y = 0.
     pub symmetric: bool,
+    /// The least length (C) of its panels at corners.
+    pub least_corner: f64,
 }
 
 /// The skin of a body at all wavenumbers.
@@ -226,7 +228,7 @@ impl Skins {
         error: f64,
     ) -> Self {
         let longest = (LONGEST / shape.half).max(curvature.abs());
-        let SkinLine { ends, exponents, kinks, symmetric } = line;
+        let SkinLine { ends, exponents, kinks, symmetric, least_corner } = line;
         let level = Level::within(if symmetric { error } else { error / BENDING_ERROR });
         let mut resolution = Resolution { k_min: longest, ..level.resolution };
         if !symmetric {
@@ -237,6 +239,7 @@ impl Skins {
                 resolution.corner = resolution.corner.min(CANCELLING_CORNER);
             }
         }
+        resolution.corner = resolution.corner.max(least_corner);
         let (line, _) = resolution.contact_line(ends, exponents, kinks, symmetric);
         let fold = Fold::new(&line, middle, symmetric);
         let coarse = wavenumbers(&resolution, longest);
@@ -386,7 +389,8 @@ mod tests {
         let (half, nu) = (3.0, 0.3);
         let (shape, end) = (Shape { half, nu }, EdgeModel::QuarterSpace.end(nu, None));
         let ends = [-half, half];
-        let line = SkinLine { ends, exponents: [None; 2], kinks: &[], symmetric: true };
+        let (exponents, kinks) = ([None; 2], &[]);
+        let line = SkinLine { ends, exponents, kinks, symmetric: true, least_corner: 0.0 };
         let skins = Skins::new(line, Placed { middle: 0.0, shape, end }, 0.03, 0.03);
         let axis = &skins.line;
         for (k, waves) in [(0.6, 0.0), (1.7, 0.0), (0.6, 1.0), (1.7, 1.0), (1.7, 2.0)] {

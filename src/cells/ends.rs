@@ -60,9 +60,10 @@ pub struct FreeBody {
 /// Accuracy (p0) of the nodes that carry the free ends.
 const TOLERANCE: f64 = 5e-4;
 
-/// The error of skins that is aimed at, at least (p0 C / R): splines along the line waver between
-/// panels as unlike as those of the finest skins.
+/// The error of skins that is aimed at, at least (p0 C / R), and their least panel at a corner (C):
+/// splines along the line waver between panels as unlike as those of finer skins.
 const SKIN_ERROR: f64 = 0.12;
+const SKIN_CORNER: f64 = 0.025;
 
 /// How closely their nodes follow a gap along the line (p0): stresses are those of the pressure at
 /// them.
@@ -141,7 +142,8 @@ impl FreeEnds {
             }
             let skins = (own.curvature != 0.0).then(|| {
                 let exponents = exponents.map(|m| (m != 0.0).then_some(m));
-                let line = SkinLine { ends, exponents, kinks: &gap.kinks, symmetric };
+                let (kinks, least_corner) = (&gap.kinks, SKIN_CORNER);
+                let line = SkinLine { ends, exponents, kinks, symmetric, least_corner };
                 let error = SKIN_ERROR.max(TOLERANCE / own.curvature.abs());
                 Skins::new(line, placed(EdgeModel::QuarterSpace), own.curvature, error)
             });

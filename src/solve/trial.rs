@@ -245,7 +245,8 @@ impl Trial<'_> {
             let others = BodyKind::ALL.into_iter().filter(|other| alike || *other == kind);
             let sharper = |a: f64, b: f64| if b.abs() > a.abs() { b } else { a };
             let curvature = others.map(|kind| curvatures[kind]).fold(0.0, sharper);
-            let line = SkinLine { ends: line.ends, exponents, kinks: &gap.kinks, symmetric };
+            let (ends, kinks) = (line.ends, &gap.kinks);
+            let line = SkinLine { ends, exponents, kinks, symmetric, least_corner: 0.0 };
             let error = self.accuracy.tolerance / curvature.abs();
             (curvature != 0.0).then(|| Skins::new(line, placed(kind), curvature, error))
         };

@@ -286,6 +286,19 @@ fn corners_are_the_line_engines_on_a_small_grid() {
     }
 }
 
+/// What round bodies that are pressed at one end alone add is smooth along the line: with panels as
+/// small at their corners as the line engine has there, pressures wavered by 0.006 p0.
+#[test]
+fn round_bodies_pressed_at_one_end_do_not_waver() {
+    let mut case = skew(1);
+    case.accuracy.first_order = true;
+    let mut options = Options::new(EdgeModel::QuarterSpace);
+    options.curves = vec!["depth-centre".into()];
+    let line = on_line(&case, &options);
+    let [pressure, ..] = apart_from_line(&case, &options, &line, [96, 288]);
+    small("pressure", pressure, 5e-4);
+}
+
 /// What a round surface adds follows the contact's own ends, where the contact ends before its
 /// bodies do: 0.0048 p0 beyond the end, where it followed the overlap's.
 #[test]
