@@ -143,8 +143,8 @@ fn points_between_do_not_matter() {
         assert!(10 * fewer[level] < 6 * all[level]);
         small(&format!("change in tolerances of {:e}", levels[level]), change, 2.0);
         if level < 3 {
-            // What interpolation adds to the largest error stays within half a tolerance.
-            assert!(max <= 1.1 && max <= direct_max + 0.5 && rms[0] <= 1.1 * rms[1]);
+            // What interpolation adds to the largest error stays within 0.4 tolerances.
+            assert!(max <= 1.1 && max <= direct_max + 0.4 && rms[0] <= 1.1 * rms[1]);
         }
     }
     assert!(found[2][0] < 1.0 && found[3][0] < 1.0);
