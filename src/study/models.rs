@@ -50,11 +50,13 @@ pub(super) struct Jobs<'a> {
 impl<'a> Jobs<'a> {
     /// Groups the cases that are one problem.
     pub fn new(cases: &'a [Case], models: &'a Models<'a>) -> Self {
-        let of_group = |group: Vec<usize>| models.methods.iter().map(move |&m| (group.clone(), m));
-        // Which cases share a scene does not depend on the edge model; any will do.
-        let key = |case: &Case| Some(Scene::new(case, EdgeModel::QuarterSpace, None).key());
-        let groups = groups(cases.iter().map(key));
-        Self { cases, models, jobs: groups.into_iter().flat_map(of_group).collect() }
+        // A round surface matters to free ends alone: which cases are one problem depends on the
+        // model.
+        let of_method = |&method: &EdgeModel| {
+            let key = |case: &Case| Some(Scene::new(case, method, None).key());
+            groups(cases.iter().map(key)).into_iter().map(move |group| (group, method))
+        };
+        Self { cases, models, jobs: models.methods.iter().flat_map(of_method).collect() }
     }
 
     /// Number of contact problems to be solved.
@@ -109,5 +111,35 @@ impl<'a> Jobs<'a> {
             .collect();
         step(&format!("timing {method}, {}", case.name));
         timings
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::Material;
+    use crate::case::Factors;
+
+    /// Terms of first order in C / R are of free ends; other models are the same under any load.
+    #[test]
+    fn loads_share_a_problem_where_round_surfaces_do_not_matter() {
+        let steel = Material { young_pa: 210e9, poisson: 0.3 };
+        let case = |load: f64, first_order: bool| {
+            let factors = Factors { load, slenderness: 5.0, length_ratio: 0.5 };
+            let mut case = Case::from_factors("case", 10e-3, steel, steel, factors);
+            case.accuracy.first_order = first_order;
+            case
+        };
+        let models = Models {
+            methods: vec![EdgeModel::Mirror, EdgeModel::QuarterSpace],
+            repeats: 0,
+            solver: &|_, _| Vec::new(),
+            cold: &|_, _, _| None,
+            published: None,
+        };
+        for (first_order, problems) in [(false, 2), (true, 3)] {
+            let cases = [1e-4, 1e-3].map(|load| case(load, first_order));
+            assert_eq!(Jobs::new(&cases, &models).solves(), problems, "{first_order}");
+        }
     }
 }
