@@ -49,11 +49,32 @@ pub fn rounded(value: f64) -> String {
     if value < 9.95 {
         return without_trailing_zeros(&fixed(value, 1)).to_string();
     }
-    let scale = 10f64.powi(value.log10().floor() as i32 - 1);
-    let digits = (((value / scale).round() * scale) as u64).to_string();
+    to_place(value, value.log10().floor() as i32 - 1)
+}
+
+/// A ratio with its +-, both rounded at the second significant digit of the +-.
+#[cfg(feature = "cli")]
+pub fn ratio_with_spread(value: f64, spread: f64) -> String {
+    if spread <= 0.0 {
+        return format!("{} ± 0", rounded(value));
+    }
+    let place = (spread.log10().floor() as i32 - 1).max(-3);
+    format!("{} ± {}", to_place(value, place), to_place(spread, place))
+}
+
+/// A number that is not negative, rounded to a multiple of 10^`place`, thousands separated.
+#[cfg(feature = "cli")]
+fn to_place(value: f64, place: i32) -> String {
+    let text = if place > 0 {
+        let scale = 10f64.powi(place);
+        fixed((value / scale).round() * scale, 0)
+    } else {
+        fixed(value, place.unsigned_abs() as usize)
+    };
+    let (whole, decimals) = text.split_at(text.find('.').unwrap_or(text.len()));
     let groups: Vec<&str> =
-        digits.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
-    groups.join(",")
+        whole.as_bytes().rchunks(3).rev().filter_map(|g| std::str::from_utf8(g).ok()).collect();
+    groups.join(",") + decimals
 }
 
 /// Seconds in a suitable unit.
@@ -130,6 +151,18 @@ mod tests {
         assert_eq!(
             [1_423_456.0, 14_234.0, 950.4, 99.6, 3.0, 0.24].map(rounded),
             ["1,400,000", "14,000", "950", "100", "3", "0.2"]
+        );
+        let pairs = [
+            (1263.2, 12.9),
+            (2799.6, 4.8),
+            (14_234.0, 312.0),
+            (3.214, 0.05),
+            (950.4, 0.0),
+            (8.0, 120.0),
+        ];
+        assert_eq!(
+            pairs.map(|(ratio, spread)| ratio_with_spread(ratio, spread)),
+            ["1,263 ± 13", "2,799.6 ± 4.8", "14,230 ± 310", "3.214 ± 0.050", "950 ± 0", "10 ± 120"]
         );
     }
 }

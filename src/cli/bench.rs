@@ -8,7 +8,7 @@ use super::provenance::{command_line, now, processor};
 use super::published;
 use super::records::Records;
 use super::values::{MOST_REPEATS, checked_tolerance, chosen_models, count, source};
-use crate::base::number::{duration, duration_with_spread, rounded};
+use crate::base::number::{duration, duration_with_spread, ratio_with_spread};
 use crate::base::{Error, Result};
 use crate::case::{Case, Study, find_case, is_given};
 use crate::fem::{Code, Driver};
@@ -300,11 +300,10 @@ fn text(bench: &Bench, out: &Path) -> String {
     let slowest_first = |a: &&Speedup, b: &&Speedup| a.ratio.value.total_cmp(&b.ratio.value);
     lines.extend(bench.published.iter().min_by(slowest_first).map(|s| {
         format!(
-            "at the error that it reaches, {:.3} p0 and more, the published method on cells is at least {} +- {} times \
+            "at the error that it reaches, {:.3} p0 and more, the published method on cells is at least {} times \
              faster than FEM, in {} of {} cases",
             bench.published.iter().map(|s| s.model_error).fold(f64::INFINITY, f64::min),
-            rounded(s.ratio.value),
-            rounded(s.ratio.plus_minus),
+            ratio_with_spread(s.ratio.value, s.ratio.plus_minus),
             bench.published.len(),
             bench.cases.len()
         )
@@ -333,12 +332,11 @@ fn codes(of: &CodeTimes) -> String {
     };
     let all: Vec<String> = of.codes.iter().map(one).collect();
     format!(
-        "{} to {} p0: {}; the slowest takes {} +- {} times as long as the fastest",
+        "{} to {} p0: {}; the slowest takes {} times as long as the fastest",
         of.case,
         of.level,
         all.join(", "),
-        rounded(of.ratio.value),
-        rounded(of.ratio.plus_minus)
+        ratio_with_spread(of.ratio.value, of.ratio.plus_minus)
     )
 }
 
@@ -348,9 +346,8 @@ fn at_level(here: &[&Speedup], level: f64, whose: &str, cases: usize) -> Option<
     let fastest = here.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
     let one = |s: &Speedup| {
         format!(
-            "{} +- {} ({}: {} {}, {BEST} {})",
-            rounded(s.ratio.value),
-            rounded(s.ratio.plus_minus),
+            "{} ({}: {} {}, {BEST} {})",
+            ratio_with_spread(s.ratio.value, s.ratio.plus_minus),
             s.case,
             s.engine.title(),
             duration(s.fem_seconds.0),

@@ -5,7 +5,7 @@ use super::fraction::fraction;
 use super::study_summary::{
     CaseSummary, FemError, FemOrigin, PublishedSummary, Span, StudySummary,
 };
-use crate::base::number::{duration, rounded};
+use crate::base::number::{duration, ratio_with_spread, rounded};
 use crate::body::EdgeModel;
 use crate::study::Source;
 use crate::study::bench::{Against, Speedup};
@@ -104,11 +104,9 @@ fn time(summary: &StudySummary) -> Option<String> {
     if let (Some(slow), Some(fast)) = (times().reduce(f64::max), times().reduce(f64::min)) {
         let live = summary.fem == FemOrigin::Live;
         let whose = if live { "in this run" } else { "on the machine of the record" };
-        text.push_str(&format!(
-            "; FEM's finest meshes took {} to {} {whose}",
-            duration(fast),
-            duration(slow)
-        ));
+        let (fast, slow) = (duration(fast), duration(slow));
+        let span = if fast == slow { fast } else { format!("{fast} to {slow}") };
+        text.push_str(&format!("; FEM's finest meshes took {span} {whose}"));
         match best.speedup {
             Some(Span { low, high }) if live => text.push_str(&format!(
                 ", {} to {} times as long in one run on one machine",
@@ -134,8 +132,7 @@ fn equal_error(speedups: &[Speedup]) -> Option<String> {
     let cases = if here.len() == 1 { "case" } else { "cases" };
     let codes =
         if here.iter().all(|s| s.engine.is_fenicsx()) { "FEM" } else { "the faster FEM code" };
-    let in_words =
-        |ratio: &Ratio| format!("{} ± {}", rounded(ratio.value), rounded(ratio.plus_minus));
+    let in_words = |ratio: &Ratio| ratio_with_spread(ratio.value, ratio.plus_minus);
     let span = match here.len() {
         1 => in_words(&low),
         _ => format!("{} to {}", in_words(&low), in_words(&high)),
@@ -168,12 +165,10 @@ fn published_time(speedups: &[Speedup]) -> Option<String> {
     let high = speedups.iter().max_by(|a, b| a.ratio.value.total_cmp(&b.ratio.value))?;
     let errors = || speedups.iter().map(|s| s.model_error);
     Some(format!(
-        "Timed in one run on one machine, the published method on uniform cells is {} ± {} to {} ± {} times faster \
+        "Timed in one run on one machine, the published method on uniform cells is {} to {} times faster \
          than FEM at the error that it reaches, {} to {} p0 RMS in the worst curve, and no grid takes it lower; its source claims more than 125 times.",
-        rounded(low.ratio.value),
-        rounded(low.ratio.plus_minus),
-        rounded(high.ratio.value),
-        rounded(high.ratio.plus_minus),
+        ratio_with_spread(low.ratio.value, low.ratio.plus_minus),
+        ratio_with_spread(high.ratio.value, high.ratio.plus_minus),
         fraction(errors().fold(f64::INFINITY, f64::min)),
         fraction(errors().fold(0.0, f64::max)),
     ))

@@ -1,7 +1,9 @@
 //! The page and its Markdown from their templates.
 
 use super::{effects, errors, explorer, fem, solves, times, verification};
-use crate::base::number::{duration, duration_with_spread, rounded, significant, with_minus_signs};
+use crate::base::number::{
+    duration, duration_with_spread, ratio_with_spread, significant, with_minus_signs,
+};
 use crate::base::{Error, Result};
 use crate::report::fraction::fraction;
 use crate::report::plots;
@@ -98,8 +100,11 @@ fn add_filters(environment: &mut Environment) {
     environment.add_filter("p0", move |v: minijinja::Value| {
         as_number(&v).map_or_else(dash, |v| with_minus_signs(&fraction(v)))
     });
-    environment
-        .add_filter("ratio", move |v: minijinja::Value| as_number(&v).map_or_else(dash, rounded));
+    environment.add_filter("ratio", move |v: minijinja::Value, spread: minijinja::Value| {
+        as_number(&v)
+            .zip(as_number(&spread))
+            .map_or_else(dash, |(v, spread)| ratio_with_spread(v, spread))
+    });
     environment.add_filter("source", |name: String| {
         let known = Source::all().find(|source| source.name() == name);
         known.map_or(name, |source| source.title().to_string())
