@@ -92,7 +92,7 @@ fn is_zero(v: &f64) -> bool {
 
 impl Pose {
     /// Whether the bodies are parallel and their middles at one place.
-    fn is_plain(&self) -> bool {
+    pub fn is_plain(&self) -> bool {
         *self == Self::default()
     }
 }
@@ -107,7 +107,7 @@ pub struct Sliding {
 
 impl Sliding {
     /// Whether there is none.
-    fn is_none(&self) -> bool {
+    pub fn is_none(&self) -> bool {
         *self == Self::default()
     }
 }

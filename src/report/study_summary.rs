@@ -4,7 +4,7 @@ use super::brought::FileSummary;
 use super::table::Layout;
 use crate::base::HertzScales;
 use crate::body::EdgeModel;
-use crate::case::{Block, Roller};
+use crate::case::{Block, Pose, Roller, Sliding};
 use crate::solve::Details;
 use crate::study::bench::{Machine, Speedup};
 use crate::study::gate::GateOutcome;
@@ -222,6 +222,15 @@ pub struct CaseSummary {
     /// The block.
     #[serde(with = "BlockForm")]
     pub block: Block,
+    /// y of the load's line of action from the roller's middle (m), where it is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub eccentricity_m: Option<f64>,
+    /// How the bodies stand to each other.
+    #[serde(default, skip_serializing_if = "Pose::is_plain")]
+    pub pose: Pose,
+    /// How they slide on each other.
+    #[serde(default, skip_serializing_if = "Sliding::is_none")]
+    pub sliding: Sliding,
     /// The reference that errors are taken against.
     pub fem: CaseReference,
     /// The other references by engine.

@@ -136,6 +136,9 @@ fn case_summary(study: &StudyRun, run: &CaseRun, brought: &[FileRun]) -> CaseSum
         tolerance: case.accuracy.tolerance,
         roller: case.roller.clone(),
         block: case.block.clone(),
+        eccentricity_m: case.load.eccentricity_m,
+        pose: case.pose,
+        sliding: case.sliding,
         fem: run.references.first().map_or_else(
             || CaseReference::Missing { missing: "the study has no reference".to_string() },
             case_reference,

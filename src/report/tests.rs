@@ -8,7 +8,7 @@ use super::summarise::Context;
 use super::*;
 use crate::base::number::with_minus_signs;
 use crate::body::EdgeModel;
-use crate::case::Study;
+use crate::case::{ProfileKind, ProfileSpec, Study};
 use crate::solve::{Avoided, WorkSummary};
 use crate::study::bench::{Against, Machine, Speedup};
 use crate::study::gate::{self, Baseline, Gates};
@@ -334,6 +334,25 @@ fn differences_stand_beside_the_uncertainty_of_both_sides() {
         assert_eq!(row.finding, Finding::Within, "{row:?}");
         assert_eq!(row.difference == 0.0, row.source.is_engine(), "{row:?}");
     }
+}
+
+#[test]
+fn the_box_of_verification_is_that_of_the_compared_cases() {
+    let mut files = files(Twist::None);
+    let page = page::html(&files).unwrap();
+    assert!(page.contains("; straight generatrices, parallel and centred bodies. Outside"));
+    let crown = ProfileSpec { radius_m: Some(1.0), ..ProfileSpec::new(ProfileKind::Crown) };
+    files.summary.cases[0].roller.profile = Some(crown);
+    files.summary.cases[1].eccentricity_m = Some(0.1 * files.summary.cases[1].roller.length_m);
+    files.summary.cases[2].sliding.friction = 0.25;
+    let page = page::html(&files).unwrap();
+    let said = "; straight generatrices and profiles (crown), eccentricities of the load (lengths of the \
+                roller) up to 0.1, friction up to 0.25. Outside";
+    assert!(page.contains(said));
+    // What was not compared is outside.
+    let name = files.summary.cases[2].name.clone();
+    files.verification.retain(|row| row.case != name);
+    assert!(!page::html(&files).unwrap().contains("friction up to"));
 }
 
 /// Ten numbers of the page's verification, each found again in the file that it is said to be from.

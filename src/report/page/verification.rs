@@ -1,7 +1,9 @@
 //! The page's data on verification: differences beside the uncertainty of both sides, and the box
 //! of scenes.
 
+use crate::base::number::significant;
 use crate::report::study_files::StudyFiles;
+use crate::report::study_summary::CaseSummary;
 use crate::report::table::name;
 use crate::study::verification::{Convergence, Finding, Group, VerificationRow, Zone};
 use serde_json::{Value, json};
@@ -16,6 +18,8 @@ pub(super) fn data(files: &StudyFiles) -> Option<Value> {
     let on_record = |r: &&VerificationRow| r.convergence != Convergence::Stated;
     let of_model = rows.iter().filter(|r| !r.source.is_engine());
     let of_model: Vec<&VerificationRow> = of_model.filter(on_record).collect();
+    let is_compared = |c: &&CaseSummary| of_model.iter().any(|r| !r.held_back && r.case == c.name);
+    let compared: Vec<&CaseSummary> = files.summary.cases.iter().filter(is_compared).collect();
     let count = |wanted: Finding| of_model.iter().filter(|r| r.finding == wanted).count();
     let largest = |zone: Zone, group: Group, held_back: bool| {
         let own =
@@ -39,7 +43,7 @@ pub(super) fn data(files: &StudyFiles) -> Option<Value> {
         "own": largest(false),
         "held_back": largest(true),
         "any_held_back": rows.iter().any(|r| r.held_back),
-        "box": limits(files),
+        "box": limits(&compared),
     }))
 }
 
@@ -86,16 +90,54 @@ fn values(row: &VerificationRow) -> Value {
     })
 }
 
-/// The smallest and largest of each factor among the compared cases.
-fn limits(files: &StudyFiles) -> Value {
-    let of = |value: &dyn Fn(&crate::report::study_summary::CaseSummary) -> Vec<f64>| {
-        let all = || files.summary.cases.iter().flat_map(value);
+/// The smallest and largest of each factor among the compared cases, and what else they have.
+fn limits(compared: &[&CaseSummary]) -> Value {
+    let of = |value: &dyn Fn(&CaseSummary) -> Vec<f64>| {
+        let all = || compared.iter().flat_map(|case| value(case));
         [all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max)]
     };
     json!({
         "W": of(&|c| vec![c.load]),
         "S_l": of(&|c| vec![c.slenderness]),
         "L_r": of(&|c| vec![c.length_ratio]),
+        "young": of(&|c| vec![c.roller.material.young_pa / c.block.material.young_pa]),
         "poisson": of(&|c| vec![c.roller.material.poisson, c.block.material.poisson]),
+        "bodies": bodies(compared),
     })
+}
+
+/// Generatrices, positions and sliding of the compared cases in words.
+fn bodies(compared: &[&CaseSummary]) -> String {
+    let profiles = |c: &CaseSummary| -> Vec<&'static str> {
+        let own = [&c.roller.profile, &c.block.profile];
+        own.into_iter().flatten().map(|profile| profile.kind.name()).collect()
+    };
+    let mut kinds: Vec<&str> = compared.iter().flat_map(|c| profiles(c)).collect();
+    kinds.sort_unstable();
+    kinds.dedup();
+    let any_straight = compared.iter().any(|c| profiles(c).is_empty());
+    let kinds = kinds.join(", ");
+    let mut words = vec![match (any_straight, kinds.is_empty()) {
+        (_, true) => "straight generatrices".to_string(),
+        (true, false) => format!("straight generatrices and profiles ({kinds})"),
+        (false, false) => format!("profiles ({kinds})"),
+    }];
+    let mut up_to = |what: &str, of: &dyn Fn(&CaseSummary) -> f64| {
+        let largest = compared.iter().map(|c| of(c).abs()).fold(0.0, f64::max);
+        if largest > 0.0 {
+            words.push(format!("{what} up to {}", significant(largest, 3)));
+        }
+        largest > 0.0
+    };
+    let eccentric = |c: &CaseSummary| c.eccentricity_m.unwrap_or(0.0) / c.roller.length_m;
+    let moved = [
+        up_to("eccentricities of the load (lengths of the roller)", &eccentric),
+        up_to("tilts (rad)", &|c| c.pose.tilt_rad.unwrap_or(0.0)),
+        up_to("offsets (lengths of the block)", &|c| c.pose.offset_m / c.block.length_m),
+    ];
+    up_to("friction", &|c| c.sliding.friction);
+    if moved == [false; 3] {
+        words[0].push_str(", parallel and centred bodies");
+    }
+    words.join(", ")
 }
