@@ -300,6 +300,20 @@ fn work_done_and_avoided_is_shown_by_reason() {
 }
 
 #[test]
+fn details_of_the_solver_have_words_and_units() {
+    let mut run = files(Twist::None);
+    run.summary.methods.truncate(1);
+    let page = page::html(&run).unwrap();
+    assert!(page.contains("9 cases, 1 model, recorded FEM"));
+    let section = page.split("How the models were resolved").nth(1).unwrap();
+    let section = section.split("</section>").next().unwrap();
+    assert!(section.contains("widest panel of wavenumbers (1"), "{section}");
+    for raw in ["resolution", "reference m", "tension pa", "k ratio"] {
+        assert!(!section.contains(raw), "{raw}: {section}");
+    }
+}
+
+#[test]
 fn ratios_are_shown_with_their_uncertainty_and_their_origin() {
     let run = files(Twist::None);
     // 15 s +- 0.3 s over 10 ms +- 0.4 ms: 1500 +- 67.

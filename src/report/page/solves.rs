@@ -34,7 +34,7 @@ pub(super) fn details(files: &StudyFiles) -> Option<Value> {
         rows.iter().all(|(_, _, numbers)| value(numbers, name) == value(first, name))
     });
     let same: Vec<Value> =
-        same.iter().map(|n| json!({ "name": n, "value": value(first, n) })).collect();
+        same.iter().map(|n| json!({ "name": words(n), "value": value(first, n) })).collect();
     let table: Vec<Value> = rows
         .iter()
         .map(|(case, method, numbers)| {
@@ -42,7 +42,41 @@ pub(super) fn details(files: &StudyFiles) -> Option<Value> {
             json!({ "case": case, "method": method, "values": values })
         })
         .collect();
-    Some(json!({ "same": same, "names": other, "rows": table }))
+    let names: Vec<String> = other.iter().map(|n| words(n)).collect();
+    Some(json!({ "same": same, "names": names, "rows": table }))
+}
+
+/// What the numbers of every solution are, by their names in the file.
+const WORDS: [(&str, &str); 20] = [
+    ("tolerance", "tolerance (p0)"),
+    ("resolution order", "nodes per panel"),
+    ("resolution corner", "panel at a corner (C)"),
+    ("resolution corner_ratio", "growth of panels at a corner"),
+    ("resolution ratio", "growth of panels"),
+    ("resolution modes", "modes across the contact"),
+    ("resolution k_max", "largest wavenumber (1/C)"),
+    ("resolution k_order", "nodes per panel of wavenumbers"),
+    ("resolution k_step", "widest panel of wavenumbers (1/C)"),
+    ("resolution k_ratio", "growth of panels of wavenumbers"),
+    ("resolution k_min", "first panel of wavenumbers (1/C)"),
+    ("resolution images", "images"),
+    ("resolution face_reach", "length of end faces (decay lengths)"),
+    ("resolution reach", "reach of loads (decay lengths)"),
+    ("contact_nodes", "nodes along the line"),
+    ("edge_residual", "residual at the contact's edge (p0)"),
+    ("condition", "condition number"),
+    ("bodies_shared", "one computation for both bodies"),
+    ("approach_reference_m", "depth of the approach's points (m)"),
+    ("roller_diametral_tension_pa", "diametral tension of the roller (Pa)"),
+];
+
+/// The number called `name` in words; those that only some solutions have keep their names.
+fn words(name: &str) -> String {
+    match (WORDS.iter().find(|(own, _)| *own == name), name.strip_suffix("_c")) {
+        (Some((_, words)), _) => words.to_string(),
+        (None, Some(length)) => format!("{} (C)", length.replace('_', " ")),
+        (None, None) => name.replace('_', " "),
+    }
 }
 
 /// The numbers of `details` without its work, by their names in the file.
@@ -58,7 +92,7 @@ fn flatten(prefix: &str, value: &Value, all: &mut Named) {
         Value::Object(map) => {
             for (key, v) in map {
                 let name = if prefix.is_empty() { key.clone() } else { format!("{prefix} {key}") };
-                flatten(&name.replace('_', " "), v, all);
+                flatten(&name, v, all);
             }
         }
         Value::Number(n) => {
