@@ -1,14 +1,14 @@
 //! The case of a request: the text of a case file, or its tables as JSON.
 
 use crate::base::{Error, Result};
-use crate::case::{Case, Key};
+use crate::case::Case;
 use serde_json::Value as Json;
 use std::path::Path;
 use toml::{Table, Value};
 
-/// Texts that a request may give as it likes; any other one must be that of the case that the
-/// explorer was started with, so that a page cannot make the program open a file.
-const FREE_TEXTS: [&str; 3] = ["name", "roller.profile.kind", "block.profile.kind"];
+/// Texts that name files. Each must be that of the case that the explorer was started with, so that
+/// a page cannot make the program open another one.
+const FILES: [&str; 3] = ["roller.profile.file", "block.profile.file", "surface.heights"];
 
 /// Reads the case of a request, in JSON if `is_json`, otherwise in TOML. `own` is the case that the
 /// explorer was started with.
@@ -33,9 +33,15 @@ pub fn case(body: &[u8], is_json: bool, own: &Case) -> Result<Case> {
     };
     if let Ok(tables) = text.parse::<Table>() {
         let own: Table = own.to_toml().parse().expect("a case writes TOML");
-        only_own_texts("", &Value::Table(tables), &own)?;
+        only_own_files("", &Value::Table(tables), &own)?;
     }
-    let case = Case::parse(&text, path)?;
+    let case = Case::parse(&text, path).map_err(|e| match e {
+        // Nobody sees the text that tables make.
+        Error::File { path, message, remedy, .. } if is_json => {
+            Error::File { path, line: None, message, remedy }
+        }
+        other => other,
+    })?;
     case.check_force("the page changes forces")?;
     Ok(case)
 }
@@ -51,20 +57,14 @@ fn without_gaps(value: Json) -> Json {
     }
 }
 
-/// Refuses texts other than [`FREE_TEXTS`] and those of the `own` case.
-fn only_own_texts(path: &str, value: &Value, own: &Table) -> Result<()> {
+/// Refuses [`FILES`] other than those of the `own` case.
+fn only_own_files(path: &str, value: &Value, own: &Table) -> Result<()> {
     match value {
         Value::Table(table) => table.iter().try_for_each(|(key, value)| {
             let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
-            only_own_texts(&path, value, own)
+            only_own_files(&path, value, own)
         }),
-        Value::Array(values) => values.iter().try_for_each(|v| only_own_texts(path, v, own)),
-        // In the place of a number a text opens nothing: the reader refuses it.
-        Value::String(text)
-            if !FREE_TEXTS.contains(&path)
-                && Key::find(path).is_none()
-                && find(own, path) != Some(text) =>
-        {
+        Value::String(text) if FILES.contains(&path) && find(own, path) != Some(text) => {
             Err(Error::Value {
                 key: path.into(),
                 value: text.clone(),
@@ -115,6 +115,16 @@ mod tests {
             said.contains("roller.profile.file = /etc/passwd") && said.contains("explore CASE"),
             "{said}"
         );
+        let rough =
+            own.to_toml() + "[surface]\nheights = \"/etc/passwd\"\ndx_m = 1e-6\ndy_m = 1e-6\n";
+        let said = case(rough.as_bytes(), false, &own).unwrap_err().to_string();
+        assert!(said.contains("opens no files"), "{said}");
+        let tables: Table = own.to_toml().parse().unwrap();
+        let mut misspelt = serde_json::to_value(tables).unwrap();
+        misspelt["roller"]["radius"] = 1.0.into();
+        let misspelt = misspelt.to_string();
+        let said = case(misspelt.as_bytes(), true, &own).unwrap_err().to_string();
+        assert!(said.starts_with("the case: unknown key roller.radius; did you mean"), "{said}");
         for (body, wanted) in [
             (&b"\xff"[..], "UTF-8"),
             (b"{", "JSON"),

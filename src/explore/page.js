@@ -157,7 +157,10 @@ function makeField(key) {
   range.addEventListener("change", () => { field.show(null); });
   input.addEventListener("change", () => {
     const value = Number(input.value.trim().replace(",", ".").replace(/\u2212/g, "-"));
-    if (input.value.trim() === "" || !Number.isFinite(value)) { input.setAttribute("aria-invalid", "true"); return; }
+    if (input.value.trim() === "" || !Number.isFinite(value)) {
+      complain(`${key.path} = ${input.value.trim() || "nothing"} is not a number; give for example ${plain(key.example * factor)} ${unit}`.trim(), true);
+      return;
+    }
     state.values[key.path] = Number((value / factor).toPrecision(12));
     field.show(null);
     changed(false);
@@ -334,7 +337,11 @@ async function solveAll() {
   }
 }
 
-function complain(message) {
+// A message that `holds` is about what is not in the case, so that no solution of the case answers it.
+let held = null; // the revision whose message holds
+function complain(message, holds = false) {
+  if (held === revision && !holds) return;
+  held = holds ? revision : null;
   const box = byId("message");
   box.hidden = !message;
   box.textContent = message || "";
@@ -611,7 +618,7 @@ async function openFile(file) {
     const response = await fetch(`solve?${words}`, { method: "POST", headers: { "Content-Type": type }, body: await file.text() });
     const { case: described } = await (await answered(response)).json();
     take(described);
-  } catch (e) { complain(e.message); }
+  } catch (e) { complain(e.message, true); }
 }
 
 async function download(file) {

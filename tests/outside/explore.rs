@@ -202,6 +202,23 @@ fn every_field_changes_its_key_and_values_are_those_of_solve() {
     assert!(said.contains("roller.radius_m") && said.contains("is greater than zero"), "{said}");
     let marked = "document.getElementById('key-roller.radius_m').getAttribute('aria-invalid')";
     assert_eq!(it.page.text(marked), "true");
+    it.type_in("roller.radius_m", "");
+    let said = it.page.text("document.getElementById('message').textContent");
+    assert!(said.starts_with("roller.radius_m = nothing is not a number"), "{said}");
+    it.type_in("roller.radius_m", "10");
+    assert_eq!(it.page.eval("document.getElementById('message').hidden"), json!(true));
+
+    // A file that is refused is said until the case changes, whatever solutions come after it.
+    it.page.eval(
+        "(() => { const i = document.getElementById('key-roller.radius_m'); i.value = '11'; \
+         i.dispatchEvent(new Event('change')); const d = new DataTransfer(); \
+         d.items.add(new File(['nmae = 1'], 'x.toml')); const open = document.getElementById('open'); \
+         open.files = d.files; open.dispatchEvent(new Event('change')); })()",
+    );
+    it.page.wait("!document.getElementById('message').hidden");
+    it.rest();
+    let said = it.page.text("document.getElementById('message').textContent");
+    assert!(said.contains("unknown key nmae; did you mean name?"), "{said}");
     it.type_in("roller.radius_m", "10");
     assert_eq!(it.page.eval("document.getElementById('message').hidden"), json!(true));
 

@@ -181,6 +181,7 @@ fn bad_cases_get_the_message_of_the_command_line() {
         ("S_l", "S_1"),
         ("name = 'a'", "name = '../a'"),
         ("210e9", "'steel'"),
+        ("name =", "nmae ="),
     ] {
         let text = CASE.replacen(from, to, 1);
         std::fs::write(folder.path().join("bad.toml"), &text).unwrap();
