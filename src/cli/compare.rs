@@ -7,7 +7,7 @@ use super::study_options::RangeOptions;
 use super::values::unsuited;
 use crate::base::{Error, Result};
 use crate::case::find_case;
-use crate::host::{Lock, prepare_folder, replace_set};
+use crate::host::{Lock, replace_set};
 use crate::report::comparison::{Context, Summary, files};
 use crate::report::gates;
 use crate::report::table::read;
@@ -148,7 +148,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let contents = files(&compared, &summary)?;
     let out = &arguments.out;
     let _lock = Lock::claim(out)?;
-    prepare_folder(&out.join("plots"))?;
     replace_set(out, &contents)?;
     for file in &summary.files {
         if !file.left_out.is_empty() {

@@ -10,7 +10,7 @@ use crate::base::{Error, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Study, builtin_case};
 use crate::fem::FemResults;
-use crate::host::Lock;
+use crate::host::{Lock, check_not_given};
 use crate::report::page;
 use crate::report::study_files::StudyFiles;
 use crate::report::study_summary::FemOrigin;
@@ -62,6 +62,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let study = arguments.study.find_study()?;
     let brought = Brought::read(&arguments.curves, &study, &arguments.study)?;
     let out = &arguments.study.out;
+    check_not_given(out, StudyFiles::names().chain(page::NAMES))?;
     let _lock = Lock::claim(out)?;
     let run = arguments.study.run(&study, &EdgeModel::ALL, arguments.repeats, true)?;
     if run.cases.iter().flat_map(|c| &c.methods).all(|m| m.result.is_err()) {

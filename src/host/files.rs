@@ -42,7 +42,7 @@ pub fn write_whole(path: &Path, content: impl AsRef<[u8]>) -> Result<()> {
 
 /// Writes files that belong together into `folder`, which this process has locked. The last file
 /// marks the set as complete: it is removed first and moved into place last. Nothing is changed
-/// until all files have been written elsewhere.
+/// until all files have been written elsewhere. Folders in `folder` that a name has are created.
 ///
 /// # Errors
 /// [`Error::File`] when one would take the place of a file that was given to this run;
@@ -86,15 +86,7 @@ fn move_into_place<N: AsRef<Path>>(
 ) -> Result<()> {
     let (last, _) = files.last().expect("a set has files");
     let last = folder.join(last);
-    if let Some(path) = files.iter().map(|(name, _)| folder.join(name)).find(|path| is_input(path))
-    {
-        return Err(Error::File {
-            path,
-            line: None,
-            message: "was given to this run, and a result has its name".into(),
-            remedy: "give another --out, or rename it".into(),
-        });
-    }
+    check_not_given(folder, files.iter().map(|(name, _)| name))?;
     let parts = folder.join(PARTS);
     let write = || {
         remove(&parts)
@@ -103,6 +95,10 @@ fn move_into_place<N: AsRef<Path>>(
         for (i, (name, content)) in files.iter().enumerate() {
             let part = parts.join(i.to_string());
             write_through(&part, content).map_err(failed("write", &folder.join(name)))?;
+        }
+        for path in files.iter().map(|(name, _)| folder.join(name)) {
+            let parent = path.parent().unwrap_or(folder);
+            std::fs::create_dir_all(parent).map_err(failed("create the folder", parent))?;
         }
         remove_file(&last).map_err(failed("replace", &last))?;
         before()?;
@@ -116,6 +112,26 @@ fn move_into_place<N: AsRef<Path>>(
     // A failure of the write is the error to report.
     let _ = remove(&parts);
     written
+}
+
+/// Refuses results of these names in `folder` where one would take the place of a file that was
+/// given to this run.
+///
+/// # Errors
+/// [`Error::File`] that names the file.
+pub fn check_not_given<N: AsRef<Path>>(
+    folder: &Path,
+    names: impl IntoIterator<Item = N>,
+) -> Result<()> {
+    match names.into_iter().map(|name| folder.join(name)).find(|path| is_input(path)) {
+        None => Ok(()),
+        Some(path) => Err(Error::File {
+            path,
+            line: None,
+            message: "was given to this run, and a result has its name".into(),
+            remedy: "give another --out, or rename it".into(),
+        }),
+    }
 }
 
 /// What makes an error of a failed `action` on `path`.

@@ -19,7 +19,10 @@ mod text;
 
 #[cfg(feature = "cli")]
 pub(crate) use {
-    files::{prepare_folder, remove_if_there, remove_marker, replace_set, write_set, write_whole},
+    files::{
+        check_not_given, prepare_folder, remove_if_there, remove_marker, replace_set, write_set,
+        write_whole,
+    },
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},
     secret::secret,

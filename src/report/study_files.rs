@@ -43,6 +43,22 @@ pub struct StudyFiles {
     pub brought_pressure: Vec<Of<PressureRow>>,
 }
 
+/// The tables that every run has.
+const TABLES: [&str; 7] = [
+    "study.csv",
+    "curves.csv",
+    "pressure.csv",
+    "fem_error.csv",
+    "errors.csv",
+    "effects.csv",
+    "verification.csv",
+];
+
+/// The tables of curves from files.
+const BROUGHT: [&str; 3] = ["brought.csv", "brought_curves.csv", "brought_pressure.csv"];
+
+const SUMMARY: &str = "summary.json";
+
 impl StudyFiles {
     /// The files of a run. Numbers have the digits that the files hold, as if they had been read.
     pub fn of(run: &StudyRun, context: &Context) -> Self {
@@ -64,26 +80,30 @@ impl StudyFiles {
         }
     }
 
+    /// The names of all files that a run may have.
+    pub fn names() -> impl Iterator<Item = &'static str> {
+        TABLES.into_iter().chain(BROUGHT).chain([SUMMARY])
+    }
+
     /// The run's own files by name: the tables, and `summary.json` last.
     pub fn contents(&self) -> Vec<(String, Vec<u8>)> {
         let layout = self.summary.layout();
-        let brought = [
-            ("brought.csv", to_csv(&self.brought, layout)),
-            ("brought_curves.csv", to_csv(&self.brought_curves, layout)),
-            ("brought_pressure.csv", to_csv(&self.brought_pressure, layout)),
-        ];
-        let brought = brought.into_iter().filter(|_| self.summary.has_brought());
-        let tables = [
-            ("study.csv", to_csv(&self.study, layout)),
-            ("curves.csv", to_csv(&self.curves, layout)),
-            ("pressure.csv", to_csv(&self.pressure, layout)),
-            ("fem_error.csv", to_csv(&self.fem_error, layout)),
-            ("errors.csv", to_csv(&self.errors, layout)),
-            ("effects.csv", to_csv(&self.effects, layout)),
-            ("verification.csv", to_csv(&self.verification, layout)),
-        ];
-        let all =
-            tables.into_iter().chain(brought).chain([("summary.json", pretty(&self.summary))]);
+        let brought = BROUGHT.into_iter().zip([
+            to_csv(&self.brought, layout),
+            to_csv(&self.brought_curves, layout),
+            to_csv(&self.brought_pressure, layout),
+        ]);
+        let brought = brought.filter(|_| self.summary.has_brought());
+        let tables = TABLES.into_iter().zip([
+            to_csv(&self.study, layout),
+            to_csv(&self.curves, layout),
+            to_csv(&self.pressure, layout),
+            to_csv(&self.fem_error, layout),
+            to_csv(&self.errors, layout),
+            to_csv(&self.effects, layout),
+            to_csv(&self.verification, layout),
+        ]);
+        let all = tables.chain(brought).chain([(SUMMARY, pretty(&self.summary))]);
         all.map(|(name, text)| (name.to_string(), text.into_bytes())).collect()
     }
 
@@ -93,7 +113,7 @@ impl StudyFiles {
     /// [`Error::Io`] or [`Error::File`] when a file is missing or is not what
     /// [`super::page::write_run`] writes.
     pub fn read(folder: &Path) -> Result<Self> {
-        let path = folder.join("summary.json");
+        let path = folder.join(SUMMARY);
         let refuse = |path: &Path, line: Option<usize>, message: String| Error::File {
             path: path.to_path_buf(),
             line,

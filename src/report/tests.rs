@@ -75,6 +75,13 @@ fn a_run_is_read_back_as_it_was_written() {
 }
 
 #[test]
+fn the_files_of_a_run_have_the_names_that_are_checked_before_it() {
+    let names: Vec<String> = files(Twist::None).contents().into_iter().map(|file| file.0).collect();
+    assert_eq!(names.len(), 8);
+    assert!(names.iter().all(|name| StudyFiles::names().any(|own| own == name)), "{names:?}");
+}
+
+#[test]
 fn a_fractional_study_names_its_design_and_what_it_cannot_tell_apart() {
     let study = Study::find(Path::new("profiled")).unwrap();
     let written = files_of(&synthetic::run_of(&study, Twist::None));

@@ -138,4 +138,17 @@ fn curves_that_cannot_be_used_are_refused_before_the_study_runs() {
         assert!(message.contains(wanted), "{curves:?}: {message}");
     }
     assert!(!at("o").exists());
+    // A table of the study would take its place.
+    fs::create_dir(at("o")).unwrap();
+    fs::copy(at("si.csv"), at("o/brought.csv")).unwrap();
+    let curves = format!("--curves={CASE}=o/brought.csv");
+    let study = ["study", "small.toml", "--out", "o", "--repeats=0", &curves];
+    let message = refused(&mut edgeline(folder.path(), &study));
+    assert!(message.contains("o/brought.csv: was given to this run"), "{message}");
+    assert_eq!(files(&at("o")), ["brought.csv"]);
+    fs::rename(at("o/brought.csv"), at("o/curves.csv")).unwrap();
+    let compare = ["compare", "case.toml", "o/curves.csv", "--out", "o"];
+    let message = refused(&mut edgeline(folder.path(), &compare));
+    assert!(message.contains("o/curves.csv: was given to this run"), "{message}");
+    assert_eq!(files(&at("o")), ["curves.csv"]);
 }

@@ -13,4 +13,4 @@ mod write;
 
 pub use render::{fill, html, markdown};
 pub use solution::{Label, of_solution};
-pub use write::{write, write_run};
+pub use write::{NAMES, write, write_run};
