@@ -104,7 +104,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 
 /// Looks for the tools for finite elements.
 fn fem_findings(arguments: &Arguments) -> FemFindings {
-    let gmsh = tools::version(&arguments.gmsh);
+    let gmsh = tools::gmsh_version(&arguments.gmsh);
     let mpirun = tools::version(Path::new("mpirun"));
     let mut interpreters = Vec::new();
     let mut chosen: Option<PathBuf> = None;

@@ -96,9 +96,9 @@ impl Driver {
                 return refuse(key, program.display().to_string(), reason, remedy);
             }
         }
-        let versions = vec![tools::require(&settings.gmsh, "--gmsh")?];
+        let versions = vec![tools::require_gmsh(&settings.gmsh)?];
         if settings.ranks > 1 {
-            tools::require(Path::new("mpirun"), "the PATH")?;
+            tools::require_mpirun()?;
         }
         let interpreter = tools::find_interpreter(settings.python.as_deref(), settings.code)?;
         Ok(Self { settings, interpreter, versions })

@@ -89,18 +89,38 @@ pub fn version(program: &Path) -> Option<String> {
     Some(line.trim().to_string())
 }
 
-/// The version of `program`.
+/// The version that gmsh prints: a line of nothing but it, which other programs do not have.
+pub fn gmsh_version(program: &Path) -> Option<String> {
+    let is_version =
+        |text: &String| text.contains('.') && text.starts_with(|c: char| c.is_ascii_digit());
+    version(program).filter(is_version)
+}
+
+/// The version of the gmsh `program`.
 ///
 /// # Errors
 /// [`Error::Missing`] when it cannot be run.
-pub(super) fn require(program: &Path, option: &str) -> Result<String> {
-    if let Some(version) = version(program) {
+pub(super) fn require_gmsh(program: &Path) -> Result<String> {
+    require(program, gmsh_version(program), "--gmsh")
+}
+
+/// The version of mpirun.
+///
+/// # Errors
+/// [`Error::Missing`] when it cannot be run.
+pub(super) fn require_mpirun() -> Result<String> {
+    let program = Path::new("mpirun");
+    require(program, version(program), "the PATH")
+}
+
+fn require(program: &Path, version: Option<String>, option: &str) -> Result<String> {
+    if let Some(version) = version {
         return Ok(version);
     }
     check_interrupt()?;
     Err(Error::Missing {
         tool: program.display().to_string(),
-        searched: format!("`{} --version` does not run", program.display()),
+        searched: format!("`{} --version` does not print a version of it", program.display()),
         remedy: format!("{}; or name it with {option}", Code::Fenicsx.install()),
     })
 }

@@ -133,6 +133,7 @@ fn doctor_says_what_is_missing() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{said}");
     assert!(said.contains("gmsh: 0.0.0") && said.contains("finite elements: ready"), "{said}");
+    assert_eq!(doctor("", &["--gmsh", "/bin/ls", "--fem"]).status.code(), Some(2));
     let output = doctor("no-dolfinx", &["--gmsh", gmsh]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{said}");
