@@ -17,8 +17,9 @@ use std::process::ExitCode;
 /// finite-element models that verify it.
 ///
 /// Results go to files and a short summary to standard output; progress and warnings go to
-/// standard error. Only one run at a time can use a folder; files of an earlier run there that do
-/// not belong to the new one are removed, and no result takes the place of a file that was given.
+/// standard error. Only one run at a time can use a folder. What an earlier run of the same command
+/// wrote there and the new one does not is removed; files of other commands may stay: give each its
+/// own folder. No result takes the place of a file that was given.
 /// The exit code is 0 for success, 1 if a gate of `gate` does not hold or `compare` finds curves
 /// too far apart, and 2 if the command could not run: bad input, a missing tool, a failed child
 /// process.
