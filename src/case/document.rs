@@ -35,6 +35,21 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// What is wrong with a key or a name that a parser does not know, and what it knows, in the words
+/// of all files; `None` of another `fault`.
+#[cfg(feature = "cli")]
+pub(crate) fn unknown_word(fault: &str) -> Option<(String, String)> {
+    let kinds = [("unknown field `", "unknown key"), ("unknown variant `", "unknown name")];
+    let (rest, what) =
+        kinds.iter().find_map(|(begin, what)| Some((fault.split_once(begin)?.1, what)))?;
+    // "limt`, expected one of `name`, `limit`"
+    let mut words = rest.split('`').step_by(2);
+    let word = words.next()?;
+    let known: Vec<&str> = words.filter(|known| !known.is_empty()).collect();
+    let remedy = format!("{}There are {}", did_you_mean(word, &known), known.join(", "));
+    Some((format!("{what} {word}"), remedy))
+}
+
 /// A parsed file that knows the places of its values.
 pub(super) struct Document<'a> {
     path: &'a Path,

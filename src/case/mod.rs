@@ -44,7 +44,10 @@ pub use objective::Objective;
 pub use profile::{ProfileKind, ProfileSpec};
 pub use surface::Surface;
 #[cfg(feature = "cli")]
-pub(crate) use {builtin::is_given, document::did_you_mean};
+pub(crate) use {
+    builtin::is_given,
+    document::{did_you_mean, unknown_word},
+};
 #[cfg(feature = "cli")]
 pub use {
     design_file::{Design, DesignLoad, Parameter},

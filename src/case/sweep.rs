@@ -4,6 +4,7 @@
 //! that row, and is checked like every case. A mistake in the file is an error of the sweep; a
 //! mistake in a row is an error of that row.
 
+use super::builtin::{BUILTIN_STUDIES, builtin_case, is_given};
 use super::draft::Draft;
 use super::keys::Key;
 use super::levels::Levels;
@@ -58,6 +59,19 @@ pub(super) fn without_effect(key: &Key) -> Option<&'static str> {
     }
 }
 
+/// What is wrong with the name of something built in, which is no sweep, and what to do.
+fn built_in(path: &Path) -> Option<(String, String)> {
+    let name = path.to_str()?;
+    let (what, meant) = if builtin_case(name).is_some() {
+        ("case", format!("a case file with lists of numbers, or a CSV table with --base {name}"))
+    } else if BUILTIN_STUDIES.iter().any(|(known, _)| *known == name) {
+        ("study", format!("a sweep file, or run `edgeline study {name}`"))
+    } else {
+        return None;
+    };
+    Some((format!("is a built-in {what}, not the file of a sweep"), format!("give {meant}")))
+}
+
 impl Sweep {
     /// Reads a sweep from a TOML file or, if its name ends in `.csv`, from a table. `base` gives
     /// the values that a table has no column for; a TOML file must contain all values.
@@ -69,6 +83,9 @@ impl Sweep {
     /// [`Error::Value`] if the base has a rough surface. Values out of their range are no errors
     /// here: see [`Sweep::case`].
     pub fn read(path: &Path, base: Option<&Draft>) -> Result<Sweep> {
+        if let (false, Some((message, remedy))) = (is_given(path), built_in(path)) {
+            return Err(Error::File { path: path.to_path_buf(), line: None, message, remedy });
+        }
         if path.extension().is_some_and(|e| e.eq_ignore_ascii_case("csv")) {
             return Sweep::read_csv(path, base);
         }

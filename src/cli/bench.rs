@@ -7,7 +7,7 @@ use super::progress::{progress_bar, show};
 use super::provenance::{command_line, now, processor};
 use super::published;
 use super::records::Records;
-use super::values::{MOST_REPEATS, checked_tolerance, chosen_models, count, source};
+use super::values::{MOST_REPEATS, chosen_models, count, source, tolerance_of};
 use crate::base::number::{duration, duration_with_spread, ratio_with_spread};
 use crate::base::{Error, Result};
 use crate::case::{Case, Study, find_case, is_given};
@@ -172,7 +172,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     let cases = find_cases(&arguments.cases)?;
     let tolerances: Vec<f64> = descending(&arguments.tolerances)
         .into_iter()
-        .map(checked_tolerance)
+        .map(|tolerance| tolerance_of("--tolerances", tolerance))
         .collect::<Result<_>>()?;
     let records = Records::read(arguments.reference.as_deref())?;
     let _lock = Lock::claim(&arguments.out)?;

@@ -1,8 +1,8 @@
 //! `edgeline cases`: what is built in.
 
 use super::output::{Exit, print};
-use crate::base::Result;
-use crate::case::{BUILTIN_CASES, BUILTIN_STUDIES, Case, Study, find_case};
+use crate::base::{Error, Result};
+use crate::case::{BUILTIN_CASES, BUILTIN_STUDIES, Case, Study, did_you_mean, find_case};
 use clap::Args;
 use std::path::Path;
 
@@ -35,7 +35,19 @@ fn files() -> impl Iterator<Item = (&'static str, &'static str)> {
 fn file(name: &str) -> Result<String> {
     match files().find(|(known, _)| *known == name) {
         Some((_, text)) => Ok(text.to_string()),
-        None => find_case(Path::new(name)).map(|case| case.to_toml()),
+        None => {
+            find_case(Path::new(name)).map(|case| case.to_toml()).map_err(
+                |error| match did_you_mean(name, &BUILTIN_STUDIES.map(|(name, _)| name)) {
+                    meant if meant.is_empty() => error,
+                    meant => Error::Value {
+                        key: "NAME".to_string(),
+                        value: name.to_string(),
+                        reason: "nothing of this name is built in".to_string(),
+                        remedy: format!("{meant}`edgeline cases` lists all"),
+                    },
+                },
+            )
+        }
     }
 }
 

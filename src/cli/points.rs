@@ -2,8 +2,8 @@
 
 use crate::base::number::stated;
 use crate::base::{Error, Result};
-use crate::case::Case;
-use crate::host::{check_memory, csv_fault, csv_line, read_input};
+use crate::case::{Case, unknown_word};
+use crate::host::{check_memory, csv_fault, csv_line, other_separators, read_input};
 use crate::solve::{Extent, Outside, Point};
 use crate::stress::BodyKind;
 use serde::Deserialize;
@@ -70,14 +70,23 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
     sorted.sort_unstable();
     if sorted != COLUMNS {
         let names = header.iter().collect::<Vec<_>>().join(",");
-        return Err(refuse(header.position().map(line_of), format!("has the columns {names}")));
+        let message = match other_separators(&names) {
+            Some(marks) => format!("has {marks} between its columns, where commas are read"),
+            None => format!("has the columns {names}"),
+        };
+        return Err(refuse(header.position().map(line_of), message));
     }
     let mut points = Vec::new();
     for record in reader.records() {
         let record = record.map_err(of_csv)?;
         let line = record.position().map(line_of);
-        let row: Row =
-            record.deserialize(Some(&header)).map_err(|e| refuse(line, csv_fault(&e)))?;
+        let row: Row = record.deserialize(Some(&header)).map_err(|e| {
+            let fault = csv_fault(&e);
+            refuse(
+                line,
+                unknown_word(&fault).map_or(fault, |(word, known)| format!("{word}; {known}")),
+            )
+        })?;
         let at_m = [row.x_m, row.y_m, row.z_m];
         Extent::of(case, row.body).check(at_m).map_err(|outside| {
             let Outside { axis, value_m, reason, remedy } = outside;
@@ -117,7 +126,7 @@ mod tests {
         let head = "body,x_m,y_m,z_m\nblock,0,0,0\n";
         for (row, wanted) in [
             ("block,0,0", ":3: has 3 cells where the header has 4; give the columns"),
-            ("blok,0,0,0", ":3: unknown variant `blok`"),
+            ("blok,0,0,0", ":3: unknown name blok; did you mean block? There are block, roller;"),
             ("block,0,zero,0", ":3: "),
             ("block,nan,0,0", ":3: x_m = NaN is not a finite number"),
             ("block,0,0,-1e-9", ":3: z_m = -1e-9 is outside the block"),
@@ -132,6 +141,8 @@ mod tests {
         let late =
             read_text("# mine\nbody,x_m,y_m,z_m\n\n# a\nblock,0,0,-1\n").unwrap_err().to_string();
         assert!(late.contains(":5: z_m = "), "{late}");
+        let said = read_text("body;x_m;y_m;z_m\nblock;0;0;0\n").unwrap_err().to_string();
+        assert!(said.contains(":1: has semicolons between its columns"), "{said}");
         for header in ["body,x_m,y_m", "body,x,y,z", "body,x_m,y_m,z_m,z_m"] {
             let said =
                 read_text(&format!("# mine\n{header}\nblock,0,0\n")).unwrap_err().to_string();

@@ -347,7 +347,12 @@ fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
     let counts: [usize; 3] =
         arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
             key: "--field-points".into(),
-            value: format!("{:?}", arguments.field_points),
+            value: arguments
+                .field_points
+                .iter()
+                .map(usize::to_string)
+                .collect::<Vec<_>>()
+                .join(","),
             reason: "a field has three directions".into(),
             remedy: "give for example 33,49,41".into(),
         })?;

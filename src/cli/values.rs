@@ -74,8 +74,16 @@ const RESIDUALS: (f64, f64) = (1e-12, 1e-2);
 /// # Errors
 /// [`Error::Value`] that names `--tolerance`.
 pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
+    tolerance_of("--tolerance", tolerance)
+}
+
+/// [`checked_tolerance`] of another `option`, which its error names.
+///
+/// # Errors
+/// [`Error::Value`].
+pub fn tolerance_of(option: &str, tolerance: f64) -> Result<f64> {
     let range = Key::find("accuracy.tolerance").expect("a key of the list").range;
-    checked(tolerance, range, "a fraction of p0", "1e-3")
+    checked(option, tolerance, range, "a fraction of p0", "1e-3")
 }
 
 /// What to know of a case that asks for more than the finest resolution of the engine along a line.
@@ -103,15 +111,21 @@ pub fn say_if_too_fine(case: &Case) {
 /// # Errors
 /// As [`checked_tolerance`].
 pub fn checked_residual(residual: f64) -> Result<f64> {
-    checked(residual, RESIDUALS, "a relative residual on cells", "1e-8")
+    checked("--tolerance", residual, RESIDUALS, "a relative residual on cells", "1e-8")
 }
 
-fn checked(tolerance: f64, (low, high): (f64, f64), what: &str, usual: &str) -> Result<f64> {
+fn checked(
+    option: &str,
+    tolerance: f64,
+    (low, high): (f64, f64),
+    what: &str,
+    usual: &str,
+) -> Result<f64> {
     if (low..=high).contains(&tolerance) {
         return Ok(tolerance);
     }
     Err(Error::Value {
-        key: "--tolerance".into(),
+        key: option.into(),
         value: stated(tolerance),
         reason: format!("it is {what} between {} and {}", stated(low), stated(high)),
         remedy: format!("give for example {usual}"),

@@ -36,12 +36,20 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     })
 }
 
+/// What stands between the columns of a CSV table's `header` in place of commas, if anything does.
+pub fn other_separators(header: &str) -> Option<&'static str> {
+    let known = [(';', "semicolons"), ('\t', "tabs")];
+    let found = known.into_iter().find(|(mark, _)| !header.contains(',') && header.contains(*mark));
+    found.map(|(_, name)| name)
+}
+
 /// What is wrong with the text of a CSV table, without the place, which errors have before it.
 #[cfg(feature = "cli")]
 pub fn csv_fault(error: &csv::Error) -> String {
     match error.kind() {
         csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
-            format!("has {len} cells where the header has {expected_len}")
+            let cells = if *len == 1 { "cell" } else { "cells" };
+            format!("has {len} {cells} where the header has {expected_len}")
         }
         csv::ErrorKind::Utf8 { .. } => "is not UTF-8 text".to_string(),
         csv::ErrorKind::Deserialize { err, .. } => err.to_string(),

@@ -151,7 +151,7 @@ fn bad_input_ends_with_exit_code_2_and_one_message() {
         (&["nowhere.toml"][..], "nowhere.toml"),
         (&["bad.toml"], "there is no factor"),
         (&["flush-short", "flush-short"], "twice"),
-        (&["flush-short", "--tolerances", "2"], "--tolerance"),
+        (&["flush-short", "--tolerances", "1e-2,2"], "--tolerances = 2 is not valid"),
         (&["flush-short", "--levels", "0"], "--levels"),
         (&["flush-short", "--repeats", "0"], "--repeats"),
         (&["flush-short", "--methods", "mirrors"], "mirrors"),

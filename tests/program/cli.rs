@@ -106,6 +106,9 @@ fn what_is_built_in_is_listed_printed_and_found() {
         (["solve", "flush-shrt"], "did you mean flush-short?"),
         (["solve", "zzz"], "zzz: no such file; give a case file"),
         (["cases", "zzz"], "zzz: no such file; give a case file"),
+        (["cases", "factoral"], "did you mean factorial? `edgeline cases` lists all"),
+        (["sweep", "flush-short"], "is a built-in case, not the file of a sweep; give a case file"),
+        (["sweep", "scenes"], "or run `edgeline study scenes`"),
     ] {
         let said = refused(path, &arguments);
         assert!(said.contains(wanted), "{said}");

@@ -514,6 +514,16 @@ fn cases_with_files_are_read_from_any_folder_and_known_by_their_content() {
 }
 
 #[test]
+fn a_profile_between_semicolons_is_told_of_commas() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("drops.csv"), "y_m;drop_m\n-0.01;0\n0.01;0\n").unwrap();
+    let profile = "[roller.profile]\nkind = \"table\"\nfile = \"drops.csv\"\n[block]";
+    let text = LOADED.replacen("[block]", profile, 1);
+    let said = Case::parse(&text, &folder.path().join("f.toml")).unwrap_err().to_string();
+    assert!(said.contains("drops.csv:1: has semicolons between its columns; write com"), "{said}");
+}
+
+#[test]
 fn levels_with_too_many_digits_for_names_are_refused() {
     let text = DEFAULT_STUDY
         .replace("W = [1e-4, 1e-3]", "W = [1.2345678901234567e-12]")

@@ -136,8 +136,9 @@ fn broken_tables_are_errors() {
     for (text, wanted) in [
         ("W,S_l,Lr\n1,2,3\n", "unknown column Lr; did you mean L_r?"),
         ("W,S_l,L_r\n1e-4,5\n", "s.csv:2: has 2 cells where the header has 3; give as many"),
-        ("W,S_l\n\n1e-4,5\n\n\n1e-4\n", "s.csv:6: has 1 cells where the header has 2"),
+        ("W,S_l\n\n1e-4,5\n\n\n1e-4\n", "s.csv:6: has 1 cell where the header has 2"),
         ("W,S_l,L_r\n", "has 0 rows"),
+        ("W;S_l;L_r\n1e-4;5;1\n", "s.csv:1: has semicolons between its columns; write commas"),
         ("W,W\n1,1\n", "dimensionless.W is given by two columns"),
         ("poisson,block_poisson\n0.3,0.3\n", "block.poisson is given by two columns"),
         ("name,name\na,b\n", "two columns name"),

@@ -4,6 +4,7 @@ use super::number::{Number, NumberOf, Whole};
 use super::outcome::{GateOutcome, Kind};
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
+use crate::case::unknown_word;
 use crate::study::measure::{Measure, Of};
 use serde::{Deserialize, Deserializer, de};
 use std::path::Path;
@@ -169,7 +170,13 @@ pub fn parse(text: &str, path: &Path) -> Result<Gates> {
     };
     let gates: Gates = toml::from_str(text).map_err(|e| {
         let line = e.span().map(|s| text[..s.start.min(text.len())].matches('\n').count() + 1);
-        refuse(line, e.message().to_string(), "compare with the thresholds in docs/methodology.md")
+        match unknown_word(e.message()) {
+            Some((message, remedy)) => refuse(line, message, &remedy),
+            None => {
+                let remedy = "compare with the thresholds in docs/methodology.md";
+                refuse(line, e.message().to_string(), remedy)
+            }
+        }
     })?;
     if gates.gate.is_empty() && gates.drift.is_none() {
         let remedy = "add [[gate]] tables, as docs/methodology.md describes them";
