@@ -7,7 +7,7 @@ use crate::study::measure::Measure;
 use crate::study::run::StudyRun;
 use crate::study::source::Source;
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// The accepted numbers that are built into the program.
@@ -95,6 +95,11 @@ impl Baseline {
             version: self.version.clone(),
             numbers: numbers.map(|(place, values)| (place.clone(), values.clone())).collect(),
         }
+    }
+
+    /// The distances from the edges (C) outside which the numbers are, as they stand in places.
+    pub(super) fn distances_c(&self) -> BTreeSet<&str> {
+        self.numbers.keys().filter_map(|place| Some(place.rsplit_once(' ')?.1)).collect()
     }
 
     /// Parses the text of the file of accepted numbers `path`.

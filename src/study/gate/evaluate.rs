@@ -97,11 +97,21 @@ fn drift_gate(
     // Changes beyond the limit, and the largest change.
     let beyond = accepted.changes(now, limit);
     let largest = accepted.changes(now, -1.0).iter().filter_map(Change::size).fold(0.0, f64::max);
+    let has_others = !accepted.distances_c().is_superset(&now.distances_c());
+    let comparable = compared > 0 && !accepted.numbers.is_empty() && !has_others;
     let note = if compared == 0 {
         "nothing was compared".to_string()
     } else if accepted.numbers.is_empty() {
         "there are no accepted numbers of this study and model: accept them with `edgeline gate --accept`"
             .to_string()
+    } else if has_others {
+        let list = |all: &Baseline| Vec::from_iter(all.distances_c()).join(" and ");
+        format!(
+            "accepted numbers are those outside {} C, and this run has those outside {} C: leave out --exclude and \
+             --exclude-pressure, or accept its own with `edgeline gate --accept`",
+            list(&accepted),
+            list(now)
+        )
     } else {
         match beyond.first() {
             None => "nothing moved".to_string(),
@@ -118,9 +128,9 @@ fn drift_gate(
         method: method.name().to_string(),
         kind: Kind::Drift,
         passed: compared > 0 && beyond.is_empty(),
-        value: Some(largest),
+        value: comparable.then_some(largest),
         limit,
-        margin: Some(limit - largest),
+        margin: comparable.then_some(limit - largest),
         compared,
         note,
     }

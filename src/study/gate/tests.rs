@@ -84,6 +84,22 @@ fn another_mirror_factor_drifts() {
 }
 
 #[test]
+fn numbers_at_other_distances_are_not_taken_for_drift() {
+    let run = synthetic::run(Twist::None);
+    let mut accepted = Baseline::of(&run);
+    let moved = accepted.numbers.into_iter().map(|(place, values)| {
+        let (place, _) = place.rsplit_once(' ').unwrap();
+        (format!("{place} 0.7"), values)
+    });
+    accepted.numbers = moved.collect();
+    let outcomes = evaluate(&run, &gates(), Some(&accepted));
+    let drift = outcomes.iter().find(|o| o.kind == Kind::Drift).unwrap();
+    assert!(!drift.passed && drift.value.is_none() && drift.margin.is_none());
+    assert!(drift.note.contains("are those outside 0.7 C, and"), "{}", drift.note);
+    assert!(drift.note.contains("--exclude"), "{}", drift.note);
+}
+
+#[test]
 fn nothing_compared_fails() {
     let run = synthetic::run(Twist::None);
     let text = GATES.replace("measure = \"rms\"", "measure = \"rms\"\ncurves = [\"depth-ends\"]");
@@ -153,7 +169,8 @@ fn accepted_numbers_survive_the_file_and_changes_are_listed() {
 fn bad_thresholds_are_refused_with_their_line() {
     let read = |text: &str| parse(text, Path::new("g.toml")).unwrap_err().to_string();
     let unknown = read(&GATES.replace("limit = 0.006", "limt = 0.006"));
-    assert!(unknown.contains("g.toml:") && unknown.contains("limt"), "{unknown}");
+    assert!(unknown.contains("g.toml:"), "{unknown}");
+    assert!(unknown.contains("unknown key limt; did you mean limit? There are name,"), "{unknown}");
     let quantity = read(&GATES.replace("\"stress\"", "\"sigma\""));
     assert!(quantity.contains("\"sigma\" is not known"), "{quantity}");
     assert!(read(&GATES.replace("limit = 0.006", "limit = -1.0")).contains("not a positive"));
