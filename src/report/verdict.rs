@@ -147,7 +147,7 @@ fn equal_error(speedups: &[Speedup]) -> Option<String> {
 /// How far the published method is off FEM.
 fn published(own: &PublishedSummary) -> String {
     format!(
-        "The published method on uniform cells is off FEM by {} to {} p0 RMS in pressure and {} to {} p0 RMS in the \
+        "The published method on uniform cells (guilbault-cells) is off FEM by {} to {} p0 RMS in pressure and {} to {} p0 RMS in the \
          stresses, by up to {} and {} p0, in {} cases.",
         fraction(own.pressure_rms.low),
         fraction(own.pressure_rms.high),
