@@ -151,7 +151,7 @@ fn results<D>(case: &Case, label: &Label, found: &Summary<D>) -> Vec<[String; 2]
         ("… at x, y", place(&found.p_max_at_m)),
     ];
     if let Some(note) = unbounded(case, found) {
-        rows.push(("… at", note.to_string()));
+        rows.push(("… near", note.to_string()));
     }
     if let Some(critical) = &found.critical {
         rows.push(("Largest von Mises stress", pressure(critical.value_pa)));
