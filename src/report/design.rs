@@ -199,6 +199,18 @@ fn profile_look(dash: Option<(f64, f64)>) -> Look {
     Look { colour: INK, dash, marker: Marker::Disc }
 }
 
+/// A parameter's name and unit on a plot, and how many of this unit are one of its own; a short
+/// length is in µm.
+fn written(name: &str, value: f64) -> (String, &'static str, f64) {
+    let (name, unit, scale) = match name.rsplit_once('_') {
+        Some((name, "m")) if value.abs() < 1e-4 => (name, "µm", UM),
+        Some((name, "m")) => (name, "mm", MM),
+        Some((name, "n")) => (name, "N", 1.0),
+        _ => (name, "", 1.0),
+    };
+    (name.replace('_', " "), unit, scale)
+}
+
 /// The objective over each parameter: the trials, and the line through the optimum; and over the
 /// trials.
 fn parameters(design: &Design, found: &Optimum) -> Figure {
@@ -211,20 +223,23 @@ fn parameters(design: &Design, found: &Optimum) -> Figure {
     let y_range = Some((shown(least - 0.06 * (worst - least)), shown(worst)));
     let panel = |i: usize| {
         let (parameter, line) = (&design.parameters[i], &found.scans[i]);
+        let (name, unit, scale) = written(parameter.name, found.values[i]);
         let tried = found.history.iter().filter_map(|trial| {
             Some((trial.values[i], trial.objective_pa.filter(|o| *o <= worst)?))
         });
-        let tried = tried.map(|(v, o)| (v, shown(o))).collect();
-        let line = line.iter().filter(|(_, o)| *o <= worst).map(|(v, o)| (*v, shown(*o))).collect();
+        let tried = tried.map(|(v, o)| (scale * v, shown(o))).collect();
+        let line = line.iter().filter(|(_, o)| *o <= worst);
+        let line = line.map(|(v, o)| (scale * v, shown(*o))).collect();
+        let optimum = significant(scale * found.values[i], 4);
         Panel {
-            title: format!("optimum at {} = {}", parameter.name, significant(found.values[i], 4)),
-            x_label: parameter.name.into(),
+            title: format!("optimum at {name} = {optimum} {unit}").trim_end().to_string(),
+            x_label: if unit.is_empty() { name } else { format!("{name} ({unit})") },
             y_label: label.clone(),
             series: vec![
                 Series::marks("trials", look(5), tried),
                 Series { markers: false, ..Series::curve("through the optimum", look(0), line) },
             ],
-            rules: vec![Rule::Vertical(found.values[i], String::new())],
+            rules: vec![Rule::Vertical(scale * found.values[i], String::new())],
             log: (parameter.is_logarithmic(), false),
             y_range,
             ..Panel::default()
@@ -307,6 +322,18 @@ fn pressures(design: &Design, found: &Optimum, case: &Case) -> Figure {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_of_plots_are_in_mm_or_in_um() {
+        let said = |name, value| {
+            let (name, unit, scale) = written(name, value);
+            format!("{name} {} {unit}", significant(scale * value, 3))
+        };
+        assert_eq!(said("radius_m", 0.25), "radius 250 mm");
+        assert_eq!(said("amplitude_m", 2e-6), "amplitude 2 µm");
+        assert_eq!(said("design_force_n", 5.0), "design force 5 N");
+        assert_eq!(said("k2", 0.5), "k2 0.5 ");
+    }
 
     #[test]
     fn no_load_looks_like_a_profile() {

@@ -20,6 +20,9 @@ pub struct Figure {
 }
 
 const TITLE_HEIGHT: f64 = 34.0;
+/// Size of the title's letters, and how much wider bold ones are.
+const TITLE: f64 = 15.0;
+const BOLD: f64 = 1.15;
 /// Where the legend begins, and the height of a row of it.
 const LEGEND_LEFT: f64 = 16.0;
 const LEGEND_TOP: f64 = TITLE_HEIGHT + 10.0;
@@ -54,7 +57,9 @@ impl Figure {
         let size = (width * columns as f64, top + height * rows as f64 + 6.0);
         let mut picture = Picture::new(size, &*self.title);
         let title = Text::new(&*self.title, (14.0, 18.0), Anchor::Start);
-        picture.text(Text { size: 15.0, bold: true, ..title });
+        // A long name is written in smaller letters rather than cut.
+        let room = (size.0 - 28.0) / (BOLD * letters::width(&self.title, TITLE));
+        picture.text(Text { size: TITLE * room.min(1.0), bold: true, ..title });
         for (name, sample, (x, y)) in legend {
             sample.draw(&mut picture, (x, y));
             picture.text(Text::new(name, (x + SAMPLE + GAP, y), Anchor::Start));
@@ -118,7 +123,7 @@ impl Sample<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::panel::{Bar, look};
+    use super::super::panel::{Bar, Note, Rule, look};
     use super::super::picture::INK;
     use super::*;
     use crate::study::Engine;
@@ -137,6 +142,42 @@ mod tests {
         let [first, second, third] = places(400.0)[..] else { panic!("three names") };
         assert!(first.1 == second.1 && second.0 > first.0);
         assert_eq!(third, (LEGEND_LEFT, LEGEND_TOP + LEGEND_ROW));
+    }
+
+    #[test]
+    fn words_stand_off_level_lines_and_the_frame() {
+        let rules = vec![Rule::Horizontal(1.0, "ME".into()), Rule::Horizontal(1.99, "SME".into())];
+        let notes = vec![Note { at: (0.5, 1.01), text: "W".into() }];
+        let look = look(&Engine::fenicsx().into());
+        let series = vec![Series::marks("", look, vec![(0.5, 1.01)])];
+        let (x_range, y_range) = (Some((0.0, 1.0)), Some((0.0, 2.0)));
+        let panel = Panel { series, notes, rules, x_range, y_range, ..Default::default() };
+        let (panels, panel_size) = (vec![panel], (380, 320));
+        let svg = Figure { columns: 1, panels, panel_size, ..Default::default() }.draw().to_svg();
+        let height = |text: &str| {
+            let before = svg.split(&format!(">{text}<")).next().unwrap();
+            let y = before.rsplit(" y=\"").next().unwrap().split('"').next().unwrap();
+            y.parse::<f64>().unwrap()
+        };
+        // The word of the line lies 8 above it, and the note's own place 2.
+        assert!((height("W") - height("ME") - 8.0).abs() > 10.0, "{}", height("W"));
+        // The line lies on the frame, and its word below it.
+        assert!(height("SME") > height("2.0"), "{}", height("SME"));
+    }
+
+    #[test]
+    fn a_long_title_is_not_cut() {
+        let title = |name: &str| Figure { title: name.into(), columns: 1, ..Default::default() };
+        let size = |name: &str| {
+            let panels = vec![Panel::default()];
+            let svg = Figure { panels, panel_size: (820, 430), ..title(name) }.draw().to_svg();
+            let before = svg.split(&format!(">{name}<")).next().unwrap();
+            let size = before.rsplit("font-size=\"").next().unwrap().split('"').next().unwrap();
+            size.parse::<f64>().unwrap()
+        };
+        assert_eq!(size("flush-short"), TITLE);
+        let long = "W".repeat(64);
+        assert!(letters::width(&long, size(&long)) < 780.0 && size(&long) > 8.0);
     }
 
     #[test]

@@ -310,7 +310,7 @@ impl<'a> Plot<'a> {
         }
     }
 
-    /// The places of points and of the words at level lines: from, to, and height.
+    /// The places of points, of level lines and of their words: from, to, and height.
     fn taken(&self) -> Vec<(f64, f64, f64)> {
         let points = self.panel.series.iter().filter(|s| s.markers).flat_map(|s| &s.points);
         let mark = |p: &(f64, f64)| (self.x.at(p.0) - 5.0, self.x.at(p.0) + 5.0, self.y.at(p.1));
@@ -321,13 +321,20 @@ impl<'a> Plot<'a> {
             }
             Rule::Vertical(..) => None,
         });
-        points.map(mark).chain(words).collect()
+        let levels = self.panel.rules.iter().filter_map(|rule| match rule {
+            Rule::Horizontal(v, _) => Some((self.left, self.right, self.y.at(*v))),
+            Rule::Vertical(..) => None,
+        });
+        points.map(mark).chain(words).chain(levels).collect()
     }
 
     /// Where the word of a level line begins, the `nth` one of the panel: on the left, for points
     /// that lie so high are on the right.
     fn start_of_level(&self, v: f64, nth: f64) -> Point {
-        (self.left + 3.0 + 36.0 * nth, sharp(self.y.at(v)) - 8.0)
+        let line = sharp(self.y.at(v));
+        // Below a line that leaves no room above it.
+        let y = if line - 15.0 < self.top { line + 9.0 } else { line - 8.0 };
+        (self.left + 3.0 + 36.0 * nth, y)
     }
 }
 
