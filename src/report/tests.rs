@@ -367,8 +367,8 @@ fn the_box_of_verification_is_that_of_the_compared_cases() {
     files.summary.cases[1].eccentricity_m = Some(0.1 * files.summary.cases[1].roller.length_m);
     files.summary.cases[2].sliding.friction = 0.25;
     let page = page::html(&files).unwrap();
-    let said = "; straight generatrices and profiles (crown), eccentricities of the load (lengths of the \
-                roller) up to 0.1, friction up to 0.25. Outside";
+    let said = "; straight generatrices and profiles (crown), eccentricities of the load (lengths of \
+                the roller) up to 0.1, friction up to 0.25. Outside";
     assert!(page.contains(said));
     // What was not compared is outside.
     let name = files.summary.cases[2].name.clone();

@@ -212,8 +212,8 @@ fn every_field_changes_its_key_and_values_are_those_of_solve() {
     it.page.eval(
         "(() => { const i = document.getElementById('key-roller.radius_m'); i.value = '11'; \
          i.dispatchEvent(new Event('change')); const d = new DataTransfer(); \
-         d.items.add(new File(['nmae = 1'], 'x.toml')); const open = document.getElementById('open'); \
-         open.files = d.files; open.dispatchEvent(new Event('change')); })()",
+         d.items.add(new File(['nmae = 1'], 'x.toml')); \
+         const open = document.getElementById('open'); open.files = d.files; open.dispatchEvent(new Event('change')); })()",
     );
     it.page.wait("!document.getElementById('message').hidden");
     it.rest();

@@ -107,8 +107,8 @@ fn drift_gate(
     } else if has_others {
         let list = |all: &Baseline| Vec::from_iter(all.distances_c()).join(" and ");
         format!(
-            "accepted numbers are those outside {} C, and this run has those outside {} C: leave out --exclude and \
-             --exclude-pressure, or accept its own with `edgeline gate --accept`",
+            "accepted numbers are those outside {} C, and this run has those outside {} C: leave out \
+             --exclude and --exclude-pressure, or accept its own with `edgeline gate --accept`",
             list(&accepted),
             list(now)
         )
