@@ -7,6 +7,11 @@ const LONGEST_STEP: f64 = 8.0;
 const FALLING: f64 = -2.0;
 const FALLS: [f64; 2] = [-8.0, -1.0];
 
+/// What has a slope above this, and falls elsewhere, is far from its zero, and says nothing of how
+/// far: steps grow by this factor.
+const FLAT: f64 = -0.5;
+const STRIDE: f64 = 2.0;
+
 /// The search for the zero of a function whose slope is about 1, or at least of one sign: by
 /// secants, and within two arguments whose values are of different signs as soon as both are known.
 #[derive(Debug)]
@@ -15,6 +20,8 @@ pub(crate) struct Secants {
     slope: f64,
     /// Its limits.
     slopes: [f64; 2],
+    /// Whether it falls wherever it is near to its zero.
+    falls: bool,
     /// The argument and the value before.
     last: Option<[f64; 2]>,
     /// The last arguments with a value below zero, and above.
@@ -25,22 +32,23 @@ pub(crate) struct Secants {
 impl Secants {
     /// A search that begins with a slope of 1.
     pub fn new() -> Self {
-        Self::with_slope(1.0, [f64::NEG_INFINITY, f64::INFINITY])
+        Self::with_slope(1.0, [f64::NEG_INFINITY, f64::INFINITY], false)
     }
 
-    /// A search for the zero of a function that falls, at least as fast as its argument grows.
+    /// A search for the zero of a function that falls, at least as fast as its argument grows, but
+    /// may be flat far from its zero.
     pub fn falling() -> Self {
-        Self::with_slope(FALLING, FALLS)
+        Self::with_slope(FALLING, FALLS, true)
     }
 
-    fn with_slope(slope: f64, slopes: [f64; 2]) -> Self {
-        Self { slope, slopes, last: None, below: None, above: None }
+    fn with_slope(slope: f64, slopes: [f64; 2], falls: bool) -> Self {
+        Self { slope, slopes, falls, last: None, below: None, above: None }
     }
 
     /// A search for the zero of a function that is nearly this one: the slope is known, but no
     /// value.
     pub fn of_another(&self) -> Self {
-        Self::with_slope(self.slope, self.slopes)
+        Self::with_slope(self.slope, self.slopes, self.falls)
     }
 
     /// Distance of two arguments with values of different signs; infinite as long as one is
@@ -59,6 +67,9 @@ impl Secants {
         let mut longest = f64::INFINITY;
         if let Some([before, was]) = self.last.replace([at, value]) {
             longest = LONGEST_STEP * (at - before).abs();
+            if self.falls && value * was > 0.0 && (value - was) / (at - before) > FLAT {
+                return self.inside(at + STRIDE * (at - before));
+            }
             let slope = if value == was { 1.0 } else { (value - was) / (at - before) };
             self.slope = slope.clamp(self.slopes[0], self.slopes[1]);
         }
@@ -109,5 +120,15 @@ mod tests {
             assert!(taken < 30, "{from}: {taken} calls");
         }
         assert_eq!(Secants::new().width(), f64::INFINITY);
+    }
+
+    /// What is flat far from its zero is left in steps that grow.
+    #[test]
+    fn a_plateau_is_left_in_few_steps() {
+        let flat = |x: f64| (2.0 * (3.0 - x)).clamp(-0.05, 0.05);
+        for from in [-1.0, 2.0, 2.99, 3.2, 7.0] {
+            let taken = calls(&mut Secants::falling(), from, flat);
+            assert!(taken < 30, "{from}: {taken} calls");
+        }
     }
 }

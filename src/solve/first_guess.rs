@@ -48,16 +48,18 @@ impl Scene {
             return Resolution::for_tips(tolerance / wider.max(1.0));
         }
         let gap = self.gap();
+        let ends = [0, 1].map(|side: usize| slices.ends[side].clamp(overlap[0], overlap[1]));
+        let left = [ends[0] - overlap[0], overlap[1] - ends[1]];
         let turns = [0, 1].map(|side| {
-            let outward = 2.0 * side as f64 - 1.0;
-            let end = slices.ends[side].clamp(overlap[0], overlap[1]);
-            let left = outward * (overlap[side] - end);
-            let corner = if left > 0.0 { CORNER * left } else { f64::INFINITY };
-            gap.turns_within(end, -outward).min(corner)
+            let inward = if side == 0 { 1.0 } else { -1.0 };
+            let corner = if left[side] > 0.0 { CORNER * left[side] } else { f64::INFINITY };
+            gap.turns_within(ends[side], inward).min(corner)
         });
         let level = self.level(tolerance, slices.ends).following(turns);
         let reaches = [0, 1].map(|side| self.reaches(slices.ends, side));
-        let level = if reaches == [true; 2] { level } else { level.narrowing(tolerance) };
+        // What all but reaches an end of its bodies narrows to a tip, too.
+        let narrows = left.iter().any(|left| *left > 0.0);
+        let level = if narrows { level.narrowing(tolerance) } else { level };
         let is_steep = reaches.contains(&true) || !gap.kinks().is_empty();
         if is_steep { level.across(slices.widest()) } else { level }
     }

@@ -26,6 +26,10 @@ const SEARCH: f64 = 3e-2;
 const WIDEST: f64 = 3.0;
 const WIDEST_GUESS: f64 = 2.0;
 
+/// How much farther along y (C) than its line a contact may go whose ends did not settle: with more
+/// the rest of its load is pressed into what is left.
+const FARTHER: f64 = 0.05;
+
 /// Tolerance of a second attempt, in that of the first.
 const FINER: f64 = 0.1;
 
@@ -185,7 +189,11 @@ impl SolvedScene {
         let resolution = given.copied().unwrap_or_else(of_tolerance);
         let accuracy = Accuracy { tolerance: scene.tolerance, soundness };
         let trial = Trial { scene, resolution: &resolution, powers: true, accuracy, gap: &gap };
-        let Settled { line, parts, contact, is_settled, setup, .. } = trial.settled(line, known)?;
+        let settled = trial.settled(line, known)?;
+        if soundness.is_finite() {
+            check_ends(&settled)?;
+        }
+        let Settled { line, parts, contact, is_settled, setup, .. } = settled;
         let Parts { axis, wavenumbers, bodies, skins, compliances, condition } = parts;
         // Before its bodies do it ends also where the last nodes of a line up to their end carry
         // nothing.
@@ -350,6 +358,22 @@ impl Approaches {
 /// How far a scene's solution may violate the laws of contact (p0).
 fn soundness(scene: &Scene) -> f64 {
     SOUNDNESS * scene.tolerance.max(Resolution::FINEST)
+}
+
+/// Refuses a contact whose pressure goes on beyond the line on which it was found by more than
+/// [`FARTHER`].
+fn check_ends(settled: &Settled) -> Result<()> {
+    let [first, last] = settled.contact.ends;
+    let beyond = last.beyond.max(-first.beyond);
+    if settled.is_settled || beyond <= FARTHER {
+        return Ok(());
+    }
+    Err(Error::Unsound {
+        law: "how far a contact goes on beyond the end that was found for it (C)",
+        value: beyond,
+        limit: FARTHER,
+        remedy: "take another [accuracy] tolerance, or --engine cells".into(),
+    })
 }
 
 /// The law that a contact wider than long does not hold.

@@ -196,6 +196,39 @@ fn steep_ends_are_found_as_closely_as_asked() {
     }
 }
 
+/// A roller that is held tilted. Without elastic bodies it would touch as far as y = -2.3 C alone.
+const TILTED: &str = r#"
+name = "tilted"
+[roller]
+radius_m = 10e-3
+young_pa = 210e9
+poisson = 0.3
+[block]
+young_pa = 210e9
+poisson = 0.3
+[dimensionless]
+W = 3e-4
+S_l = 6
+L_r = 1
+[pose]
+tilt_rad = 5.4e-3
+"#;
+
+/// On 64 x 160 cells the contact reaches both ends, with at most 1.336 p0. The search for its end,
+/// at which a line far too short tells nothing of how far, stopped at y = -5.35 C, with 5 p0.
+#[test]
+fn a_held_tilt_that_a_first_guess_lifts_off_is_found() {
+    let solved = solved(TILTED, 5e-3);
+    let summary = &solved.solution().summary;
+    assert_eq!(summary.warnings(), Vec::<String>::new());
+    let half = 0.5 * solved.case().roller.length_m;
+    assert!(summary.contact_y_m.iter().all(|y| (y.abs() - half).abs() < 1e-9 * half));
+    let pressures = (-58..=58).map(|i| solved.pressure(0.0, 0.1 * f64::from(i)));
+    let most = pressures.fold(0.0, f64::max);
+    assert!((most - 1.336).abs() < 2e-3, "{most}");
+    assert!((0.05..0.5).contains(&solved.pressure(0.0, -5.8)), "{}", solved.pressure(0.0, -5.8));
+}
+
 /// A roller with Lundberg's profile under an eccentric load, 25 C long to either side. The contact
 /// ends 0.084 C before it does: the engine on 48 x 12000 cells has its last one, 0.0042 C long, up
 /// to 0.0843 C from there.

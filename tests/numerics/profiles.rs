@@ -354,6 +354,58 @@ fn crowned_contacts_keep_their_tolerance_on_short_bodies() {
     }
 }
 
+/// The largest difference of a stress (p0) in the block at `places` (C) under a crowned roller with
+/// a load beside its middle, at a tolerance of 1e-3 from one of 1e-4.
+fn off_under_crown(
+    [roller, block]: [Material; 2],
+    factors: Factors,
+    [drop, eccentricity, offset]: [f64; 3],
+    places: &[[f64; 3]],
+) -> f64 {
+    let mut case = Case::from_factors("crowned", 0.01, roller, block, factors);
+    let (c_m, half_m) = (case.hertz().c_m, 0.5 * case.roller.length_m);
+    let drop_m = drop * case.gap_unit_m();
+    let mut crown = ProfileSpec::new(ProfileKind::Crown);
+    crown.radius_m = Some((half_m * half_m + drop_m * drop_m) / (2.0 * drop_m));
+    case.roller.profile = Some(crown);
+    case.load.eccentricity_m = Some(eccentricity * c_m);
+    case.pose.offset_m = offset * c_m;
+    let [own, limit] = [1e-3, 1e-4].map(|tolerance| {
+        let case = case.clone().with_tolerance(tolerance);
+        let solved = SolvedCase::new(&case, &contact_alone()).unwrap();
+        solved.stress(BodyKind::Block, places).unwrap()
+    });
+    let components = own
+        .iter()
+        .zip(&limit)
+        .flat_map(|(own, limit)| own.components().into_iter().zip(limit.components()));
+    components.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The half-width changes by a third within panels of 24 C. Short waves, whose transforms turn
+/// farther over a panel than its polynomial follows, made shears of 2.5 tolerances beside it.
+#[test]
+fn shears_beside_a_long_crowned_contact_keep_the_tolerance() {
+    let roller = Material { young_pa: 210e9, poisson: 0.0926 };
+    let block = Material { young_pa: 75e9, poisson: 0.0616 };
+    let factors = Factors { load: 5.6535e-5, slenderness: 35.0, length_ratio: 0.5815 };
+    let places = [0.85, 1.0, 1.05, 1.15, 1.4].map(|x| [x, 0.0, 0.0]);
+    let off = off_under_crown([roller, block], factors, [2.5469, -6.0377, 0.0], &places);
+    assert!(off < 1.2e-3, "{off:e} p0");
+}
+
+/// The contact ends 0.02 C before its bodies do. With panels for a contact that reaches their ends
+/// the half-width where it narrows was off, and stresses near its edge by five tolerances.
+#[test]
+fn a_contact_that_all_but_reaches_an_end_narrows_as_closely_as_asked() {
+    let roller = Material { young_pa: 210e9, poisson: 0.4444 };
+    let block = Material { young_pa: 280.58e9, poisson: 0.34155 };
+    let factors = Factors { load: 9.3995e-5, slenderness: 3.5542, length_ratio: 1.0 };
+    let places = [[0.7, -3.2044, 0.0], [0.4, -3.3, 0.05], [0.9, -2.9, 0.1]];
+    let off = off_under_crown([roller, block], factors, [0.81324, 0.36174, -0.1036], &places);
+    assert!(off < 1e-3, "{off:e} p0");
+}
+
 /// The contact ends near both singular ends of its bodies: with the resolution of those, and where
 /// it was found to end alternated, the search did not come to an end.
 #[test]
