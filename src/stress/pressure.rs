@@ -33,7 +33,7 @@ pub struct LineLoad {
 /// Change of the phase of the pressure's transform over half a panel, per node, that a polynomial
 /// through the nodes still follows; and the least wavenumber that is faded out, in lengths of the
 /// panel.
-const PHASE: f64 = 0.2;
+const PHASE: f64 = 0.25;
 const SHORTEST: f64 = 20.0;
 
 /// A change of the half-width (C) over a panel that has no effect.
