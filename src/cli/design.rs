@@ -74,6 +74,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             "note: {name} lies at one of its bounds; wider ones, where they are legal, may do better"
         ));
     }
+    for load in &found.loads {
+        for warning in load.summary.warnings() {
+            say(&format!("warning: under {} N: {warning}", load.case.load.force_n));
+        }
+    }
     if arguments.json {
         print_json(&summary(&design, &settings, &found))?;
     } else {

@@ -1,6 +1,6 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
-use super::output::{Exit, print, print_json, wrote};
+use super::output::{Exit, print, print_json, say, wrote};
 use super::progress::Progress;
 use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
 use crate::base::Result;
@@ -55,7 +55,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     say_if_too_fine(&case);
     let counts = places(arguments)?;
     let _lock = Lock::claim(&arguments.out)?;
-    let solved = SolvedCase::new(&case, &Options::new(arguments.method))?;
+    let options = Options { curves: Vec::new(), ..Options::new(arguments.method) };
+    let solved = SolvedCase::new(&case, &options)?;
     // Half-spaces are judged under the same force, where it is the approach that is given.
     let case = solved.case();
     let passages =
@@ -82,10 +83,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     progress.finish();
     let own = passages(arguments.method, bodies.to_vec());
     let hertz = case.hertz();
-    let found = summary(case, &hertz, &own, half_space.as_ref());
+    let warnings = solved.solution().summary.warnings();
+    let found = summary(case, &hertz, &own, half_space.as_ref(), warnings);
     let mut files = contents(case, &hertz, &own, half_space.as_ref());
     files.push(("summary.json".into(), pretty(&found).into_bytes()));
     replace_set(&arguments.out, &files)?;
+    for warning in &found.warnings {
+        say(&format!("warning: {warning}"));
+    }
     if arguments.json {
         print_json(&found)?;
     } else {
@@ -108,7 +113,7 @@ fn places(arguments: &Arguments) -> Result<[usize; 2]> {
 
 /// The short summary for a reader.
 fn text(found: &Summary) -> String {
-    let Summary { case, method, c_m, p0_pa, friction, critical } = found;
+    let Summary { case, method, c_m, p0_pa, friction, critical, warnings: _ } = found;
     let mut lines = vec![format!(
         "{case} by {method}, friction {friction}: C {} mm, p0 {} MPa",
         significant(c_m * 1e3, 5),

@@ -80,6 +80,7 @@ pub fn summary(design: &Design, settings: &Settings, found: &Optimum) -> Json {
             "eccentricity_m": load.case.load.eccentricity_m,
             "tilt_rad": load.case.pose.tilt_rad,
             "objective_pa": value_pa(load, design.objective),
+            "warnings": load.summary.warnings(),
         })).collect::<Vec<_>>(),
     })
 }

@@ -103,6 +103,8 @@ pub struct Summary {
     pub friction: f64,
     /// The largest value of each measure in each body, outside 0.1 C of the overlap's edges.
     pub critical: Vec<CriticalPlace>,
+    /// What to beware of in the contact, as a solution of it says.
+    pub warnings: Vec<String>,
 }
 
 /// The largest value of a measure.
@@ -143,6 +145,7 @@ pub fn summary(
     hertz: &HertzScales,
     own: &Passages,
     half_space: Option<&Passages>,
+    warnings: Vec<String>,
 ) -> Summary {
     let Sliding { friction } = case.sliding;
     let mut critical = Vec::new();
@@ -157,6 +160,7 @@ pub fn summary(
         p0_pa: hertz.p0_pa,
         friction,
         critical,
+        warnings,
     }
 }
 

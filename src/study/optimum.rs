@@ -86,7 +86,7 @@ pub struct Optimum {
     /// What each load makes of the best profile.
     pub loads: Vec<LoadResult>,
     /// What each load makes of the case's own profile: its objective (Pa), none where it could not
-    /// be solved.
+    /// be solved, or did not settle.
     pub before: Vec<Option<f64>>,
     /// Number of contacts solved.
     pub solves: usize,
@@ -143,7 +143,7 @@ pub fn seek(
     let objective_pa = |load: &LoadResult| load.peaks[own].value * load.hertz.p0_pa;
     let before = count.into_par_iter().map(|load| {
         let found = design.before(load).and_then(|case| desk.load(&case)).ok()?;
-        Some(objective_pa(&found))
+        found.summary.converged.then(|| objective_pa(&found))
     });
     let confirmed_pa = loads.iter().map(objective_pa).fold(0.0, f64::max);
     let before = before.collect();
