@@ -383,7 +383,7 @@ fn off_under_crown(
 }
 
 /// The half-width changes by a third within panels of 24 C. Short waves, whose transforms turn
-/// farther over a panel than its polynomial follows, made errors of 2.5 tolerances in shears beside it.
+/// farther over a panel than its polynomial follows, made errors of 2.5 tolerances in shears.
 #[test]
 fn shears_beside_a_long_crowned_contact_keep_the_tolerance() {
     let roller = Material { young_pa: 210e9, poisson: 0.0926 };
