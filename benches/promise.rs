@@ -94,7 +94,7 @@ fn real_scene(index: usize) -> Scene {
     let mut case = Case::from_factors("scene", 0.01, roller, block, factors);
     let half = 0.5 * case.roller.length_m;
     let drop = log(u[6], 0.1, 5.0) * case.gap_unit_m();
-    let arc = |curved: f64| Some((curved * curved + drop * drop) / (2.0 * drop));
+    let arc = |curved: f64| Some(ProfileSpec::arc_radius_m(curved, drop));
     let spec = |kind| ProfileSpec::new(kind);
     case.roller.profile = match (4.0 * u[7]) as usize {
         0 => None,

@@ -20,8 +20,6 @@ pub(crate) struct Secants {
     slope: f64,
     /// Its limits.
     slopes: [f64; 2],
-    /// Whether it falls wherever it is near to its zero.
-    falls: bool,
     /// The argument and the value before.
     last: Option<[f64; 2]>,
     /// The last arguments with a value below zero, and above.
@@ -32,23 +30,23 @@ pub(crate) struct Secants {
 impl Secants {
     /// A search that begins with a slope of 1.
     pub fn new() -> Self {
-        Self::with_slope(1.0, [f64::NEG_INFINITY, f64::INFINITY], false)
+        Self::with_slope(1.0, [f64::NEG_INFINITY, f64::INFINITY])
     }
 
     /// A search for the zero of a function that falls, at least as fast as its argument grows, but
     /// may be flat far from its zero.
     pub fn falling() -> Self {
-        Self::with_slope(FALLING, FALLS, true)
+        Self::with_slope(FALLING, FALLS)
     }
 
-    fn with_slope(slope: f64, slopes: [f64; 2], falls: bool) -> Self {
-        Self { slope, slopes, falls, last: None, below: None, above: None }
+    fn with_slope(slope: f64, slopes: [f64; 2]) -> Self {
+        Self { slope, slopes, last: None, below: None, above: None }
     }
 
     /// A search for the zero of a function that is nearly this one: the slope is known, but no
     /// value.
     pub fn of_another(&self) -> Self {
-        Self::with_slope(self.slope, self.slopes, self.falls)
+        Self::with_slope(self.slope, self.slopes)
     }
 
     /// Distance of two arguments with values of different signs; infinite as long as one is
@@ -67,7 +65,8 @@ impl Secants {
         let mut longest = f64::INFINITY;
         if let Some([before, was]) = self.last.replace([at, value]) {
             longest = LONGEST_STEP * (at - before).abs();
-            if self.falls && value * was > 0.0 && (value - was) / (at - before) > FLAT {
+            let falls = self.slopes[1] < 0.0;
+            if falls && value * was > 0.0 && (value - was) / (at - before) > FLAT {
                 return self.inside(at + STRIDE * (at - before));
             }
             let slope = if value == was { 1.0 } else { (value - was) / (at - before) };

@@ -3,7 +3,7 @@
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::model::Case;
-use super::profile::ProfileKind;
+use super::profile::{ProfileKind, ProfileSpec};
 use crate::base::number::stated;
 use crate::base::{BodyKind, Error, Result};
 
@@ -201,7 +201,7 @@ impl FactorKey {
                 match spec.kind {
                     ProfileKind::Crown | ProfileKind::Relief => {
                         let arc_m = half_m - 0.5 * spec.straight_m.unwrap_or(0.0);
-                        spec.radius_m = Some((arc_m * arc_m + drop_m * drop_m) / (2.0 * drop_m));
+                        spec.radius_m = Some(ProfileSpec::arc_radius_m(arc_m, drop_m));
                     }
                     ProfileKind::Logarithmic => {
                         let drop = -(-spec.k.unwrap_or(f64::NAN)).ln_1p();

@@ -119,6 +119,11 @@ impl ProfileSpec {
     pub const NUMBERS: [&'static str; 8] =
         ["radius_m", "amplitude_m", "k", "design_force_n", "k1", "k2", "zm_m", "straight_m"];
 
+    /// The radius of an arc that drops by `drop_m` over `arc_m` from where it begins (m).
+    pub fn arc_radius_m(arc_m: f64, drop_m: f64) -> f64 {
+        (arc_m * arc_m + drop_m * drop_m) / (2.0 * drop_m)
+    }
+
     /// A profile of this kind, without numbers yet.
     pub fn new(kind: ProfileKind) -> Self {
         Self {

@@ -33,9 +33,8 @@ pub(super) fn read_profile_table(path: &Path) -> Result<Table> {
         Some((_, header)) if columns(header) == HEADER => {}
         found => {
             let line = found.map_or(1, |(line, _)| line);
-            if let Some(marks) = found.and_then(|(_, header)| host::other_separators(header)) {
-                let message = format!("has {marks} between its columns");
-                return Err(refuse(line, message, "write commas, and points in numbers"));
+            if let Some(message) = found.and_then(|(_, header)| host::other_separators(header)) {
+                return Err(refuse(line, message, host::WRITE_COMMAS));
             }
             let message = format!("the first line is not the header {HEADER}");
             return Err(refuse(line, message, "name the columns, in metres"));

@@ -6,7 +6,7 @@ use super::keys::{KEYS, Key};
 use super::sweep::{Column, Rows, Sweep, without_effect};
 use super::sweep_table::Table;
 use crate::base::{Error, Result};
-use crate::host::{other_separators, read_text};
+use crate::host::{WRITE_COMMAS, other_separators, read_text};
 use std::path::Path;
 
 /// Columns that give both bodies the same value.
@@ -55,11 +55,8 @@ impl Sweep {
             remedy,
         };
         let names = table.header.clone();
-        if let Some(marks) =
-            names.first().filter(|_| names.len() == 1).and_then(|name| other_separators(name))
-        {
-            let message = format!("has {marks} between its columns");
-            return Err(in_header((message, "write commas, and points in numbers".into())));
+        if let Some(message) = other_separators(&names.join(",")) {
+            return Err(in_header((message, WRITE_COMMAS.into())));
         }
         let columns = names
             .iter()

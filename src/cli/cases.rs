@@ -35,19 +35,18 @@ fn files() -> impl Iterator<Item = (&'static str, &'static str)> {
 fn file(name: &str) -> Result<String> {
     match files().find(|(known, _)| *known == name) {
         Some((_, text)) => Ok(text.to_string()),
-        None => {
-            find_case(Path::new(name)).map(|case| case.to_toml()).map_err(
-                |error| match did_you_mean(name, &BUILTIN_STUDIES.map(|(name, _)| name)) {
-                    meant if meant.is_empty() => error,
-                    meant => Error::Value {
-                        key: "NAME".to_string(),
-                        value: name.to_string(),
-                        reason: "nothing of this name is built in".to_string(),
-                        remedy: format!("{meant}`edgeline cases` lists all"),
-                    },
-                },
-            )
-        }
+        None => find_case(Path::new(name)).map(|case| case.to_toml()).map_err(|error| {
+            let meant = did_you_mean(name, &BUILTIN_STUDIES.map(|(study, _)| study));
+            if meant.is_empty() {
+                return error;
+            }
+            Error::Value {
+                key: "NAME".to_string(),
+                value: name.to_string(),
+                reason: "nothing of this name is built in".to_string(),
+                remedy: format!("{meant}`edgeline cases` lists all"),
+            }
+        }),
     }
 }
 

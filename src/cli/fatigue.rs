@@ -1,8 +1,8 @@
 //! `edgeline fatigue`: what the material goes through as the contact passes it.
 
-use super::output::{Exit, print, print_json, say, wrote};
+use super::output::{Exit, print, print_json, warn, wrote};
 use super::progress::Progress;
-use super::values::{checked_tolerance, count, edge_model, say_if_too_fine};
+use super::values::{checked_tolerance, count, directions, edge_model, say_if_too_fine};
 use crate::base::Result;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
@@ -53,7 +53,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
         case.accuracy.tolerance = checked_tolerance(tolerance)?;
     }
     say_if_too_fine(&case);
-    let counts = places(arguments)?;
+    let counts: [usize; 2] = directions("--places", &arguments.places, "places have two", "33,31")?;
     let _lock = Lock::claim(&arguments.out)?;
     let options = Options { curves: Vec::new(), ..Options::new(arguments.method) };
     let solved = SolvedCase::new(&case, &options)?;
@@ -88,9 +88,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     let mut files = contents(case, &hertz, &own, half_space.as_ref());
     files.push(("summary.json".into(), pretty(&found).into_bytes()));
     replace_set(&arguments.out, &files)?;
-    for warning in &found.warnings {
-        say(&format!("warning: {warning}"));
-    }
+    warn(&found.warnings);
     if arguments.json {
         print_json(&found)?;
     } else {
@@ -98,17 +96,6 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
         print(&format!("{}{}\n", text(&found), wrote(&names, &arguments.out)))?;
     }
     Ok(Exit::Done)
-}
-
-/// The numbers of places along y and down z.
-fn places(arguments: &Arguments) -> Result<[usize; 2]> {
-    let given = arguments.places.as_slice();
-    given.try_into().map_err(|_| crate::base::Error::Value {
-        key: "--places".into(),
-        value: format!("{given:?}"),
-        reason: "places have two directions".into(),
-        remedy: "give for example 33,31".into(),
-    })
 }
 
 /// The short summary for a reader.

@@ -19,6 +19,11 @@ pub(super) fn say(text: &str) {
     let _ = writeln!(std::io::stderr(), "{text}");
 }
 
+/// Writes what to beware of to standard error.
+pub(super) fn warn(warnings: &[String]) {
+    warnings.iter().for_each(|warning| say(&format!("warning: {warning}")));
+}
+
 /// Prints to standard output. A closed pipe (`edgeline ... | head -1`) is not an error, because the
 /// results are in the files.
 pub(super) fn print(text: &str) -> Result<()> {

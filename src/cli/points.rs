@@ -71,7 +71,7 @@ pub fn parse(text: &str, path: &Path, case: &Case) -> Result<Vec<Point>> {
     if sorted != COLUMNS {
         let names = header.iter().collect::<Vec<_>>().join(",");
         let message = match other_separators(&names) {
-            Some(marks) => format!("has {marks} between its columns, where commas are read"),
+            Some(message) => format!("{message}, where commas are read"),
             None => format!("has the columns {names}"),
         };
         return Err(refuse(header.position().map(line_of), message));

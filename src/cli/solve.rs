@@ -1,11 +1,12 @@
 //! `edgeline solve`: one case by one edge model.
 
-use super::output::{Exit, print, print_json, say, wrote};
+use super::output::{Exit, print, print_json, say, warn, wrote};
 use super::progress::{progress_bar, show};
 use super::provenance::now;
 use super::uncertain_options::UncertainOptions;
 use super::values::{
-    checked_residual, checked_tolerance, count, edge_model, one_of, say_if_too_fine, unsuited,
+    checked_residual, checked_tolerance, count, directions, edge_model, listed, one_of,
+    say_if_too_fine, unsuited,
 };
 use crate::base::number::{duration, significant, stated};
 use crate::base::{Error, Result};
@@ -217,9 +218,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
     more.extend(pictures(case, &found, None, arguments)?);
     more.extend(arguments.uncertain.contents(case, arguments.method, &found.curves)?);
     let names = solution::write(&found, &options, more, &arguments.out)?;
-    for warning in found.summary.warnings() {
-        say(&format!("warning: {warning}"));
-    }
+    warn(&found.summary.warnings());
     tell(case, &found, &names, arguments)
 }
 
@@ -318,11 +317,6 @@ fn pictures<D>(
     page::of_solution(case, &label, found)
 }
 
-/// The values of a list as they are given to an option.
-fn listed<T: ToString>(values: &[T]) -> String {
-    values.iter().map(T::to_string).collect::<Vec<_>>().join(",")
-}
-
 /// Prints what was found, and the `names` of the files.
 fn tell<D: Serialize>(
     case: &Case,
@@ -345,17 +339,7 @@ const FIELD_POINT_BYTES: f64 = 280.0;
 /// The numbers of points of a quarter of a body's field, unless they are too many.
 fn field_counts(arguments: &Arguments) -> Result<[usize; 3]> {
     let counts: [usize; 3] =
-        arguments.field_points.as_slice().try_into().map_err(|_| Error::Value {
-            key: "--field-points".into(),
-            value: arguments
-                .field_points
-                .iter()
-                .map(usize::to_string)
-                .collect::<Vec<_>>()
-                .join(","),
-            reason: "a field has three directions".into(),
-            remedy: "give for example 33,49,41".into(),
-        })?;
+        directions("--field-points", &arguments.field_points, "a field has three", "33,49,41")?;
     let [nx, ny, nz] = counts.map(|n| n as f64);
     // The block may have half as many additional points on its ledge.
     let (roller, block) = (nx * ny * nz, 1.5 * nx * ny * nz);

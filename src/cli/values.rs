@@ -66,6 +66,30 @@ pub(super) fn count(
     }
 }
 
+/// The values of a list as they are given to an option.
+pub(super) fn listed<T: ToString>(values: &[T]) -> String {
+    values.iter().map(T::to_string).collect::<Vec<_>>().join(",")
+}
+
+/// The numbers `given` with an option, one for each direction, of which `what` says how many there
+/// are.
+///
+/// # Errors
+/// [`Error::Value`] that names the option where there are more or fewer.
+pub(super) fn directions<const N: usize>(
+    option: &str,
+    given: &[usize],
+    what: &str,
+    usual: &str,
+) -> Result<[usize; N]> {
+    given.try_into().map_err(|_| Error::Value {
+        key: option.into(),
+        value: listed(given),
+        reason: format!("{what} directions"),
+        remedy: format!("give for example {usual}"),
+    })
+}
+
 /// Legal range of the residual of an iteration: smaller ones are lost in rounding.
 const RESIDUALS: (f64, f64) = (1e-12, 1e-2);
 

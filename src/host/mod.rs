@@ -32,4 +32,4 @@ pub(crate) use {
 
 pub(crate) use inputs::{read_input, remember_input};
 pub(crate) use memory::check_memory;
-pub(crate) use text::{MARK, other_separators};
+pub(crate) use text::{MARK, WRITE_COMMAS, other_separators};

@@ -36,12 +36,15 @@ pub fn read_text(path: &Path, most: u64, remedy: &str) -> Result<String> {
     })
 }
 
-/// What stands between the columns of a CSV table's `header` in place of commas, if anything does.
-pub fn other_separators(header: &str) -> Option<&'static str> {
+/// What is wrong with a CSV table's `header`, if something other than commas is between columns.
+pub fn other_separators(header: &str) -> Option<String> {
     let known = [(';', "semicolons"), ('\t', "tabs")];
     let found = known.into_iter().find(|(mark, _)| !header.contains(',') && header.contains(*mark));
-    found.map(|(_, name)| name)
+    found.map(|(_, name)| format!("has {name} between its columns"))
 }
+
+/// What to do about [`other_separators`].
+pub const WRITE_COMMAS: &str = "write commas, and points in numbers";
 
 /// What is wrong with the text of a CSV table, without the place, which errors have before it.
 #[cfg(feature = "cli")]

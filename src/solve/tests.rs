@@ -1,8 +1,9 @@
 //! A solved case gives the same results in all its ways.
 
 use super::{KeySolution, Options, Point, SolvedCase, solve};
+use crate::base::Material;
 use crate::body::EdgeModel;
-use crate::case::{Case, builtin_case};
+use crate::case::{Case, Factors, builtin_case};
 use crate::stress::{BodyKind, Grid};
 
 #[test]
@@ -107,33 +108,18 @@ fn solved(toml: &str, tolerance: f64) -> SolvedCase {
 
 /// The same by another model.
 fn solved_by(model: EdgeModel, toml: &str, tolerance: f64) -> SolvedCase {
-    let mut case = Case::from_toml(toml).unwrap();
-    case.accuracy.tolerance = tolerance;
+    contact_of(model, &Case::from_toml(toml).unwrap().with_tolerance(tolerance))
+}
+
+fn contact_of(model: EdgeModel, case: &Case) -> SolvedCase {
     let mut options = Options::new(model);
     options.curves.clear();
-    SolvedCase::new(&case, &options).unwrap()
+    SolvedCase::new(case, &options).unwrap()
 }
 
 /// A roller and a block with Fujiwara's profile whose curve is concave towards the ends, where they
 /// press each other the more: as half-spaces, without limit.
-const STEEP: &str = r#"
-name = "steep"
-[roller]
-radius_m = 0.00534025
-length_m = 0.0029844
-young_pa = 2.35e11
-poisson = 0.1856
-profile = { kind = "fujiwara", design_force_n = 18.186, k1 = 1, k2 = 0.3133, zm_m = 1.5394e-07 }
-[block]
-length_m = 0.0029844
-young_pa = 1.03e11
-poisson = 0.2633
-[load]
-force_n = 84.6718
-eccentricity_m = 2.7406e-05
-[pose]
-offset_m = -3.0902e-05
-"#;
+const STEEP: &str = include_str!("../../tests/data/steep.toml");
 
 #[test]
 fn a_contact_coarser_than_its_resolution_says_so() {
@@ -196,29 +182,16 @@ fn steep_ends_are_found_as_closely_as_asked() {
     }
 }
 
-/// A roller that is held tilted. Without elastic bodies it would touch as far as y = -2.3 C alone.
-const TILTED: &str = r#"
-name = "tilted"
-[roller]
-radius_m = 10e-3
-young_pa = 210e9
-poisson = 0.3
-[block]
-young_pa = 210e9
-poisson = 0.3
-[dimensionless]
-W = 3e-4
-S_l = 6
-L_r = 1
-[pose]
-tilt_rad = 5.4e-3
-"#;
-
-/// On 64 x 160 cells the contact reaches both ends, with at most 1.336 p0. The search for its end,
+/// Without elastic bodies the roller would touch as far as y = -2.3 C alone. On 64 x 160 cells the
+/// contact reaches both ends, with at most 1.336 p0. The search for its end,
 /// at which a line far too short tells nothing of how far, stopped at y = -5.35 C, with 5 p0.
 #[test]
 fn a_held_tilt_that_a_first_guess_lifts_off_is_found() {
-    let solved = solved(TILTED, 5e-3);
+    let steel = Material { young_pa: 210e9, poisson: 0.3 };
+    let factors = Factors { load: 3e-4, slenderness: 6.0, length_ratio: 1.0 };
+    let mut case = Case::from_factors("tilted", 10e-3, steel, steel, factors).with_tolerance(5e-3);
+    case.pose.tilt_rad = Some(5.4e-3);
+    let solved = contact_of(EdgeModel::QuarterSpace, &case);
     let summary = &solved.solution().summary;
     assert_eq!(summary.warnings(), Vec::<String>::new());
     let half = 0.5 * solved.case().roller.length_m;

@@ -366,7 +366,7 @@ fn off_under_crown(
     let (c_m, half_m) = (case.hertz().c_m, 0.5 * case.roller.length_m);
     let drop_m = drop * case.gap_unit_m();
     let mut crown = ProfileSpec::new(ProfileKind::Crown);
-    crown.radius_m = Some((half_m * half_m + drop_m * drop_m) / (2.0 * drop_m));
+    crown.radius_m = Some(ProfileSpec::arc_radius_m(half_m, drop_m));
     case.roller.profile = Some(crown);
     case.load.eccentricity_m = Some(eccentricity * c_m);
     case.pose.offset_m = offset * c_m;
@@ -375,11 +375,7 @@ fn off_under_crown(
         let solved = SolvedCase::new(&case, &contact_alone()).unwrap();
         solved.stress(BodyKind::Block, places).unwrap()
     });
-    let components = own
-        .iter()
-        .zip(&limit)
-        .flat_map(|(own, limit)| own.components().into_iter().zip(limit.components()));
-    components.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    own.iter().zip(&limit).map(|(own, limit)| apart(own, limit)).fold(0.0, worse)
 }
 
 /// The half-width changes by a third within panels of 24 C. Short waves, whose transforms turn

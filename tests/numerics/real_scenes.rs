@@ -55,7 +55,7 @@ fn profile(
     force: f64,
     [shape, other]: [f64; 2],
 ) -> ProfileSpec {
-    let arc = |curved: f64| Some((curved * curved + drop * drop) / (2.0 * drop));
+    let arc = |curved: f64| Some(ProfileSpec::arc_radius_m(curved, drop));
     let mut spec = ProfileSpec::new(kind);
     match kind {
         ProfileKind::Crown => spec.radius_m = arc(half),

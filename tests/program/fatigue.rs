@@ -92,30 +92,12 @@ fn cells_refuse_friction() {
     assert_eq!(files(folder.path()), [""; 0]);
 }
 
-/// A roller and a block that only a coarser attempt by half-spaces solves.
-const STEEP: &str = "name = 'steep'
-    [roller]
-    radius_m = 0.00534025
-    length_m = 0.0029844
-    young_pa = 2.35e11
-    poisson = 0.1856
-    profile = { kind = 'fujiwara', design_force_n = 18.186, k1 = 1, k2 = 0.3133, zm_m = 1.5394e-07 }
-    [block]
-    length_m = 0.0029844
-    young_pa = 1.03e11
-    poisson = 0.2633
-    [load]
-    force_n = 84.6718
-    eccentricity_m = 2.7406e-05
-    [pose]
-    offset_m = -3.0902e-05
-";
-
 /// What to beware of in the contact holds for its passages, too.
 #[test]
 fn a_passage_under_a_coarser_contact_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    fs::write(folder.path().join("case.toml"), STEEP).unwrap();
+    let steep = include_str!("../data/steep.toml");
+    fs::write(folder.path().join("case.toml"), steep).unwrap();
     for (model, count) in [("mirror", 0), ("half-space", 1)] {
         let arguments =
             ["fatigue", "case.toml", "--places", "3,2", "--tolerance", "3e-2", "--json"];
