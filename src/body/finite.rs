@@ -15,7 +15,7 @@ use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
 use crate::kernels::wave::{Direction, WaveTable, WwPlaces};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Dyn, Matrix, Storage};
 use std::f64::consts::PI;
 use std::ops::Range;
 use std::sync::Arc;
@@ -68,31 +68,121 @@ pub struct Body {
 pub struct Layer {
     /// Surface displacement f at the contact nodes per contact pressure at the contact nodes.
     pub compliance: DMatrix<f64>,
-    /// P at the surface nodes per contact pressure; none for models without q, where P is the
-    /// contact pressure.
-    pub surface: Option<DMatrix<f64>>,
-    /// q at the face nodes per contact pressure; none if the effect of the end is negligible.
-    pub face: Option<DMatrix<f64>>,
-    /// The same two under a traction along x at the contact nodes instead of the pressure; none
-    /// without such a traction, and without an effect of the end.
-    pub traction: Option<TractionLayer>,
-    /// Condition number of the system solved for `surface`, in the column-sum norm over the
-    /// contact's columns; 1 without a system, infinite if it could not be solved.
+    /// The loads that free the end faces; none if the effect of the end is negligible, and for
+    /// models without q, where P is the contact pressure.
+    pub ends: Option<FreeEnds>,
+    /// Condition number of the system solved for them, in the column-sum norm over what the
+    /// contact's nodes load it with; 1 without a system, infinite if it could not be solved.
     pub condition: f64,
 }
 
-/// The loads of a body at one wavenumber under a traction along x, in the phase in which the stress
-/// across the contact varies: sin(k x) where the traction is cos(k x).
-///
-/// The half-space under the traction S and its images leaves T_sy S on the end faces, compressive
-/// as all here. With P on z = 0 and q on the faces, P + T_yz q = 0 and T_zy P + T_sy S + q = 0: the
-/// system of the pressure under T_yz T_sy S.
+/// The loads that free the end faces of a body at one wavenumber: q on the faces, and P = p - T_yz
+/// q on the surface under the contact pressure p.
 #[derive(Debug, Clone)]
-pub struct TractionLayer {
-    /// P at the surface nodes.
-    pub surface: DMatrix<f64>,
-    /// q at the face nodes.
+pub struct FreeEnds {
+    /// T_yz: compressive stress zz at the surface nodes per q at the face nodes.
+    pub from_face: DMatrix<f64>,
+    /// q at the face nodes per contact pressure.
     pub face: DMatrix<f64>,
+    /// q under a traction along x at the contact nodes in place of the pressure, in the phase in
+    /// which the stress across the contact varies: sin(k x) where the traction is cos(k x). None
+    /// without such a traction. P is - T_yz q.
+    pub under_traction: Option<DMatrix<f64>>,
+}
+
+/// Wavenumber times half-length up to which odd loads bend the body: q moves the surface as 1 / k^2.
+const BENT: f64 = 1.0;
+
+/// The matrices between the surface and the end faces of a body at one wavenumber.
+///
+/// Loads on the surface of the half-space and their images leave the compressive stress b on the
+/// end faces. P and q free the faces of it where P + T_yz q = 0 and T_zy P + q + b = 0. One of both
+/// taken out, these are (I - T_zy T_yz) q = -b or (I - T_yz T_zy) P = T_yz b.
+pub(super) struct Faces {
+    /// T_zy: compressive stress yy at the face nodes per P at the surface nodes.
+    pub to: DMatrix<f64>,
+    /// T_yz: compressive stress zz at the surface nodes per q at the face nodes.
+    pub from: DMatrix<f64>,
+    /// Those of the surface nodes that the faces reach, which are the last ones.
+    near: Range<usize>,
+    /// Whether the body bends. Then only the equations of P stay of the second kind.
+    bends: bool,
+}
+
+impl Faces {
+    /// Those of a `body` at the wavenumber `k`.
+    pub fn new(body: &Body, k: f64) -> Self {
+        let to = body.surface_matrix(k, &body.kernel);
+        let from = body.faces_matrix(k, to.nrows());
+        let n = from.nrows();
+        let first_row = |first: usize, column: &[f64]| leading_zeros(&column[..first]);
+        let to_first = leading_zeros(to.as_slice()) / to.nrows().max(1);
+        let first = from.as_slice().chunks_exact(n).fold(to_first.min(n), first_row);
+        let bends = body.parity == Parity::Odd && k * body.half < BENT;
+        Self { to, from, near: first..n, bends }
+    }
+
+    /// q that frees the faces of the stresses `left` on them, a column for each load, and the
+    /// condition number of its equations; none if they have no solution.
+    pub fn freed(&self, left: &DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+        // Short waves of distant nodes leave nothing.
+        let is_loaded = |j: &usize| left.column(*j).iter().any(|b| *b != 0.0);
+        let loaded: Vec<usize> = (0..left.ncols()).filter(is_loaded).collect();
+        let b = left.select_columns(&loaded);
+        // Nodes by number are fewer on the faces than along the contact of most real rollers.
+        let (of_loaded, condition) = if self.bends {
+            let (p, condition) = solved(difference(&self.from, &self.to), &self.from * &b)?;
+            (-(b + &self.to * p), condition)
+        } else {
+            let to = self.to.columns_range(self.near.clone());
+            solved(difference(&to, &self.from.rows_range(self.near.clone())), -b)?
+        };
+        let mut q = DMatrix::zeros(left.nrows(), left.ncols());
+        loaded.iter().zip(of_loaded.column_iter()).for_each(|(j, own)| q.set_column(*j, &own));
+        Some((q, condition))
+    }
+
+    /// Adds to `sum`, per load, what P = - T_yz q moves under the loads `q` on the faces:
+    /// `of_surface` is what P at the surface nodes moves.
+    pub fn add_under(&self, of_surface: &DMatrix<f64>, q: &DMatrix<f64>, sum: &mut DMatrix<f64>) {
+        let near = of_surface.columns_range(self.near.clone());
+        // For short waves these are the last nodes alone.
+        let rows = near
+            .column_iter()
+            .fold(near.nrows(), |first, column| leading_zeros(&column.as_slice()[..first]));
+        let columns = leading_zeros(q.as_slice()) / q.nrows().max(1);
+        let per_load = near.rows_range(rows..) * self.from.rows_range(self.near.clone());
+        let mut own = sum.view_range_mut(rows.., columns..);
+        own.gemm(-1.0, &per_load, &q.columns_range(columns..), 1.0);
+    }
+}
+
+/// Number of entries before the first that is not zero.
+fn leading_zeros(entries: &[f64]) -> usize {
+    entries.iter().take_while(|entry| **entry == 0.0).count()
+}
+
+/// I - `left` `right`.
+fn difference<A: Storage<f64, Dyn, Dyn>, B: Storage<f64, Dyn, Dyn>>(
+    left: &Matrix<f64, Dyn, Dyn, A>,
+    right: &Matrix<f64, Dyn, Dyn, B>,
+) -> DMatrix<f64> {
+    let mut difference = DMatrix::identity(left.nrows(), left.nrows());
+    difference.gemm(-1.0, left, right, 1.0);
+    difference
+}
+
+/// The solution of a `system` of equations for some `right` sides, and its condition number in the
+/// column-sum norm over these.
+fn solved(system: DMatrix<f64>, right: DMatrix<f64>) -> Option<(DMatrix<f64>, f64)> {
+    let sums = |matrix: &DMatrix<f64>| -> Vec<f64> {
+        matrix.column_iter().map(|column| column.lp_norm(1)).collect()
+    };
+    let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
+    let (norm, before) = (sums(&system).into_iter().fold(0.0, largest), sums(&right));
+    let solution = linear::solve(system, right)?;
+    let grown = sums(&solution).into_iter().zip(before).map(|(after, before)| after / before);
+    Some((solution, norm * grown.fold(0.0, largest)))
 }
 
 /// The length and the material of a body.
@@ -396,47 +486,29 @@ impl Body {
 
     /// The body at wavenumber `k` > 0.
     pub fn layer(&self, k: f64) -> Layer {
-        let n = self.surface.axis.len();
         let displacement = self.displacement(k);
+        let mut compliance = displacement.columns_range(self.contact()).into_owned();
         // An end face beyond the reach of this wavenumber carries no load.
         if !self.end.freed || self.ledge > self.reach(k) {
-            let compliance = displacement.columns_range(self.contact()).into_owned();
-            return Layer { compliance, surface: None, face: None, traction: None, condition: 1.0 };
+            return Layer { compliance, ends: None, condition: 1.0 };
         }
-        let to_face = self.surface_matrix(k, &self.kernel);
-        let from_face = self.faces_matrix(k, to_face.nrows());
-        let system = DMatrix::identity(n, n) - &from_face * &to_face;
-        let norm = column_sum(&system);
-        let (start, columns) = (self.contact.start, self.contact.len());
-        // The traction's effect on the faces, and the loads that it is like.
-        let dragged = self.along.as_ref().map(|along| {
-            let own = self.surface_matrix(k, along).columns_range(self.contact()).into_owned();
-            (&from_face * &own, own)
-        });
-        let more = if dragged.is_some() { columns } else { 0 };
-        let loads = || {
-            DMatrix::from_fn(n, columns + more, |i, j| match &dragged {
-                Some((loads, _)) if j >= columns => loads[(i, j - columns)],
-                _ => f64::from(u8::from(i == start + j)),
-            })
-        };
-        let (mut surface, solved) = match linear::solve(system, loads()) {
-            Some(surface) => (surface, true),
-            None => (loads(), false),
-        };
-        let traction = dragged.map(|(_, own)| {
-            let surface = surface.columns_range(columns..).into_owned();
-            TractionLayer { face: -(&to_face * &surface + own), surface }
-        });
-        surface.resize_horizontally_mut(columns, 0.0);
-        let condition = if solved { norm * column_sum(&surface) } else { f64::INFINITY };
-        Layer {
-            compliance: displacement * &surface,
-            face: Some(-(to_face * &surface)),
-            surface: Some(surface),
-            traction,
-            condition,
+        let faces = Faces::new(self, k);
+        let columns = self.contact.len();
+        let mut left = faces.to.columns_range(self.contact()).into_owned();
+        if let Some(along) = &self.along {
+            let own = self.surface_matrix(k, along);
+            left.resize_horizontally_mut(2 * columns, 0.0);
+            left.columns_range_mut(columns..).copy_from(&own.columns_range(self.contact()));
         }
+        let Some((mut face, condition)) = faces.freed(&left) else {
+            return Layer { compliance, ends: None, condition: f64::INFINITY };
+        };
+        let under_traction =
+            self.along.is_some().then(|| face.columns_range(columns..).into_owned());
+        face.resize_horizontally_mut(columns, 0.0);
+        faces.add_under(&displacement, &face, &mut compliance);
+        let ends = FreeEnds { from_face: faces.from, face, under_traction };
+        Layer { compliance, ends: Some(ends), condition }
     }
 
     /// Displacement f at the contact nodes per P.
@@ -581,11 +653,6 @@ impl Body {
     }
 }
 
-/// The largest column sum of magnitudes.
-fn column_sum(matrix: &DMatrix<f64>) -> f64 {
-    matrix.column_iter().map(|c| c.iter().map(|v| v.abs()).sum()).fold(0.0, f64::max)
-}
-
 /// Rows over the nodes of sources, filled one after the other.
 pub(super) struct Rows<'a> {
     sources: &'a Sources,
@@ -615,5 +682,42 @@ impl<'a> Rows<'a> {
         let mut nodes = DMatrix::from_vec(self.columns, rows, self.nodes);
         self.sources.scatter(&self.charges, &mut nodes);
         nodes.transpose()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::body::EdgeModel;
+
+    /// The loads that free the faces are the same whether P or q is taken out of their equations,
+    /// and short waves are those of all nodes.
+    #[test]
+    fn either_unknown_may_be_taken_out() {
+        let resolution = Resolution::for_tolerance(1e-2);
+        let (shape, line) = (Shape { half: 9.0, nu: 0.3 }, resolution.contact_axis(8.9));
+        let end = EdgeModel::QuarterSpace.end(shape.nu, None);
+        for parity in Parity::BOTH {
+            let bends = parity == Parity::Odd;
+            let part = Part { parity, bends, slides: false };
+            let body = Body::new(&line, shape, end, part, &resolution);
+            let n = body.surface.axis.len();
+            for (k, is_near) in [(0.05, false), (0.15, false), (0.4, false), (5.0, true)] {
+                let own = Faces::new(&body, k);
+                assert_eq!(own.near.start > 0, is_near, "{parity:?} {k}: {:?}", own.near);
+                let left = own.to.columns_range(body.contact()).into_owned();
+                let (q, _) = own.freed(&left).unwrap();
+                let other = Faces { near: 0..n, bends: !own.bends, ..Faces::new(&body, k) };
+                let (by_other, _) = other.freed(&left).unwrap();
+                let off = (&q - by_other).amax() / q.amax();
+                assert!(off < 1e-9, "{parity:?} {k}: {off:e}");
+                // What P moves, from the last nodes alone and from all.
+                let displacement = body.displacement(k);
+                let mut sum = DMatrix::zeros(displacement.nrows(), q.ncols());
+                own.add_under(&displacement, &q, &mut sum);
+                let off = (&sum + &displacement * (&own.from * &q)).amax();
+                assert!(off < 1e-12 * (1.0 + sum.amax()), "{parity:?} {k}: {off:e}");
+            }
+        }
     }
 }

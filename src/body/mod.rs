@@ -23,7 +23,7 @@ pub use axes::Resolution;
 pub use contact_line::Generatrix;
 pub use corner::corner_exponent;
 pub use end::End;
-pub use finite::{Body, Layer, Shape, TractionLayer};
+pub use finite::{Body, FreeEnds, Layer, Shape};
 pub use fold::Fold;
 pub use guilbault::{GAMMA, guilbault_psi, transition};
 pub use model::EdgeModel;

@@ -2,9 +2,9 @@
 //!
 //! See [`super::skin`].
 
-use super::finite::{Body, Rows};
+use super::finite::{Body, Faces, Rows};
 use super::stencil::Stencil;
-use crate::base::{Panels, Parity, linear};
+use crate::base::{Panels, Parity};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::wave::{Places, WAVES, Wanted, WaveTable};
 use nalgebra::DMatrix;
@@ -75,8 +75,7 @@ struct Wave {
 struct FreeWave {
     /// q at the face nodes per contact pressure.
     q: DMatrix<f64>,
-    /// Normal stress on the faces per P, and on the surface per q.
-    faces: [DMatrix<f64>; 2],
+    faces: Faces,
     /// Displacement at the contact nodes per P.
     displacement: DMatrix<f64>,
 }
@@ -226,12 +225,9 @@ impl<'a> OnSurface<'a> {
 impl FreeWave {
     /// That of a `body` at the wavenumber `k`, with P at the surface nodes per contact pressure.
     fn new(body: &Body, k: f64) -> (DMatrix<f64>, Self) {
-        let to_face = body.surface_matrix(k, &body.kernel);
-        let from_face = body.faces_matrix(k, to_face.nrows());
-        let faces = [to_face, from_face];
-        let own = solved(&faces, pressed(body));
-        let q = -(&faces[0] * &own);
-        (own, Self { q, faces, displacement: body.displacement(k) })
+        let faces = Faces::new(body, k);
+        let [more, q] = freed(&faces, &faces.to.columns_range(body.contact()).into_owned());
+        (pressed(body) + more, Self { q, faces, displacement: body.displacement(k) })
     }
 
     /// P and q that free the end faces of the loads `along` and `apart`.
@@ -242,13 +238,10 @@ impl FreeWave {
         tables: &[Arc<WaveTable>; 2],
         [along, apart]: [&DMatrix<f64>; 2],
     ) -> [DMatrix<f64>; 2] {
-        let [to_face, from_face] = &self.faces;
         // sin(k x) is a quarter of a wave behind: stresses across the contact are - cos(k x).
-        let own =
+        let left =
             body.surface_matrix(k, &tables[1]) * apart - body.surface_matrix(k, &tables[0]) * along;
-        let surface = solved(&self.faces, from_face * &own);
-        let face = -(to_face * &surface + own);
-        [surface, face]
+        freed(&self.faces, &left)
     }
 }
 
@@ -259,12 +252,11 @@ fn pressed(body: &Body) -> DMatrix<f64> {
     DMatrix::from_fn(body.surface.axis.len(), contact.len(), at)
 }
 
-/// P under the `loads` on the surface of a body with these matrices of its faces.
-fn solved([to_face, from_face]: &[DMatrix<f64>; 2], loads: DMatrix<f64>) -> DMatrix<f64> {
-    let n = from_face.nrows();
-    let (rows, columns) = loads.shape();
-    let system = DMatrix::identity(n, n) - from_face * to_face;
-    linear::solve(system, loads).unwrap_or_else(|| DMatrix::zeros(rows, columns))
+/// P and q that free these `faces` of the stresses `left` on them; zero if nothing does.
+fn freed(faces: &Faces, left: &DMatrix<f64>) -> [DMatrix<f64>; 2] {
+    let q =
+        faces.freed(left).map_or_else(|| DMatrix::zeros(left.nrows(), left.ncols()), |(q, _)| q);
+    [-(&faces.from * &q), q]
 }
 
 /// Sums of (k / 2) e^(-k |u|) over the surface's loads at the offsets u of `stencils`, one for each

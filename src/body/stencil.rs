@@ -3,7 +3,8 @@
 use crate::base::{Panels, crowded_legendre, gauss_legendre};
 use crate::kernels::wave::WAVES;
 use multiversion::multiversion;
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::DMatrix;
+use std::ops::Range;
 
 /// A copy of the axis: the point s of the axis acts at `sign` s + `shift` with the factor `weight`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +40,7 @@ pub struct Sources {
 /// A run of panels; the first cluster is the whole axis.
 #[derive(Debug, Clone)]
 struct Cluster {
-    panels: std::ops::Range<usize>,
+    panels: Range<usize>,
     ends: [f64; 2],
     /// The two halves; none for a single panel.
     halves: Option<[usize; 2]>,
@@ -111,20 +112,54 @@ impl Sources {
 
     /// Charges of functions from their `values` at the axis's nodes, one function per row in both.
     pub fn charges(&self, values: &DMatrix<f64>) -> DMatrix<f64> {
-        values * &self.charges
+        let mut charges = DMatrix::zeros(values.nrows(), self.charge_count());
+        let own = charges.as_mut_slice().chunks_exact_mut(values.nrows().max(1));
+        for (charge, own) in own.enumerate() {
+            let (nodes, shares) = self.shares(charge);
+            add_all(shares, &values.as_slice()[nodes.start * own.len()..], own);
+        }
+        charges
     }
 
     /// Adds columns over the charges, one after the other, to columns over the axis's first nodes.
-    ///
-    /// Columns and no rows: nalgebra's product of a few strided rows writes beyond its matrices.
+    /// A target knows few of the charges.
     pub fn scatter(&self, charges: &[f64], nodes: &mut DMatrix<f64>) {
-        let charges = DMatrixView::from_slice(charges, self.charge_count(), nodes.ncols());
-        nodes.gemm(1.0, &self.charges.rows(0, nodes.nrows()), &charges, 1.0);
+        let first = nodes.nrows();
+        let columns = charges.chunks_exact(self.charge_count());
+        for (charges, column) in columns.zip(nodes.as_mut_slice().chunks_exact_mut(first)) {
+            scatter(self, charges, column);
+        }
+    }
+
+    /// The nodes of the axis in the cluster of a `charge`, and the charge per value at each.
+    fn shares(&self, charge: usize) -> (Range<usize>, &[f64]) {
+        let (order, column) = (self.axis.order(), charge * self.axis.len());
+        let Range { start, end } = self.clusters[charge / order].panels;
+        let (start, end) = (start * order, end * order);
+        (start..end, &self.charges.as_slice()[column + start..column + end])
     }
 
     /// Number of charges.
     pub fn charge_count(&self) -> usize {
         self.places.len()
+    }
+}
+
+/// Adds the `charges` of one target to the values of the first nodes.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn scatter(sources: &Sources, charges: &[f64], nodes: &mut [f64]) {
+    for (charge, value) in charges.iter().enumerate().filter(|(_, value)| **value != 0.0) {
+        let (own, shares) = sources.shares(charge);
+        let own = nodes.iter_mut().skip(own.start);
+        own.zip(shares).for_each(|(sum, share)| *sum += value * share);
+    }
+}
+
+/// Adds functions, each with a factor, to `sum`.
+#[multiversion(targets("x86_64+avx512f+avx512dq+avx512vl+avx2+fma", "x86_64+avx2+fma"))]
+fn add_all(factors: &[f64], functions: &[f64], sum: &mut [f64]) {
+    for (factor, function) in factors.iter().zip(functions.chunks_exact(sum.len())) {
+        sum.iter_mut().zip(function).for_each(|(sum, value)| *sum += factor * value);
     }
 }
 

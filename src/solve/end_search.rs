@@ -20,12 +20,14 @@ pub(super) struct EndSearch {
     /// 1 at the end of larger y, else -1.
     outward: f64,
     secants: Secants,
+    /// How far the last line may have been from the end that is sought (C).
+    off: f64,
 }
 
 impl EndSearch {
     /// A search for the end in the direction `outward` along y.
     pub fn new(outward: f64) -> Self {
-        Self { outward, secants: Secants::falling() }
+        Self { outward, secants: Secants::falling(), off: 0.0 }
     }
 
     /// The end to try after a line up to `tried`, on which the contact had this `end`.
@@ -37,7 +39,16 @@ impl EndSearch {
         } else {
             self.secants.next(tried, beyond)
         };
+        let step = (next - tried).abs();
+        // Lines that are all too short take cautious steps: the nodes tell a longer way.
+        let told = if self.secants.width().is_finite() { 0.0 } else { beyond.abs() };
+        self.off = step.max(told);
         self.outward * (next / STEP).round() * STEP
+    }
+
+    /// How far the last line that was tried may be from the contact's end (C).
+    pub fn off(&self) -> f64 {
+        self.off
     }
 }
 
@@ -60,6 +71,25 @@ mod tests {
                 found
             })
             .expect("an end")
+    }
+
+    /// Beside an end that nodes tell from a line that is too short the first step is half of what
+    /// they tell, and its length is not what the line is short; between lines on both sides of the
+    /// end it is.
+    #[test]
+    fn a_first_step_is_not_taken_for_the_error() {
+        let told = |at: f64, beyond: f64| ContactEnd { at, beyond, rise: 4.5 };
+        for outward in [1.0, -1.0] {
+            let mut search = EndSearch::new(outward);
+            let next = search.next(outward * 39.9366, told(outward * 39.9366, outward * 0.0359));
+            assert!((outward * next - 39.9366).abs() < 0.02 && search.off() >= 0.0359);
+            // From a line that is too long, and the next one that is too short.
+            let mut search = EndSearch::new(outward);
+            let next = search.next(outward * 40.0, told(outward * 39.98, 0.0));
+            assert!((search.off() - 0.018).abs() < 1e-5);
+            let after = search.next(next, told(next, outward * 4e-4));
+            assert!((search.off() - (after - next).abs()).abs() < 1e-5);
+        }
     }
 
     /// Nodes tell the end of a contact at 5 C within 0.002 C on lines that are longer. On shorter

@@ -183,7 +183,7 @@ impl SolvedScene {
             let accuracy = Accuracy { tolerance: SEARCH, soundness: f64::INFINITY };
             let search = Trial { scene, resolution: &coarse, powers: false, accuracy, gap: &gap };
             let found = search.settled(line, known)?;
-            (line, known) = (found.line.longer(scene), found.known);
+            (line, known) = (found.next.longer(scene), found.known);
         }
         let of_tolerance = || scene.resolution(scene.tolerance, known.slices.as_ref());
         let resolution = given.copied().unwrap_or_else(of_tolerance);

@@ -37,9 +37,15 @@ const CLOSEST: f64 = 0.1;
 const ELLIPTICAL: f64 = 2.4;
 const BY_NODES: f64 = 0.05;
 
+/// An end that is moved changes the pressure at `RIM` (C) inside it at most by the part `SHARE` of
+/// the tolerance. At the distance s from the end of an elliptical contact of half-length l the
+/// pressure is p0 sqrt(2 s / l), and changes by p0 / sqrt(2 s l) per length.
+const SHARE: f64 = 0.7;
+const RIM: f64 = 0.03;
+
 /// How much longer (C) a line up to ends that were found at low cost is made: on one that is too
 /// long the nodes tell the end better than on one that is too short.
-const LONGER: f64 = 4e-3;
+const LONGER: f64 = 1.5e-3;
 
 /// Tolerance of a contact whose tilt is sought, in those of others.
 const FOLLOWS: f64 = 0.1;
@@ -123,6 +129,8 @@ pub(super) fn part_of<T>(parts: &[T], kind: BodyKind) -> &T {
 /// A contact whose ends are found.
 pub(super) struct Settled {
     pub line: Line,
+    /// The line that would be tried next.
+    pub next: Line,
     pub parts: Parts,
     pub contact: ContactSolution,
     pub known: Known,
@@ -177,10 +185,14 @@ impl Trial<'_> {
             let contact = self.contact(&parts, &line, &mut known)?;
             let errors = contact.ends.map(|end| self.end_error(&line, end));
             let next = self.next(&line, &contact, errors, &mut searches);
-            let stays = |side: usize| (next.ends[side] - line.ends[side]).abs() <= errors[side];
+            let stays = |side: usize| {
+                // What reaches the end of the bodies, and stays there, is where it was.
+                let moved = next.ends[side] != line.ends[side];
+                !moved || searches[side].off() <= errors[side]
+            };
             let is_settled = next.open == line.open && stays(0) && stays(1);
             if is_settled || trial == MOST_TRIALS {
-                return Ok(Settled { line, parts, contact, known, is_settled, setup });
+                return Ok(Settled { line, next, parts, contact, known, is_settled, setup });
             }
             line = next;
         }
@@ -190,8 +202,9 @@ impl Trial<'_> {
     /// How closely an end is found (C).
     fn end_error(&self, line: &Line, end: ContactEnd) -> f64 {
         let part = END_ERROR * (self.accuracy.tolerance / Resolution::COARSE).clamp(CLOSEST, 1.0);
-        let steep = part * line.half().min(ELLIPTICAL * end.rise);
-        steep.max(BY_NODES * self.resolution.corner)
+        let half = line.half().min(ELLIPTICAL * end.rise);
+        let of_pressure = SHARE * self.accuracy.tolerance * (2.0 * RIM * half).sqrt();
+        (part * half).min(of_pressure).max(BY_NODES * self.resolution.corner)
     }
 
     /// The line to try after this one, whose ends the contact told within these `errors`.

@@ -74,7 +74,7 @@ pub(super) struct TractionLoads {
     /// The traction itself, on the surface.
     pub own: Vec<LoadBlock>,
     /// The pressures that free the end faces of its normal stress, see
-    /// [`crate::body::TractionLayer`].
+    /// [`crate::body::FreeEnds`].
     pub freeing: Vec<LoadBlock>,
     /// Transform of these on the end faces, for the plate.
     pub plate: Vec<Vec<f64>>,
@@ -166,7 +166,7 @@ impl PartLoads {
     ) -> Self {
         // The layers with loads on their end faces come first, and so do the wavenumbers between
         // them.
-        let ends = shares.iter().take_while(|(first, _)| layers[*first].face.is_some()).count();
+        let ends = shares.iter().take_while(|(first, _)| layers[*first].ends.is_some()).count();
         let transforms = |face: &DMatrix<f64>| {
             let waves = k.iter().zip(face.column_iter()).take(ends);
             waves.map(|(k, q)| body.plate_transform(*k, q.as_slice())).collect::<Vec<_>>()
@@ -236,11 +236,10 @@ fn nodal_loads<S: AsRef<[f64]>>(
     let mut surface = DMatrix::zeros(body.surface.axis.len(), shares.len());
     let mut face = DMatrix::zeros(body.face.axis.len(), shares.len());
     for (at, layer) in layers.iter().enumerate() {
-        let (on_surface, on_face) = match (under, &layer.traction) {
-            (Under::Pressure, _) => (layer.surface.as_ref(), layer.face.as_ref()),
-            (Under::Traction, Some(own)) => (Some(&own.surface), Some(&own.face)),
-            (Under::Traction, None) => continue,
-        };
+        let on_face = layer.ends.as_ref().and_then(|ends| match under {
+            Under::Pressure => Some(&ends.face),
+            Under::Traction => ends.under_traction.as_ref(),
+        });
         // The wavenumbers interpolated from a layer are consecutive.
         let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
         let start = shares.partition_point(|s| end(s) <= at);
@@ -249,16 +248,14 @@ fn nodal_loads<S: AsRef<[f64]>>(
             let (first, shares) = &shares[start + i];
             shares.as_ref()[at - first] * contact[(start + i, node)]
         });
-        // For short waves the deep nodes of an end face carry no load.
-        let add = |into: &mut DMatrix<f64>, matrix: &DMatrix<f64>| {
-            into.view_range_mut(..matrix.nrows(), waves.clone()).gemm(1.0, matrix, &p, 1.0);
-        };
-        match on_surface {
-            Some(matrix) => add(&mut surface, matrix),
-            None => surface.view_range_mut(body.contact(), waves.clone()).add_assign(&p),
+        if under == Under::Pressure {
+            surface.view_range_mut(body.contact(), waves.clone()).add_assign(&p);
         }
-        if let Some(matrix) = on_face {
-            add(&mut face, matrix);
+        if let (Some(ends), Some(on_face)) = (&layer.ends, on_face) {
+            let q = on_face * p;
+            surface.columns_range_mut(waves.clone()).gemm(-1.0, &ends.from_face, &q, 1.0);
+            // For short waves the deep nodes of an end face carry no load.
+            face.view_range_mut(..q.nrows(), waves).add_assign(&q);
         }
     }
     (surface, face)
@@ -458,9 +455,9 @@ mod tests {
         assert_eq!(ends == k.len(), everywhere);
         for i in ends..k.len() {
             let (first, shares) = numbers.interpolation(i);
-            assert!(layers[first..first + shares.len()].iter().all(|layer| layer.face.is_none()));
+            assert!(layers[first..first + shares.len()].iter().all(|layer| layer.ends.is_none()));
         }
-        assert!(layers[layers.len() - 1].face.is_none());
+        assert!(layers[layers.len() - 1].ends.is_none());
         let mut scratch = Vec::new();
         for (y, z) in [(body.half - 0.1, 0.3), (4.9, 0.0), (body.half, 0.2)] {
             let influences = |waves: &Waves| {

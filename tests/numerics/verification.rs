@@ -285,11 +285,14 @@ fn compliance_is_reciprocal() {
 #[test]
 fn equations_of_the_end_faces_are_well_conditioned() {
     let usual = Resolution::for_tolerance(1e-3);
-    let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
+    let of_part = |part: Part, lengths: [f64; 2], nu: f64, resolution: &Resolution, k: f64| {
+        let [slenderness, half] = lengths;
         let (line, shape) = (resolution.contact_axis(slenderness), Shape { half, nu });
-        Body::new(&line, shape, EdgeModel::QuarterSpace.end(nu, None), Part::EVEN, resolution)
-            .layer(k)
-            .condition
+        let end = EdgeModel::QuarterSpace.end(nu, None);
+        Body::new(&line, shape, end, part, resolution).layer(k).condition
+    };
+    let at = |slenderness: f64, half: f64, nu: f64, resolution: &Resolution, k: f64| {
+        of_part(Part::EVEN, [slenderness, half], nu, resolution, k)
     };
     let say = |what: &str, values: Vec<f64>| {
         println!(
@@ -303,6 +306,9 @@ fn equations_of_the_end_faces_are_well_conditioned() {
     let wavenumbers = [1e-4, 1e-3, 1e-2, 0.1, 0.3, 1.0, 10.0, 100.0];
     say("k", wavenumbers.map(|k| at(5.0, 5.0, 0.3, &usual, k)).to_vec());
     say("k, longer", wavenumbers.map(|k| at(5.0, 10.0, 0.3, &usual, k)).to_vec());
+    let odd = Part { parity: Parity::Odd, bends: true, slides: false };
+    let of_odd = |k: f64| of_part(odd, [5.0; 2], 0.3, &usual, k / 5.0);
+    say("k half, odd", [0.01, 0.1, 0.5, 0.99, 1.01, 2.0, 10.0].map(of_odd).to_vec());
     say("nu", [0.0, 0.1, 0.3, 0.45, 0.499].map(|nu| at(5.0, 5.0, nu, &usual, 0.1)).to_vec());
     let graded = |corner: f64| Resolution { corner, ..usual };
     let corners = [0.1, 0.03, 0.01, 3e-3, 1e-3, 1e-4];
