@@ -24,7 +24,7 @@ mutants=(
     "src/kernels/hertz.rs @@ let zz = -lift * m * m_sum / modulus; @@ let zz = -lift * m * n_sum / modulus; @@ --test numerics -- line_contact"
     "src/kernels/plate.rs @@ along + (1.0 - near) * up @@ along + (1.0 + near) * up @@ --lib kernels::plate"
     "src/kernels/strip.rs @@ (potential(2 * m) - potential(2 * m + 2)) @@ (potential(2 * m) + potential(2 * m + 2)) @@ --lib kernels::strip"
-    "src/body/finite.rs @@ identity(n, n) - &from_face * &to_face @@ identity(n, n) + &from_face * &to_face @@ $solver"
+    "src/body/finite.rs @@ difference.gemm(-1.0, left, right, 1.0); @@ difference.gemm(1.0, left, right, 1.0); @@ $solver"
     "src/body/finite.rs @@ .map(|i| Image { weight: 2.0 * i.weight, ..*i }) @@ .map(|i| Image { weight: i.weight, ..*i }) @@ $solver"
     "src/contact/solver.rs @@ => (problem.load / load, 0.0), @@ => (0.8 * problem.load / load, 0.0), @@ $solver"
     "src/contact/solver.rs @@ 2.0 * singular / slopes[j] @@ -2.0 * singular / slopes[j] @@ $solver"
