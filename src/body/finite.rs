@@ -90,7 +90,8 @@ pub struct FreeEnds {
     pub under_traction: Option<DMatrix<f64>>,
 }
 
-/// Wavenumber times half-length up to which odd loads bend the body: q moves the surface as 1 / k^2.
+/// Wavenumber times half-length up to which odd loads bend the body: q moves the surface as
+/// 1 / k^2.
 const BENT: f64 = 1.0;
 
 /// The matrices between the surface and the end faces of a body at one wavenumber.
