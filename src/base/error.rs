@@ -177,3 +177,9 @@ fn gib(size: f64) -> String {
 
 /// The library's result.
 pub type Result<T> = std::result::Result<T, Error>;
+
+/// The larger one of two measures of what is refused beyond a limit; infinite if the second one is
+/// not a number, which must not pass as small.
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}

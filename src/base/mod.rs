@@ -18,6 +18,7 @@ mod tensor;
 mod wavenumbers;
 
 pub use bodies::{BodyKind, PerBody, ledge};
+pub(crate) use error::worse;
 pub use error::{Error, Result};
 pub use material::Material;
 pub use panels::{Corner, Growth, Panels};

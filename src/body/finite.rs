@@ -10,7 +10,7 @@ use super::axes::{Edge, PLATE_FADES, Resolution};
 use super::end::End;
 use super::part::Part;
 use super::stencil::{Image, PIECE_NODES, Peak, Sources, Stencil};
-use crate::base::{Corner, Growth, Panels, Parity, StressTensor, ledge, linear};
+use crate::base::{Corner, Growth, Panels, Parity, StressTensor, ledge, linear, worse};
 use crate::kernels::bessel::k0;
 use crate::kernels::bessel_table::k0_of_all;
 use crate::kernels::plate;
@@ -130,7 +130,7 @@ impl Faces {
         let is_loaded = |j: &usize| left.column(*j).iter().any(|b| *b != 0.0);
         let loaded: Vec<usize> = (0..left.ncols()).filter(is_loaded).collect();
         let b = left.select_columns(&loaded);
-        // Nodes by number are fewer on the faces than along the contact of most real rollers.
+        // The faces have fewer nodes than the contact lines of most real rollers.
         let (of_loaded, condition) = if self.bends {
             let (p, condition) = solved(difference(&self.from, &self.to), &self.from * &b)?;
             (-(b + &self.to * p), condition)
@@ -179,11 +179,10 @@ fn solved(system: DMatrix<f64>, right: DMatrix<f64>) -> Option<(DMatrix<f64>, f6
     let sums = |matrix: &DMatrix<f64>| -> Vec<f64> {
         matrix.column_iter().map(|column| column.lp_norm(1)).collect()
     };
-    let largest = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
-    let (norm, before) = (sums(&system).into_iter().fold(0.0, largest), sums(&right));
+    let (norm, before) = (sums(&system).into_iter().fold(0.0, worse), sums(&right));
     let solution = linear::solve(system, right)?;
     let grown = sums(&solution).into_iter().zip(before).map(|(after, before)| after / before);
-    Some((solution, norm * grown.fold(0.0, largest)))
+    Some((solution, norm * grown.fold(0.0, worse)))
 }
 
 /// The length and the material of a body.

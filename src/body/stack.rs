@@ -6,7 +6,7 @@ use super::finite::{Body, Layer, Shape};
 use super::fold::Fold;
 use super::long_waves::LongWaves;
 use super::part::Part;
-use crate::base::{Panels, Parity};
+use crate::base::{Panels, Parity, worse};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 
@@ -140,7 +140,6 @@ impl Stack {
     /// The largest condition number of the layers' equations.
     pub fn condition(&self) -> f64 {
         let layers = self.parts.iter().flat_map(|(_, layers)| layers);
-        let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
         layers.map(|layer| layer.condition).fold(1.0, worse)
     }
 }

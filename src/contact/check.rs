@@ -3,7 +3,7 @@
 use super::operator::{LineOperator, Operator};
 use super::problem::Problem;
 use super::solution::ContactSolution;
-use crate::base::{Error, Result};
+use crate::base::{Error, Result, worse};
 use crate::kernels::strip;
 
 /// Positions of the check across the contact, in half-widths of each node; none is a collocation
@@ -52,8 +52,6 @@ pub(super) fn check(
         (0.0, tolerance, "the largest tensile traction between the bodies (p0)"),
         (0.0, tolerance.max(LOST), "the deepest penetration where no pressure is (C^2 / 2 R)"),
     ];
-    // NaN must not pass as small.
-    let worse = |a: f64, b: f64| if b.is_nan() { f64::INFINITY } else { a.max(b) };
     let nodes = problem.axis.nodes().iter().enumerate();
     let counted: Vec<usize> = nodes
         .filter(|(j, y)| *j == 0 && !problem.both_ends || !near_end(problem, solution, **y))

@@ -185,11 +185,7 @@ impl Trial<'_> {
             let contact = self.contact(&parts, &line, &mut known)?;
             let errors = contact.ends.map(|end| self.end_error(&line, end));
             let next = self.next(&line, &contact, errors, &mut searches);
-            let stays = |side: usize| {
-                // What reaches the end of the bodies, and stays there, is where it was.
-                let moved = next.ends[side] != line.ends[side];
-                !moved || searches[side].off() <= errors[side]
-            };
+            let stays = |side: usize| searches[side].off() <= errors[side];
             let is_settled = next.open == line.open && stays(0) && stays(1);
             if is_settled || trial == MOST_TRIALS {
                 return Ok(Settled { line, next, parts, contact, known, is_settled, setup });

@@ -237,9 +237,12 @@ fn nodal_loads<S: AsRef<[f64]>>(
     let mut face = DMatrix::zeros(body.face.axis.len(), shares.len());
     for (at, layer) in layers.iter().enumerate() {
         let on_face = layer.ends.as_ref().and_then(|ends| match under {
-            Under::Pressure => Some(&ends.face),
-            Under::Traction => ends.under_traction.as_ref(),
+            Under::Pressure => Some((&ends.face, &ends.from_face)),
+            Under::Traction => Some((ends.under_traction.as_ref()?, &ends.from_face)),
         });
+        if on_face.is_none() && under == Under::Traction {
+            continue;
+        }
         // The wavenumbers interpolated from a layer are consecutive.
         let end = |(first, shares): &(usize, S)| first + shares.as_ref().len();
         let start = shares.partition_point(|s| end(s) <= at);
@@ -251,9 +254,9 @@ fn nodal_loads<S: AsRef<[f64]>>(
         if under == Under::Pressure {
             surface.view_range_mut(body.contact(), waves.clone()).add_assign(&p);
         }
-        if let (Some(ends), Some(on_face)) = (&layer.ends, on_face) {
+        if let Some((on_face, from_face)) = on_face {
             let q = on_face * p;
-            surface.columns_range_mut(waves.clone()).gemm(-1.0, &ends.from_face, &q, 1.0);
+            surface.columns_range_mut(waves.clone()).gemm(-1.0, from_face, &q, 1.0);
             // For short waves the deep nodes of an end face carry no load.
             face.view_range_mut(..q.nrows(), waves).add_assign(&q);
         }

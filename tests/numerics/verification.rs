@@ -280,7 +280,7 @@ fn compliance_is_reciprocal() {
     }
 }
 
-/// Rounding costs a few hundred units of 1e-16 at most, for any grading, length, ledge, wavenumber
+/// Rounding costs a thousand units of 1e-16 at most, for any grading, length, ledge, wavenumber
 /// and Poisson's ratio.
 #[test]
 fn equations_of_the_end_faces_are_well_conditioned() {
