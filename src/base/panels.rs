@@ -314,7 +314,7 @@ impl Panels {
 
     /// The panels that stand for `x`, with their shares: its own, and at a break, but for rounding,
     /// both alike. What an integral over the axis tends to there is the mean of both, too.
-    fn panels_at(&self, x: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
+    pub fn panels_at(&self, x: f64) -> impl Iterator<Item = (usize, f64)> + use<> {
         let panel = self.panel_of(x);
         let rounding = self.rounding();
         let [starts, ends] = self.panel(panel).map(|end| (x - end).abs() <= rounding);

@@ -27,28 +27,30 @@ pub fn stress_along(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f
     [h - 2.0 * e, -h, f + g]
 }
 
+/// Harmonic functions of the modes' pressure with the transform P(k): the integrals over k / pi of
+/// P e^(-k z) sin(k x) / k, P e^(-k z) sin(k x) and P e^(-k z) cos(k x), at (`x`, `z` >= 0).
+///
+/// The last two are the real part of F / pi, see [`stress`], and minus its imaginary part; the
+/// first is the integral of the last along x. With w = zeta - sqrt(zeta^2 - 1), dzeta is
+/// (1 - w^-2) / 2 dw.
+pub fn potentials(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
+    let [re, im, ..] = potential(half_width, coefficients, x, z);
+    let (wr, wi) = inverse_sum(half_width, x, z).1;
+    let (size, angle) = (wr.hypot(wi), wi.atan2(wr));
+    let mut along = 0.0;
+    for (m, c) in coefficients.iter().enumerate() {
+        let n = 2.0 * m as f64;
+        let power = |n: f64| size.powf(n) * (n * angle).sin() / n;
+        let below = if m == 0 { angle + FRAC_PI_2 } else { power(n) };
+        along += 0.5 * c * (below - power(n + 2.0));
+    }
+    [half_width * along, re, -im]
+}
+
 /// Real and imaginary part of F / pi and of z F' / pi, see [`stress`].
 fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] {
-    let (t, d) = (x / half_width, z / half_width);
-    // The root of zeta^2 - 1 with a positive imaginary part in the upper half plane, and a real one
-    // of the sign of t. Its smaller part follows from the larger one: as a difference it would
-    // vanish far away and next to the surface.
-    let modulus = (t - 1.0).hypot(d) * (t + 1.0).hypot(d);
-    let a = (t - 1.0) * (t + 1.0) - d * d;
-    let (re, im) = if modulus == 0.0 {
-        (0.0, 0.0)
-    } else if a >= 0.0 {
-        let re = (0.5 * (modulus + a)).sqrt().copysign(t);
-        (re, t * d / re)
-    } else {
-        let im = (0.5 * (modulus - a)).sqrt();
-        (t * d / im, im)
-    };
-    // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1, as the inverse of the sum: for z >= 0
-    // its imaginary part is <= 0.
-    let (sum_re, sum_im) = (t + re, d + im);
-    let norm = sum_re * sum_re + sum_im * sum_im;
-    let (wr, wi) = (sum_re / norm, -sum_im / norm);
+    let d = z / half_width;
+    let ((re, im), (wr, wi)) = inverse_sum(half_width, x, z);
     // Powers w^(2m+1); dw/dzeta = -w / sqrt(zeta^2 - 1).
     let (sqr, sqi) = (wr * wr - wi * wi, 2.0 * wr * wi);
     let (mut pr, mut pi) = (wr, wi);
@@ -69,6 +71,31 @@ fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] 
         (0.0, 0.0)
     };
     [fr, fi, hr, hi]
+}
+
+/// The root of zeta^2 - 1 and w = zeta - sqrt(zeta^2 - 1), see [`stress`]: real and imaginary
+/// parts.
+fn inverse_sum(half_width: f64, x: f64, z: f64) -> ((f64, f64), (f64, f64)) {
+    let (t, d) = (x / half_width, z / half_width);
+    // The root of zeta^2 - 1 with a positive imaginary part in the upper half plane, and a real one
+    // of the sign of t. Its smaller part follows from the larger one: as a difference it would
+    // vanish far away and next to the surface.
+    let modulus = (t - 1.0).hypot(d) * (t + 1.0).hypot(d);
+    let a = (t - 1.0) * (t + 1.0) - d * d;
+    let (re, im) = if modulus == 0.0 {
+        (0.0, 0.0)
+    } else if a >= 0.0 {
+        let re = (0.5 * (modulus + a)).sqrt().copysign(t);
+        (re, t * d / re)
+    } else {
+        let im = (0.5 * (modulus - a)).sqrt();
+        (t * d / im, im)
+    };
+    // w = zeta - sqrt(zeta^2 - 1), the branch with |w| <= 1, as the inverse of the sum: for z >= 0
+    // its imaginary part is <= 0.
+    let (sum_re, sum_im) = (t + re, d + im);
+    let norm = sum_re * sum_re + sum_im * sum_im;
+    ((re, im), (sum_re / norm, -sum_im / norm))
 }
 
 /// Plane-strain stresses xx, zz, xz at (`x`, `z` >= 0) of the unit pressure on |x'| <= `half_width`
@@ -223,6 +250,31 @@ mod tests {
         assert!((on_surface[0] + p).abs() < 1e-12 && (on_surface[1] + p).abs() < 1e-12);
         assert!(stress(a, &MODES, 2.0, 0.0).iter().all(|s| s.abs() < 1e-12));
         assert!(stress(a, &MODES, a, 0.0).iter().all(|s| s.is_finite()));
+    }
+
+    #[test]
+    fn potentials_are_integrals_over_line_loads() {
+        let a = 1.3;
+        for (x, z) in [(0.4, 0.0), (-0.7, 0.0), (2.0, 0.0), (0.7, 0.5), (-2.5, 0.8), (0.0, 1.0)] {
+            let got = potentials(a, &MODES, x, z);
+            // Of a line load at s, over pi: the angle from below it, and its conjugate functions.
+            let load = |i: usize| {
+                integrate(a, &MODES, |s| {
+                    let (d, r2) = (x - s, (x - s).powi(2) + z * z);
+                    [d.atan2(z), d / r2, z / r2][i] / PI
+                })
+            };
+            if z == 0.0 {
+                // The angle jumps at the load.
+                let want = cumulative(a, &MODES, x) - cumulative(a, &MODES, 0.0);
+                assert!((got[0] - want).abs() < 1e-12, "{x}: {} {want}", got[0]);
+                assert!((got[2] - pressure(a, &MODES, x)).abs() < 1e-12);
+                continue;
+            }
+            for (i, got) in got.into_iter().enumerate() {
+                assert!((got - load(i)).abs() < 1e-9, "{i} at {x} {z}: {got} {}", load(i));
+            }
+        }
     }
 
     #[test]

@@ -11,6 +11,7 @@ use super::flat::FlatStress;
 use super::load::{Load, Traction};
 use super::round::{ContactEnds, LocalContact, RoundStress, STEP, add_skins, rounded};
 use super::skin::SkinField;
+use super::slow_change::SlowChange;
 use super::target::{KeptPlates, Loaded, ON_FACE, Target, add_wave};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
@@ -37,6 +38,9 @@ const INTERPOLATION_POWER: f64 = 1.25;
 /// What may be neglected of a stress's sum over the wavenumbers, in tolerances. Amplitudes that
 /// fall like a power of k leave about k times the last one.
 const NEGLIGIBLE: f64 = 0.08;
+
+/// Nodes for the long waves of a load's change along the line.
+const LONG_NODES: usize = 8;
 
 /// Points closer to the loaded surface than this (C) count as on it.
 const ON_SURFACE: f64 = 1e-9;
@@ -68,6 +72,8 @@ pub struct Field<'a> {
     contact: Option<ContactEnds>,
     /// The plate's kernels of the waves of `central`.
     plates: KeptPlates,
+    /// The long waves, for what is taken from a slow change.
+    long: Panels,
 }
 
 /// Whether a flat stress under a pressure that is even in x has a slope along x.
@@ -116,6 +122,7 @@ impl<'a> Field<'a> {
             counters,
             contact: None,
             plates,
+            long: Panels::new(wavenumbers.coarse().breaks()[..2].to_vec(), LONG_NODES),
         }
     }
 
@@ -168,13 +175,14 @@ impl<'a> Field<'a> {
         self.counters.work()
     }
 
-    /// What targets need to know.
-    fn loaded(&self) -> Loaded<'_> {
+    /// What a target needs to know.
+    fn loaded<'b>(&'b self, slow_change: &'b SlowChange) -> Loaded<'b> {
         Loaded {
             stack: self.stack,
             pressure: self.pressure,
             slides: self.traction.is_some(),
             gamma: self.gamma,
+            slow_change,
             plates: &self.plates,
         }
     }
@@ -247,8 +255,12 @@ impl<'a> Field<'a> {
     /// [`Field::at`] by sums of waves, wherever the points are.
     pub(crate) fn by_waves(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
         let z = if z < ON_SURFACE { 0.0 } else { z };
-        let remainders = self.remainders(y, z, xs);
-        xs.iter().zip(remainders).map(|(x, rest)| self.complete(*x, y, z, rest)).collect()
+        let change = self.slow_change(y);
+        let remainders = self.remainders(&change, y, z, xs).into_iter();
+        xs.iter()
+            .zip(remainders)
+            .map(|(x, rest)| self.complete(&change, [*x, y, z], rest))
+            .collect()
     }
 
     /// [`Field::at`], with the contribution of a round surface per C / R.
@@ -298,13 +310,14 @@ impl<'a> Field<'a> {
         let Some(axis) = self.sampling(below, poles) else {
             return zs.iter().map(|&z| self.at(y, z, xs)).collect();
         };
-        let at_node = |t: &f64| self.remainders(y, scale * t.sinh(), xs);
+        let change = self.slow_change(y);
+        let at_node = |t: &f64| self.remainders(&change, y, scale * t.sinh(), xs);
         let nodes: Vec<Vec<FlatStress>> = axis.nodes().iter().map(at_node).collect();
         let smooth = |z: f64| {
             let weights: Vec<(usize, f64)> = axis.interpolation(place(z)).collect();
             let at = |(i, &x): (usize, &f64)| {
                 let own = weights.iter().map(|(node, weight)| (&nodes[*node][i], *weight));
-                self.complete(x, y, z, self.weighted(own))
+                self.complete(&change, [x, y, z], self.weighted(own))
             };
             xs.iter().enumerate().map(at).collect()
         };
@@ -381,14 +394,18 @@ impl<'a> Field<'a> {
         let inner = ys.iter().filter(|y| far(**y)).map(|y| place(*y));
         let poles = |[from, to]: [f64; 2]| vec![(0.5 * (from + to), PI)];
         let nodes = self.sampling(inner, poles).map(|axis| {
-            let at_node = |t: &f64| self.remainders(line.y(off_middle(*t)), 0.0, &[x])[0];
+            let at_node = |t: &f64| {
+                let y = line.y(off_middle(*t));
+                self.remainders(&self.slow_change(y), y, 0.0, &[x])[0]
+            };
             let values: Vec<FlatStress> = axis.nodes().iter().map(at_node).collect();
             (axis, values)
         });
         ys.iter()
             .map(|&y| match &nodes {
                 Some((axis, values)) if far(y) => {
-                    self.complete(x, y, 0.0, self.interpolated(axis, values, place(y)))
+                    let rest = self.interpolated(axis, values, place(y));
+                    self.complete(&self.slow_change(y), [x, y, 0.0], rest)
                 }
                 _ => self.at(y, 0.0, &[x])[0],
             })
@@ -464,10 +481,16 @@ impl<'a> Field<'a> {
         half - (y - self.stack.middle).abs() < ON_FACE * half
     }
 
-    /// The stress of the endless contact with the local pressure plus `remainder`.
-    fn complete(&self, x: f64, y: f64, z: f64, remainder: FlatStress) -> FlatStress {
+    /// The stress of the endless contact with the local pressure, and of its `slow_change`, plus
+    /// `remainder`.
+    fn complete(
+        &self,
+        slow_change: &SlowChange,
+        [x, y, z]: [f64; 3],
+        remainder: FlatStress,
+    ) -> FlatStress {
         let FlatStress { pressure, traction } = remainder;
-        let pressure = self.complete_pressure(x, y, z, pressure);
+        let pressure = self.complete_pressure(slow_change, [x, y, z], pressure);
         let along = |own| self.complete_traction(own, x, y, z, traction);
         FlatStress { pressure, traction: self.traction.map_or(traction, along) }
     }
@@ -490,13 +513,26 @@ impl<'a> Field<'a> {
     }
 
     /// [`Field::complete`] under the pressure.
-    fn complete_pressure(&self, x: f64, y: f64, z: f64, remainder: StressTensor) -> StressTensor {
+    fn complete_pressure(
+        &self,
+        slow_change: &SlowChange,
+        [x, y, z]: [f64; 3],
+        remainder: StressTensor,
+    ) -> StressTensor {
         let mut s = self.with_plane(remainder, self.pressure.endless(y, x, z));
+        let [xy, yz] = slow_change.stress(self.stack.body().nu, x, z, &self.long);
+        s.xy += xy;
+        s.yz += yz;
         if z == 0.0 {
             s.zz = -self.pressure.at(x, y);
             (s.xz, s.yz) = (0.0, 0.0);
         }
         self.free_face(y, s)
+    }
+
+    /// [`Load::slow_change`] at `y`.
+    fn slow_change(&self, y: f64) -> SlowChange {
+        self.pressure.slow_change(y, self.wavenumbers.coarse().end())
     }
 
     /// The stress `s` and the plane strain of an endless contact with these xx, zz and xz.
@@ -517,8 +553,8 @@ impl<'a> Field<'a> {
     }
 
     /// Stresses at (x, `y`, `z`) for each x of `xs`, less those of an endless contact of the
-    /// pressure at `y`.
-    fn remainders(&self, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
+    /// pressure at `y`, and of its `slow_change` there.
+    fn remainders(&self, slow_change: &SlowChange, y: f64, z: f64, xs: &[f64]) -> Vec<FlatStress> {
         if xs.is_empty() {
             return Vec::new();
         }
@@ -533,7 +569,7 @@ impl<'a> Field<'a> {
         } else {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
         };
-        let mut target = Target::new(&self.loaded(), &waves, y, z);
+        let mut target = Target::new(&self.loaded(slow_change), &waves, y, z);
         let mut sums = vec![[[0.0; 6]; 2]; xs.len()];
         let mut fading = 0;
         let odd = self.pressure.parity_across() == Parity::Odd;

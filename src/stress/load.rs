@@ -1,6 +1,7 @@
 //! What a stress field needs to know of the pressure on its body.
 
 use super::round::LocalContact;
+use super::slow_change::SlowChange;
 use crate::base::{Panels, Parity, Wavenumbers};
 use nalgebra::DMatrix;
 use std::fmt::Debug;
@@ -47,6 +48,12 @@ pub trait Load: Debug + Sync {
 
     /// Stresses xx, zz and xz at (`x`, `z`) under an endless contact with the pressure at `y`.
     fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3];
+
+    /// How the load changes slowly along the line at `y`, as far as waves up to `k_max` leave it to
+    /// a closed form.
+    fn slow_change(&self, _y: f64, _k_max: f64) -> SlowChange {
+        SlowChange::default()
+    }
 
     /// The integral of [`Load::endless`] over the line.
     fn endless_of_all(&self, x: f64, z: f64) -> [f64; 3] {

@@ -2,6 +2,7 @@
 
 use super::load::{Load, Traction};
 use super::round::LocalContact;
+use super::slow_change::SlowChange;
 use crate::base::Panels;
 use crate::kernels::strip;
 use nalgebra::DMatrix;
@@ -15,6 +16,8 @@ pub struct Pressure {
     symmetric: bool,
     half_widths: Vec<f64>,
     coefficients: Vec<Vec<f64>>,
+    /// The [`fading`] wavenumbers (1 / C).
+    fading: Vec<f64>,
 }
 
 /// The load per length at a place.
@@ -33,11 +36,19 @@ pub struct LineLoad {
 /// Change of the phase of the pressure's transform over half a panel, per node, that a polynomial
 /// through the nodes still follows; and the least wavenumber that is faded out, in lengths of the
 /// panel.
-const PHASE: f64 = 0.25;
+const PHASE: f64 = 0.2;
 const SHORTEST: f64 = 20.0;
 
 /// A change of the half-width (C) over a panel that has no effect.
 const LEVEL: f64 = 1e-9;
+
+/// The length (C) over which changes along the line are taken.
+const CHANGE: f64 = 2e-5;
+
+/// Slopes of the half-width up to which a load changes slowly along the line, and from which on it
+/// does not.
+const SLOW: f64 = 0.15;
+const FAST: f64 = 0.25;
 
 /// The wavenumber at each node from which the pressure's transform is faded out.
 ///
@@ -81,7 +92,8 @@ impl Pressure {
     ) -> Self {
         let most = coefficients.iter().map(Vec::len).max().unwrap_or(0);
         coefficients.iter_mut().for_each(|c| c.resize(most, 0.0));
-        Self { axis, symmetric, half_widths, coefficients }
+        let fading = fading(&axis, &half_widths);
+        Self { axis, symmetric, half_widths, coefficients, fading }
     }
 
     /// The same pressure in units of length and of pressure that are 1 / `factor` of the present
@@ -89,12 +101,12 @@ impl Pressure {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let scale = |values: &Vec<f64>| values.iter().map(|v| factor * v).collect();
-        Self {
-            axis: self.axis.scaled(factor),
-            symmetric: self.symmetric,
-            half_widths: scale(&self.half_widths),
-            coefficients: self.coefficients.iter().map(scale).collect(),
-        }
+        Self::new(
+            self.axis.scaled(factor),
+            self.symmetric,
+            scale(&self.half_widths),
+            self.coefficients.iter().map(scale).collect(),
+        )
     }
 
     /// Axis along the contact.
@@ -200,17 +212,49 @@ impl Load for Pressure {
     }
 
     fn transforms(&self, k: &[f64]) -> DMatrix<f64> {
-        let fading = fading(&self.axis, &self.half_widths);
         let mut modes = vec![0.0; self.coefficients[0].len()];
         DMatrix::from_fn(self.axis.len(), k.len(), |j, i| {
             strip::transforms(self.half_widths[j], k[i], &mut modes);
             let sum: f64 = modes.iter().zip(&self.coefficients[j]).map(|(t, c)| t * c).sum();
-            sum / (1.0 + (k[i] / fading[j]).powi(4))
+            sum / (1.0 + (k[i] / self.fading[j]).powi(4))
         })
     }
 
     fn endless(&self, y: f64, x: f64, z: f64) -> [f64; 3] {
         self.plane(y, |a, c| strip::stress(a, c, x, z))
+    }
+
+    fn slow_change(&self, y: f64, k_max: f64) -> SlowChange {
+        let place = self.on_axis(y);
+        let order = self.axis.order();
+        let mut change = SlowChange::default();
+        for (panel, share) in self.axis.panels_at(place) {
+            let own = &self.fading[panel * order..(panel + 1) * order];
+            let least = own.iter().copied().fold(f64::INFINITY, f64::min);
+            let faded = (k_max / least).log2().clamp(0.0, 1.0);
+            if faded == 0.0 || self.axis.corner_of(panel).is_some() {
+                continue;
+            }
+            // At a break the polynomials of both sides differ, and their difference is no slope.
+            let [from, to] = self.axis.panel(panel);
+            let middle = place.min(to - CHANGE).max(from + CHANGE);
+            let middle = if self.symmetric { middle.copysign(y) } else { middle };
+            let sides = [middle + 0.5 * CHANGE, middle - 0.5 * CHANGE];
+            let [Some((after, more)), Some((before, less))] = sides.map(|y| self.in_contact(y))
+            else {
+                continue;
+            };
+            let slow = (FAST - ((after - before) / CHANGE).abs()) / (FAST - SLOW);
+            let factor = share * faded * slow.clamp(0.0, 1.0) / CHANGE;
+            if factor > 0.0 {
+                change.contacts.extend([(factor, after, more), (-factor, before, less)]);
+                for (y, factor) in sides.into_iter().zip([factor, -factor]) {
+                    let nodes = self.neighbours(y).into_iter();
+                    change.nodes.extend(nodes.map(|(j, weight)| (j, factor * weight)));
+                }
+            }
+        }
+        change
     }
 }
 
@@ -223,6 +267,7 @@ impl Traction for Pressure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn stresses_on_the_surface_are_those_of_the_local_pressure() {
@@ -243,5 +288,38 @@ mod tests {
             }
         }
         assert_eq!(pressure.endless(6.1, 0.0, 0.5), [0.0; 3]);
+    }
+
+    /// Changes along the line are slopes, at breaks the mean of those of both panels, which do not
+    /// meet there; what hardly changes, or changes much, has no closed form.
+    #[test]
+    fn changes_along_the_line_are_slopes() {
+        let axis = Panels::new(vec![0.0, 3.0, 6.0], 5);
+        let of_slopes = |slopes: [f64; 2]| {
+            let panel = |y: f64| usize::from(y >= 3.0);
+            let half_width =
+                |y: &f64| 1.6 + 1e-5 * panel(*y) as f64 - slopes[panel(*y)] * (y - 3.0);
+            let half_widths: Vec<f64> = axis.nodes().iter().map(half_width).collect();
+            let coefficients = half_widths.iter().map(|a| vec![*a]).collect();
+            Pressure::new(axis.clone(), true, half_widths, coefficients)
+        };
+        let k_max = 1e3;
+        let pressure = of_slopes([0.1, 0.05]);
+        for (y, slope) in [(0.7, 0.1), (3.0, 0.075), (-3.0, 0.075), (4.1, 0.05), (-5.9999, 0.05)] {
+            let change = pressure.slow_change(y, k_max);
+            // The load is pi a^2 / 2, and at x = 0 the pressure is a.
+            let a = 1.6 - slope * (f64::abs(y) - 3.0);
+            let (load, [_, _, cosine]) = (change.load(), change.potentials(0.0, 0.0));
+            assert!((load + PI * a * slope * y.signum()).abs() < 1e-4, "{y}: {load}");
+            assert!((cosine + slope * y.signum()).abs() < 1e-6, "{y}: {cosine}");
+            let node = |(j, weight): &(usize, f64)| weight * pressure.half_widths[*j];
+            let sum: f64 = change.nodes.iter().map(node).sum();
+            assert!((sum + slope * y.signum()).abs() < 1e-6, "{y}: {sum}");
+            assert!(pressure.slow_change(y, 1.0).contacts.is_empty());
+        }
+        assert!(of_slopes([0.0; 2]).slow_change(1.0, k_max).contacts.is_empty());
+        assert!(of_slopes([0.26; 2]).slow_change(1.0, k_max).contacts.is_empty());
+        let half = of_slopes([0.2; 2]).slow_change(1.0, k_max);
+        assert!((half.contacts[0].0 * CHANGE - 0.5).abs() < 1e-6, "{half:?}");
     }
 }

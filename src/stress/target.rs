@@ -1,6 +1,7 @@
 //! The amplitudes of the waves of stress at one point.
 
 use super::load::Load;
+use super::slow_change::SlowChange;
 use super::waves::{Influence, PartLoads, TractionLoads, Waves, shears};
 use super::work::Work;
 use crate::base::StressTensor;
@@ -57,6 +58,8 @@ pub(super) struct Loaded<'a> {
     pub slides: bool,
     /// Transition factor of the stress correction, if any.
     pub gamma: Option<f64>,
+    /// [`Load::slow_change`] at the point.
+    pub slow_change: &'a SlowChange,
     pub plates: &'a KeptPlates,
 }
 
@@ -71,6 +74,7 @@ pub(super) struct Target<'a> {
     parts: Vec<PartTarget<'a>>,
     /// The contact's nodes that interpolate the local pressure, and their shares.
     local: Vec<(usize, f64)>,
+    slow_change: &'a SlowChange,
     pub work: Work,
 }
 
@@ -130,6 +134,7 @@ impl<'a> Target<'a> {
             slides: loaded.slides,
             parts: parts.collect(),
             local: loaded.pressure.neighbours(y),
+            slow_change: loaded.slow_change,
             work: Work::default(),
         }
     }
@@ -153,6 +158,7 @@ impl<'a> Target<'a> {
             }
         }
         self.take_endless_contact(i, &mut amplitudes);
+        self.take_slow_change(i, &mut amplitudes);
         if let Some(traction) = &mut traction {
             self.take_endless_traction(i, traction);
         }
@@ -168,6 +174,20 @@ impl<'a> Target<'a> {
         amplitudes[1] += 2.0 * self.nu * e;
         amplitudes[2] += (1.0 + k * z) * e;
         amplitudes[4] += k * z * e;
+    }
+
+    /// Subtracts the effect of the load's slow change along the line; of xy that of the long waves,
+    /// which are interpolated, is left.
+    fn take_slow_change(&self, i: usize, amplitudes: &mut [f64; 6]) {
+        if self.slow_change.nodes.is_empty() {
+            return;
+        }
+        let transform = |j: usize| self.waves.contact[(i, j)];
+        let [xy, yz] = self.slow_change.amplitudes(self.nu, self.z, self.waves.k[i], transform);
+        if i >= self.waves.long.count() {
+            amplitudes[3] -= xy;
+        }
+        amplitudes[5] -= yz;
     }
 
     /// The same of the traction.

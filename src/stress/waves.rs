@@ -39,9 +39,14 @@ pub(super) struct LongQuadrature {
 }
 
 impl LongQuadrature {
+    /// Number of the first waves, whose stresses are interpolated.
+    pub fn count(&self) -> usize {
+        self.shares.first().map_or(0, Vec::len)
+    }
+
     /// Factors of the first waves' stresses at `x`, of those with cos(k x) and those with sin(k x).
     pub fn factors(&self, x: f64) -> Vec<[f64; 2]> {
-        let mut factors = vec![[0.0; 2]; self.shares.first().map_or(0, Vec::len)];
+        let mut factors = vec![[0.0; 2]; self.count()];
         for ((k, weight), shares) in self.nodes.iter().zip(&self.shares) {
             let (sin, cos) = (k * x).sin_cos();
             for (factor, share) in factors.iter_mut().zip(shares) {

@@ -379,7 +379,8 @@ fn off_under_crown(
 }
 
 /// The half-width changes by a third within panels of 24 C. Short waves, whose transforms turn
-/// farther over a panel than its polynomial follows, made errors of 2.5 tolerances in shears.
+/// farther over a panel than its polynomial follows, made errors of 2.5 tolerances in shears, and
+/// left out 1.8 where the change along the line was not in closed form.
 #[test]
 fn shears_beside_a_long_crowned_contact_keep_the_tolerance() {
     let roller = Material { young_pa: 210e9, poisson: 0.0926 };
@@ -387,7 +388,7 @@ fn shears_beside_a_long_crowned_contact_keep_the_tolerance() {
     let factors = Factors { load: 5.6535e-5, slenderness: 35.0, length_ratio: 0.5815 };
     let places = [0.85, 1.0, 1.05, 1.15, 1.4].map(|x| [x, 0.0, 0.0]);
     let off = off_under_crown([roller, block], factors, [2.5469, -6.0377, 0.0], &places);
-    assert!(off < 2e-3, "{off:e} p0");
+    assert!(off < 1e-3, "{off:e} p0");
 }
 
 /// The contact ends 0.02 C before its bodies do. With panels for a contact that reaches their ends
