@@ -215,7 +215,7 @@ const SINGULAR: [Resolution; 5] = [
         corner_ratio: 7.29,
         ratio: 2.7,
         modes: 3,
-        spacing: [0.13; 2],
+        spacing: [0.075; 2],
         k_max: 60.0,
         k_order: 4,
         k_step: 4.0,
@@ -351,7 +351,7 @@ const STRAIGHT_SINGULAR: [Resolution; 6] = [
         ..SINGULAR[0]
     },
     SINGULAR[0],
-    SINGULAR[1],
+    Resolution { spacing: [0.13; 2], ..SINGULAR[1] },
     Resolution { order: 4, corner: 0.002, corner_ratio: 6.0, ratio: 2.4, ..SINGULAR[2] },
     Resolution { order: 5, corner: 0.0009, ratio: 2.3, reach: 15.0, ..SINGULAR[3] },
     SINGULAR[4],
