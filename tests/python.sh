@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
 # Builds the Python package and tests it in a virtual environment of its own, target/python.
 #
-#   bash tests/python.sh
+#   bash tests/python.sh [--tools]
 #
-# What the package, its tests and its build need comes from PyPI, once. The tests compare with the program
-# target/fast/edgeline, which must be built. Exit code 2 if something cannot be had, else that of the
-# tests.
+# What the package, its tests and its build need comes from PyPI, once; with --tools nothing else is done. The
+# tests compare with the program target/fast/edgeline, which must be built. Exit code 2 if something cannot be
+# had, else that of the tests.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 home=target/python
@@ -35,6 +35,10 @@ PYTHON
         exit 2
     }
     echo "$wanted" >$home/made-for
+fi
+
+if [[ ${1-} == --tools ]]; then
+    exit
 fi
 
 rm -rf $home/wheels

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Builds the site target/site/html from docs/ and from what the program writes, and checks its links.
 #
-#   bash tests/site.sh
+#   bash tests/site.sh [--tools]
 #
-# The builder comes from PyPI, once, into target/site-tools. The program target/fast/edgeline must be built. Exit code
-# 2 if the builder cannot be had, else that of the step that failed.
+# The builder comes from PyPI, once, into target/site-tools; with --tools nothing else is done. The program
+# target/fast/edgeline must be built. Exit code 2 if the builder cannot be had, else that of the step that
+# failed.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 tools=target/site-tools
@@ -18,6 +19,10 @@ if [[ $(cat $tools/made-for 2>/dev/null) != "$wanted" ]]; then
         exit 2
     }
     echo "$wanted" >$tools/made-for
+fi
+
+if [[ ${1-} == --tools ]]; then
+    exit
 fi
 
 docs=target/site/docs

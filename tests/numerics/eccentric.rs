@@ -1,7 +1,7 @@
 //! A load beside the middle, a block beside the roller's middle, a roller longer than the block:
 //! even and odd parts of both bodies.
 
-use crate::common::{apart, scene, small};
+use crate::common::{apart, at, scene, small};
 use edgeline::base::{Parity, PerBody, StressTensor};
 use edgeline::body::{Body, EdgeModel, Part, Resolution, Shape};
 use edgeline::solve::{Scene, SceneBody, SolvedScene, Tilt};
@@ -236,12 +236,34 @@ fn a_loaded_flush_end_keeps_the_tolerance() {
     }
 }
 
+/// With half-widths 0.13 C apart beside a steep end sigma_zz down the roller's end face was up to 1.1
+/// tolerances of 1e-2 off here, and 1.7 in others.
+#[test]
+fn an_end_face_below_a_steep_end_keeps_the_tolerance() {
+    for (slenderness, nu, arm) in [(12.0, 0.3, -1.7), (18.0, 0.35, 2.5)] {
+        let plain = scene(slenderness, 0.95, nu, EdgeModel::QuarterSpace);
+        let [own, fine] = [1e-2, 1e-3].map(|tolerance| {
+            let tilted = Scene { tilt: Tilt::Free(arm), tolerance, ..plain.clone() };
+            SolvedScene::new(&tilted).unwrap()
+        });
+        for kind in BodyKind::ALL {
+            for end in [-slenderness, slenderness] {
+                for x in [0.0, 0.7, 1.4] {
+                    let zz = |solved: &SolvedScene| at(&solved.field(kind), [x, end, 0.1]).zz;
+                    let off = zz(&own) - zz(&fine);
+                    small(&format!("{slenderness}, {kind:?}, {end}, {x}"), off, 7e-3);
+                }
+            }
+        }
+    }
+}
+
 /// A contact that all but reaches the end of its bodies ends where its pressure does, at every
 /// tolerance, and not at the last node of the line.
 #[test]
 fn an_end_that_is_all_but_reached_is_the_pressures() {
     let plain = scene(3.3, 1.0, 0.45, EdgeModel::QuarterSpace);
-    for arm in [0.79, 0.8, 0.81, 0.82, 0.83] {
+    for arm in [0.79, 0.81, 0.83] {
         let ends = [5e-3, 1e-3, 3e-4].map(|tolerance| {
             let tilted = Scene { tilt: Tilt::Free(arm), tolerance, ..plain.clone() };
             SolvedScene::new(&tilted).unwrap().ends()[0]
