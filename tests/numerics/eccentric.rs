@@ -236,8 +236,8 @@ fn a_loaded_flush_end_keeps_the_tolerance() {
     }
 }
 
-/// With half-widths 0.13 C apart beside a steep end sigma_zz down the roller's end face was up to 1.1
-/// tolerances of 1e-2 off here, and 1.7 in others.
+/// With half-widths 0.13 C apart beside a steep end sigma_zz down the roller's end face was up to
+/// 1.1 tolerances of 1e-2 off here, and 1.7 in others.
 #[test]
 fn an_end_face_below_a_steep_end_keeps_the_tolerance() {
     for (slenderness, nu, arm) in [(12.0, 0.3, -1.7), (18.0, 0.35, 2.5)] {
