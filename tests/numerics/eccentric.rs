@@ -263,7 +263,7 @@ fn an_end_face_below_a_steep_end_keeps_the_tolerance() {
 #[test]
 fn an_end_that_is_all_but_reached_is_the_pressures() {
     let plain = scene(3.3, 1.0, 0.45, EdgeModel::QuarterSpace);
-    for arm in [0.79, 0.81, 0.83] {
+    for arm in [0.79, 0.8, 0.81, 0.82, 0.83] {
         let ends = [5e-3, 1e-3, 3e-4].map(|tolerance| {
             let tilted = Scene { tilt: Tilt::Free(arm), tolerance, ..plain.clone() };
             SolvedScene::new(&tilted).unwrap().ends()[0]
