@@ -34,8 +34,8 @@ pub fn stress_along(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f
 /// first is the integral of the last along x. With w = zeta - sqrt(zeta^2 - 1), dzeta is
 /// (1 - w^-2) / 2 dw.
 pub fn potentials(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 3] {
-    let [re, im, ..] = potential(half_width, coefficients, x, z);
-    let (wr, wi) = inverse_sum(half_width, x, z).1;
+    let (root, (wr, wi)) = inverse_sum(half_width, x, z);
+    let [re, im, ..] = potential_of(root, (wr, wi), coefficients, z / half_width);
     let (size, angle) = (wr.hypot(wi), wi.atan2(wr));
     let mut along = 0.0;
     for (m, c) in coefficients.iter().enumerate() {
@@ -49,8 +49,17 @@ pub fn potentials(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64
 
 /// Real and imaginary part of F / pi and of z F' / pi, see [`stress`].
 fn potential(half_width: f64, coefficients: &[f64], x: f64, z: f64) -> [f64; 4] {
-    let d = z / half_width;
-    let ((re, im), (wr, wi)) = inverse_sum(half_width, x, z);
+    let (root, w) = inverse_sum(half_width, x, z);
+    potential_of(root, w, coefficients, z / half_width)
+}
+
+/// [`potential`] by what [`inverse_sum`] gives, at the depth `d` in half-widths.
+fn potential_of(
+    (re, im): (f64, f64),
+    (wr, wi): (f64, f64),
+    coefficients: &[f64],
+    d: f64,
+) -> [f64; 4] {
     // Powers w^(2m+1); dw/dzeta = -w / sqrt(zeta^2 - 1).
     let (sqr, sqi) = (wr * wr - wi * wi, 2.0 * wr * wi);
     let (mut pr, mut pi) = (wr, wi);
