@@ -4,16 +4,18 @@
 //! `cargo bench --bench promise -- hold SCENES [KIND] [TOLERANCES]` measures scenes that no search
 //! has seen: a number of them or FROM..TO, of one kind or of straight and centred ones, at every
 //! decade or at tolerances such as 1e-2,1e-3. The kind `real` has rollers with profiles, eccentric
-//! loads and offsets. `-- causes KIND TOLERANCE SCENE` tells the errors of one scene when one part
-//! of its resolution after the other is the limit's, and `-- limit SCENES` what the limit itself is
-//! worth. `-- search KIND TOLERANCE STEPS [PARTS]` looks for the cheapest resolution (endless,
-//! finite, singular) that keeps the promise on scenes of its own, by small random steps from the
-//! present one, with PARTS such as order=4,corner=0.01 changed at first: from some places small
-//! steps lead nowhere. `-- try KIND TOLERANCE SCENES PARTS ...` shows errors and time of scenes
-//! (10003,10009) with each of such changes. The table in `src/body/axes.rs` is made from these.
+//! loads and offsets, `tips` such ones whose contact ends well before its bodies do. `-- causes
+//! KIND TOLERANCE SCENE` tells the errors of one scene when one part of its resolution after the
+//! other is the limit's, and `-- limit SCENES` what the limit itself is worth. `-- search KIND
+//! TOLERANCE STEPS [PARTS]` looks for the cheapest resolution that keeps the promise on scenes of
+//! its own, by small random steps from the present one, with PARTS such as order=4,corner=0.01
+//! changed at first: from some places small steps lead nowhere. `-- try KIND TOLERANCE SCENES PARTS
+//! ...` shows errors and time of scenes (10003,10009) with each of such changes. The table in
+//! `src/body/axes.rs` is made from these.
 //!
-//! Left out: 0.1 C around a singular corner, 0.03 C around the contact's edge on the surface, where
-//! the tangent of the pressure is vertical, and the same around a flush end.
+//! Errors are parts of p0, for `tips` of the largest pressure where that is more. Left out: 0.1 C
+//! around a singular corner, 0.03 C around the contact's edge on the surface, where the tangent of
+//! the pressure is vertical, and the same around a flush end.
 
 use edgeline::base::{BodyKind, Material, PerBody, StressTensor};
 use edgeline::body::{EdgeModel, Resolution};
@@ -68,6 +70,8 @@ enum Kind {
     /// With a profile, a load or a body beside the middle, or all of them: the contact may end
     /// before its bodies.
     Real,
+    /// The same with profiles so steep that the contact ends well inside.
+    Tips,
 }
 
 /// The kinds of straight and centred rollers.
@@ -80,20 +84,25 @@ fn log(u: f64, low: f64, high: f64) -> f64 {
 
 /// The `index`-th real roller: straight, crowned, relieved or logarithmic with a drop of 0.1 to 5
 /// C^2/(2R) at its ends, S_l 3 to 50, L_r 1 or 0.3 to 3, a load up to a tenth of the line off its
-/// middle, every other block offset by up to a tenth.
-fn real_scene(index: usize) -> Scene {
-    let u: [f64; 10] = kronecker(index);
+/// middle, every other block offset by up to a tenth. For `tips` rollers are crowned or
+/// logarithmic, with a drop of 5 to 300 C^2/(2R), and S_l is up to 200.
+fn real_scene(index: usize, tips: bool) -> Scene {
+    let mut u: [f64; 10] = kronecker(index);
+    let (longest, drops) = if tips { (200.0, [5.0, 300.0]) } else { (50.0, [0.1, 5.0]) };
+    if tips {
+        u[7] = if u[7] < 0.5 { 0.3 } else { 0.8 };
+    }
     let young_pa = 210e9;
     let roller = Material { young_pa, poisson: 0.45 * u[3] };
     let block = Material { young_pa: young_pa * log(u[5], 1.0 / 3.0, 3.0), poisson: 0.45 * u[4] };
     let factors = Factors {
         load: log(u[2], 1e-5, 3e-3),
-        slenderness: log(u[0], 3.0, 50.0),
+        slenderness: log(u[0], 3.0, longest),
         length_ratio: if u[1] < 0.3 { 1.0 } else { log((u[1] - 0.3) / 0.7, 0.3, 3.0) },
     };
     let mut case = Case::from_factors("scene", 0.01, roller, block, factors);
     let half = 0.5 * case.roller.length_m;
-    let drop = log(u[6], 0.1, 5.0) * case.gap_unit_m();
+    let drop = log(u[6], drops[0], drops[1]) * case.gap_unit_m();
     let arc = |curved: f64| Some(ProfileSpec::arc_radius_m(curved, drop));
     let spec = |kind| ProfileSpec::new(kind);
     case.roller.profile = match (4.0 * u[7]) as usize {
@@ -121,8 +130,8 @@ fn real_scene(index: usize) -> Scene {
 /// The `index`-th scene of Kronecker's sequence over the box of the promise: S_l 2 to 100, L_r 1 or
 /// 0.1 to 0.98, Poisson's ratios up to 0.45, moduli that differ by up to 3.
 fn scene(kind: Kind, index: usize) -> Scene {
-    if kind == Kind::Real {
-        return real_scene(index);
+    if let Kind::Real | Kind::Tips = kind {
+        return real_scene(index, kind == Kind::Tips);
     }
     let u: [f64; 5] = kronecker(index);
     let slenderness = log(u[0], 2.0, 100.0);
@@ -182,8 +191,8 @@ struct Places {
 }
 
 impl Places {
-    fn new(scene: &Scene) -> Self {
-        let [first, last] = scene.overlap();
+    /// Those of a scene, beside these ends of its line.
+    fn new(scene: &Scene, [first, last]: [f64; 2]) -> Self {
         let sides =
             if scene.is_symmetric() { vec![(last, 1.0)] } else { vec![(last, 1.0), (first, -1.0)] };
         let line = sides.into_iter().flat_map(|(end, outward)| {
@@ -238,6 +247,9 @@ struct Known {
     scene: Scene,
     places: Places,
     limit: Values,
+    /// The largest pressure (p0) where the contact ends well inside, else 1: what errors are parts
+    /// of.
+    largest: f64,
     /// The half-width at places along the line, of the limit.
     solved: SolvedScene,
 }
@@ -245,7 +257,6 @@ struct Known {
 impl Known {
     fn new(kind: Kind, index: usize) -> Option<Self> {
         let scene = scene(kind, index);
-        let places = Places::new(&scene);
         let [block, roller] = [&scene.bodies.block, &scene.bodies.roller];
         let name = format!(
             "{kind:?} {index}: S_l {:.2} L_r {:.3} nu {:.3} {:.3} share {:.3}",
@@ -262,8 +273,12 @@ impl Known {
                 None
             }
             Ok(solved) => {
+                let ends = if kind == Kind::Tips { solved.ends() } else { scene.overlap() };
+                let places = Places::new(&scene, ends);
                 let limit = values(&solved, &places, stresses(&solved, &places.curves));
-                Some(Self { name, scene, places, limit, solved })
+                let pressures = limit.pressure.iter().copied().filter(|_| kind == Kind::Tips);
+                let largest = pressures.fold(1.0, f64::max);
+                Some(Self { name, scene, places, limit, largest, solved })
             }
             Err(error) => {
                 println!("{name}: no limit: {error}");
@@ -321,7 +336,7 @@ impl Known {
         let mut pressure = (found.approach / self.limit.approach - 1.0).abs();
         let mut at_pressure = [f64::NAN; 2];
         for ((at, a), b) in self.places.line.iter().zip(&found.pressure).zip(&self.limit.pressure) {
-            let off: f64 = (a - b).abs();
+            let off: f64 = (a - b).abs() / self.largest;
             if off > pressure && self.counts([at[0], at[1], 0.0]) {
                 pressure = off;
                 at_pressure = *at;
@@ -337,7 +352,7 @@ impl Known {
                 }
                 let pairs = a.components().into_iter().zip(b.components());
                 for (component, (a, b)) in pairs.enumerate() {
-                    let off: f64 = (a - b).abs();
+                    let off: f64 = (a - b).abs() / self.largest;
                     if off > stress || off.is_nan() {
                         stress = off;
                         place = format!(
@@ -426,12 +441,10 @@ impl Random {
     }
 }
 
-/// The present resolution of a straight and centred scene with `parts` changed, such as
-/// order=4,corner=0.01; none if a part is not one of it.
+/// The present resolution of a scene with `parts` changed, such as order=4,corner=0.01; none if a
+/// part is not one of it.
 fn changed(scene: &Scene, tolerance: f64, parts: &str) -> Option<Resolution> {
-    // Such scenes have the same at both ends.
-    let [exponent, _] = scene.corner_exponents();
-    let own = Resolution::of(tolerance, &scene.end(BodyKind::Block), exponent, true);
+    let own = SolvedScene::new(&Scene { tolerance, ..scene.clone() }).ok()?.resolution;
     let mut all = serde_json::to_value(own).ok()?;
     for part in parts.split(',').filter(|part| !part.is_empty()) {
         let (name, value) = part.split_once('=')?;
@@ -613,7 +626,7 @@ fn usage() -> ExitCode {
     eprintln!(
         "error: give hold SCENES [KIND] [TOLERANCES], limit SCENES, causes KIND TOLERANCE SCENE, \
          search KIND TOLERANCE STEPS [PARTS], or try KIND TOLERANCE SCENES PARTS ...; the kinds are \
-         endless, finite, singular and real"
+         endless, finite, singular, real and tips"
     );
     ExitCode::from(2)
 }
@@ -636,6 +649,7 @@ fn main() -> ExitCode {
         "finite" => Some(Kind::Finite),
         "singular" => Some(Kind::Singular),
         "real" => Some(Kind::Real),
+        "tips" => Some(Kind::Tips),
         _ => None,
     };
     let number = |word: &str| word.parse::<f64>().ok();

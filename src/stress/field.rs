@@ -563,8 +563,11 @@ impl<'a> Field<'a> {
         if !self.stack.body().end.freed && z > FAR_BELOW * self.stack.body().half {
             farthest = farthest.max(z);
         }
-        let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
-        let faded = if farthest == 0.0 {
+        let odd = self.pressure.parity_across() == Parity::Odd;
+        // Those of the plane x = 0 leave out what an even pressure has none of there: the shears.
+        let central = farthest == 0.0 && !odd;
+        let waves = if central { self.central.clone() } else { self.all(farthest) };
+        let faded = if central {
             self.wavenumbers.coarse().order()
         } else {
             FADED * waves.k.len() / self.wavenumbers.fine().len()
@@ -572,7 +575,6 @@ impl<'a> Field<'a> {
         let mut target = Target::new(&self.loaded(slow_change), &waves, y, z);
         let mut sums = vec![[[0.0; 6]; 2]; xs.len()];
         let mut fading = 0;
-        let odd = self.pressure.parity_across() == Parity::Odd;
         let long: Vec<Vec<[f64; 2]>> = xs.iter().map(|x| waves.long.factors(*x)).collect();
         for (i, (&k, &weight)) in waves.k.iter().zip(&waves.weights).enumerate() {
             if fading >= faded {

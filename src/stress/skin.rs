@@ -174,8 +174,10 @@ impl<'a> SkinField<'a> {
     /// [`SkinField::at`] at least [`LEAST_DEPTH`] deep, within reach.
     fn below(&self, y: f64, z: f64, xs: &[f64]) -> Vec<StressTensor> {
         let farthest = xs.iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let waves = if farthest == 0.0 { self.central.clone() } else { self.all(farthest) };
         let odd = self.pressure.parity_across() == Parity::Odd;
+        // Those of the plane x = 0 are without shears, which an even pressure has none of there.
+        let central = farthest == 0.0 && !odd;
+        let waves = if central { self.central.clone() } else { self.all(farthest) };
         let mut targets: Vec<SkinTarget> = waves
             .parts
             .iter()

@@ -480,6 +480,35 @@ fn far_points_under_cells_are_the_line_engines() {
     }
 }
 
+/// Under a rough contact the pressure has an odd part across. Free ends make shears of that in the
+/// plane x = 0, too, which has waves of its own: they are those beside it.
+#[test]
+fn stresses_in_the_plane_of_the_axis_are_those_beside_it() {
+    let text = "name = \"plane\"\n[roller]\nradius_m = 10e-3\nyoung_pa = 210e9\npoisson = 0.3\n\
+         [block]\nyoung_pa = 210e9\npoisson = 0.3\n[dimensionless]\nW = 1e-3\nS_l = 5.0\nL_r = 1.0\n\
+         [accuracy]\nfirst_order = true";
+    let mut case = Case::from_toml(text).unwrap();
+    let (c_m, unit_m) = (case.hertz().c_m, case.gap_unit_m());
+    let height = |k: usize| 0.05 * unit_m * ((k / 11) as f64 - 30.0);
+    let steps = [0.1 * c_m, 1.1 * c_m];
+    case.surface = Some(surface([61, 11], steps, (0..61 * 11).map(height).collect()));
+    let options = |points| Options { points, ..Options::new(EdgeModel::QuarterSpace) };
+    let cells = CellOptions { counts: Some([64, 64]), ..CellOptions::default() };
+    let found = solve_on_cells(&case, &options(Vec::new()), &cells, &|_, _| {}).unwrap();
+    for body in BodyKind::ALL {
+        for (y, z) in [(4.75, 0.2), (-4.5, 0.3), (4.9, 0.5)] {
+            // One at a time, as points of one column share their waves.
+            let [before, at, after] = [-1e-3, 0.0, 1e-3].map(|x| {
+                let points = vec![Point { body, at_m: [x, y, z].map(|v| v * c_m) }];
+                stress_on_cells(&case, &options(points), &found.pressure).unwrap()[0]
+            });
+            assert!(at.xy.abs() > 0.005, "{body:?} {y} {z}: {at:?}");
+            let off = crate::common::apart(&at, &((before + after) * 0.5));
+            small(&format!("{body:?} {y} {z}"), off, 1e-4);
+        }
+    }
+}
+
 /// Half-side of a rough patch, beside which the gap is wide (C).
 const PATCH: f64 = 0.95;
 
