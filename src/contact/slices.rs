@@ -10,6 +10,10 @@ use std::f64::consts::FRAC_PI_2;
 /// Slices along the line.
 const SLICES: usize = 240;
 
+/// The half-width, as a part of the largest one, where slices do not touch. Under a tilt bodies
+/// that bend may touch there, and a half-width at most doubles in an iteration.
+const APART: f64 = 0.1;
+
 /// Most iterations of the rigid motions, and passes for the contact's length.
 const MOST: usize = 100;
 const PASSES: usize = 4;
@@ -125,10 +129,14 @@ impl Slices {
         2.0 * self.widest() / (self.ends[1] - self.ends[0])
     }
 
-    /// The half-width at `y`.
+    /// The half-width at `y`; where the slices do not touch, one to begin with.
     pub fn half_width(&self, y: f64) -> f64 {
         let after = self.y.partition_point(|place| *place < y).clamp(1, self.y.len() - 1);
-        let [a, b] = [after - 1, after].map(|i| self.squares[i].max(0.0));
+        let squares = [after - 1, after].map(|i| self.squares[i]);
+        if squares.iter().all(|square| *square <= 0.0) {
+            return APART * self.widest();
+        }
+        let [a, b] = squares.map(|square| square.max(0.0));
         let share = ((y - self.y[after - 1]) / (self.y[after] - self.y[after - 1])).clamp(0.0, 1.0);
         (a + share * (b - a)).sqrt()
     }

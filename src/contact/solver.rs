@@ -20,8 +20,11 @@ const NEGLIGIBLE: f64 = 0.4;
 /// Fewest free nodes of a contact that narrows.
 const TIP_NODES: usize = 3;
 
-/// Iterations of an attempt that is not the last.
+/// Iterations of an attempt that is not the last, and the amplitude of the edge singularity (p0)
+/// from which on it may go on as the last one may: half-widths that begin far too small at most
+/// double in an iteration, and are found soon after that.
 const ATTEMPT: usize = 26;
+const ARRIVES: f64 = 1e-2;
 
 /// Limit of the ratio of a node's edge slope to that of its first mode, and of the inverse, far
 /// from the solution and [`NEAR`] it. Higher modes, which describe the pressure's inside, may
@@ -108,6 +111,8 @@ struct Attempt {
     by_secants: bool,
     /// Whether half-widths towards a tip are interpolated by cubics.
     cubic: bool,
+    /// Iterations after which it is given up, unless it [`ARRIVES`].
+    iterations: usize,
 }
 
 impl Attempt {
@@ -123,20 +128,19 @@ impl Attempt {
 /// and straight lines come next.
 fn attempts(settings: &ContactSettings, may_end: bool) -> Vec<Attempt> {
     let all = settings.modes;
-    let short = ATTEMPT.min(settings.max_iterations);
-    let one = |by_secants, times: f64, modes, tail_modes, max_iterations| {
+    let one = |by_secants, times: f64, modes, tail_modes, iterations| {
         let spacing = settings.spacing.map(|apart| times * apart);
-        let settings = ContactSettings { spacing, modes, max_iterations, ..*settings };
-        Attempt { settings, tail_modes, by_secants, cubic: false }
+        let settings = ContactSettings { spacing, modes, ..*settings };
+        Attempt { settings, tail_modes, by_secants, cubic: false, iterations }
     };
-    let first = || one(true, 1.0, all, all, short);
+    let first = || one(true, 1.0, all, all, ATTEMPT);
     let mut list = vec![Attempt { cubic: true, ..first() }];
     list.extend(may_end.then(first));
     if all > FEWER_MODES {
-        list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, short));
+        list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, ATTEMPT));
     }
     for by_secants in [true, false] {
-        list.extend([2.0, 4.0].map(|times| one(by_secants, times, all, all, short)));
+        list.extend([2.0, 4.0].map(|times| one(by_secants, times, all, all, ATTEMPT)));
         list.push(one(by_secants, 8.0, all, FEW_TAIL_MODES, settings.max_iterations));
     }
     list
@@ -161,8 +165,13 @@ fn first_guess(
         max_iterations: FIRST_ITERATIONS,
         ..*settings
     };
-    let fewer =
-        Attempt { settings: fewer, tail_modes: FEW_TAIL_MODES, by_secants: true, cubic: false };
+    let fewer = Attempt {
+        settings: fewer,
+        tail_modes: FEW_TAIL_MODES,
+        by_secants: true,
+        cubic: false,
+        iterations: FIRST_ITERATIONS,
+    };
     match solve_once(operator, problem, &fewer, known.clone()) {
         Err(Error::Stopped) => Err(Error::Stopped),
         found => Ok(found.map_or(known, |first| first.half_widths)),
@@ -176,7 +185,7 @@ fn solve_once(
     attempt: &Attempt,
     mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
-    let Attempt { ref settings, tail_modes, by_secants, cubic } = *attempt;
+    let Attempt { ref settings, tail_modes, by_secants, cubic, iterations } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
     let layout_of = |contact| Layout::new(problem, settings, tail_modes, cubic, contact);
@@ -187,6 +196,9 @@ fn solve_once(
     let mut last = f64::INFINITY;
     for iteration in 1..=settings.max_iterations {
         go_on()?;
+        if iteration > iterations && last > ARRIVES {
+            return Err(not_converged(iteration - 1, last));
+        }
         let held = LinearProblem {
             operator,
             problem,

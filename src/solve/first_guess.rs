@@ -1,7 +1,7 @@
 //! What is known of a contact before it is solved: by slices without neighbours.
 
 use super::scene::{Scene, Tilt};
-use crate::base::BodyKind;
+use crate::base::{BodyKind, Kink};
 use crate::body::Resolution;
 use crate::contact::{Shaped, Slices};
 
@@ -19,6 +19,12 @@ const CORNER: f64 = 10.0;
 /// resolution of tighter tolerances, in proportion: the pressure is the higher, and changes the
 /// faster along the nodes, the shorter it is.
 const SLENDER: f64 = 0.1;
+
+/// Length (C) between a kink of the gap and the end of a contact beyond it below which the contact
+/// has the resolution of tighter tolerances, in proportion: the pressure rises and falls within it.
+/// Not of tighter ones than `CLOSE`: there are contacts that these do not solve.
+const RUNS_OUT: f64 = 0.15;
+const CLOSE: f64 = 1e-3;
 
 /// Half-length (own units) of a body with free ends below which a load beside its middle asks for
 /// the resolution of [`Resolution::COARSE`] at least. Under long waves the equations of a plate in
@@ -43,6 +49,8 @@ impl Scene {
         };
         let overlap = self.overlap();
         let Some(slices) = slices else { return self.level(tolerance, overlap) };
+        let sharper = tolerance / (RUNS_OUT / self.beyond_a_kink(slices)).max(1.0);
+        let tolerance = sharper.max(CLOSE.min(tolerance));
         if self.ends_inside(slices) {
             let wider = slices.width_over_length() / SLENDER;
             return Resolution::for_tips(tolerance / wider.max(1.0));
@@ -62,6 +70,17 @@ impl Scene {
         let level = if narrows { level.narrowing(tolerance) } else { level };
         let is_steep = reaches.contains(&true) || !gap.kinks().is_empty();
         if is_steep { level.across(slices.widest()) } else { level }
+    }
+
+    /// How far a contact of these `slices` goes on beyond the last kinks of the gap (C), on the
+    /// side where that is less, before its bodies end; infinite without one.
+    fn beyond_a_kink(&self, slices: &Slices) -> f64 {
+        let ([from, to], overlap) = (slices.ends, self.overlap());
+        let beyond = |Kink { at, .. }: Kink| {
+            let apart = [(at - from, from > overlap[0]), (to - at, to < overlap[1])];
+            apart.map(|(apart, ends)| if ends && apart > 0.0 { apart } else { f64::INFINITY })
+        };
+        self.gap().kinks().into_iter().flat_map(beyond).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether a contact that has about these `ends` reaches the end of its bodies on a side.

@@ -119,7 +119,7 @@ impl SolvedScene {
             return Ok(Self { scene: scene.clone(), ..found });
         }
         let slices = scene.slices(&scene.gap());
-        if scene.ends_inside(&slices) {
+        if slices.ends != scene.overlap() {
             check_width(slices.width_over_length(), WIDEST_GUESS)?;
         }
         first
