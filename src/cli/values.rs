@@ -3,8 +3,9 @@
 use super::output::say;
 use crate::base::number::stated;
 use crate::base::{Error, Result};
-use crate::body::{EdgeModel, Resolution};
+use crate::body::EdgeModel;
 use crate::case::{Case, Key};
+use crate::report::solution::too_fine;
 use crate::study::{Engine, Source};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use std::ops::RangeInclusive;
@@ -108,19 +109,6 @@ pub fn checked_tolerance(tolerance: f64) -> Result<f64> {
 pub fn tolerance_of(option: &str, tolerance: f64) -> Result<f64> {
     let range = Key::find("accuracy.tolerance").expect("a key of the list").range;
     checked(option, tolerance, range, "a fraction of p0", "1e-3")
-}
-
-/// What to know of a case that asks for more than the finest resolution of the engine along a line.
-pub fn too_fine(case: &Case) -> Option<String> {
-    let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
-    let note = || {
-        format!(
-            "the finest resolution is that of a tolerance of {}, which {} takes, too",
-            stated(finest),
-            stated(asked)
-        )
-    };
-    (asked < finest).then(note)
 }
 
 /// Says so where a case is [`too_fine`].

@@ -4,6 +4,7 @@ use crate::base::stop::go_on;
 use crate::base::{BodyKind, PerBody, Result};
 use crate::body::EdgeModel;
 use crate::case::{Case, Draft, FLAGS, Form, KEYS};
+use crate::report::solution::too_fine;
 use crate::solve::{Options, Scene, Solution, SolvedCase, Summary};
 use crate::stress::{Quantity, StressCurve};
 use serde::Serialize;
@@ -23,6 +24,8 @@ const PROFILE_POINTS: usize = 81;
 struct Answer {
     case: CaseAnswer,
     summary: Summary,
+    /// What the command line notes about the case.
+    note: Option<String>,
     /// Pressure on the two standard lines, by their names.
     pressure: BTreeMap<String, Line>,
     /// Mean pressures of the cells, row by row along the contact.
@@ -111,6 +114,7 @@ pub fn solved(case: &Case, method: EdgeModel, coarser: Option<f64>) -> Result<Ve
     let found = solved.solution();
     let answer = Answer {
         case: case_answer(case),
+        note: too_fine(&roughly),
         pressure: pressure(&found),
         map: map(&found),
         line_load: line_load(&found),

@@ -161,7 +161,9 @@ export class Chart {
     }
     for (const [v, text] of ticks(x0, x1, Math.max(3, width / 75))) {
       const x = px(v).toFixed(1);
-      axes.push(`<path class="grid" d="M${x} ${box.top}V${box.bottom}"/><text x="${x}" y="${box.bottom + 16}" text-anchor="middle">${text}</text>`);
+      // All of the last number is inside the drawing.
+      const inside = Math.min(x, width - 4 * text.length).toFixed(1);
+      axes.push(`<path class="grid" d="M${x} ${box.top}V${box.bottom}"/><text x="${inside}" y="${box.bottom + 16}" text-anchor="middle">${text}</text>`);
     }
     for (const [v, text] of yTicks) {
       const y = py(v).toFixed(1);

@@ -10,12 +10,14 @@ const MAIN = "quarter-space";
 const MODELS = start.models.map((m) => m.name);
 const REST = 160; // ms without a move until all models are solved
 const PATIENCE = 120; // ms until a solve in flight is dropped for a newer one
+const IDLE = 300; // ms without a new drawing until charts out of view are drawn, too
 
 // ---- What is shown.
 let state = null; // { name, form, values, flags, profiles }
 let revision = 0;
 let answers = {}; // by model: { revision, quick, ms, data }
 let pinned = null; // { name, answer }
+let wantedForm = null; // the form to change to once the newest state has its answer
 const view = { body: "block", quantity: "sigma_yy", along: "surface-along-y", down: "depth-end", units: "si", hidden: [] };
 
 const stateOf = (described, form) => ({
@@ -235,8 +237,9 @@ function showFields() {
     group.hidden = ![...group.querySelectorAll(".field")].some((f) => !f.hidden);
   }
   byId("name").value = state.name;
-  document.querySelector(`#form input[value="${state.form}"]`).checked = true;
+  showForm();
 }
+const showForm = () => { document.querySelector(`#form input[value="${state.form}"]`).checked = true; };
 
 // ---- Asking for solutions.
 let flight = null; // the solve of a moving slider: { abort, since }
@@ -290,6 +293,7 @@ async function quick() {
     complain(null);
     draw();
     onScreen(moved);
+    changeForm();
   } catch (e) {
     if (e.reason === "case") complain(e.message);
   } finally {
@@ -326,12 +330,15 @@ async function solveAll() {
       complain(null);
       if (method === MAIN) refreshRanges();
       draw();
+      changeForm();
+      if (asked !== revision) return;
     }
     root.whole = String(asked);
   } catch (e) {
     if (e.name === "AbortError" || e.reason === "replaced") return;
     if (e.reason === "busy" || e.reason === "429") { resting = setTimeout(solveAll, 500); return; }
     complain(e.reason ? e.message : "The program does not answer.");
+    if (wantedForm) keepForm();
     root.whole = String(asked);
     draw();
   }
@@ -345,10 +352,38 @@ function complain(message, holds = false) {
   const box = byId("message");
   box.hidden = !message;
   box.textContent = message || "";
+  byId("kept").hidden = true;
   for (const field of fields.values()) {
     const named = message && field.key && !field.box.hidden && message.includes(field.key.path);
     if (named) field.input.setAttribute("aria-invalid", "true");
   }
+  if (message) status();
+}
+const isMarked = () => [...fields.values()].some((f) => f.key && !f.box.hidden && f.input.getAttribute("aria-invalid") === "true");
+const isAnswered = () => Boolean(answers[MAIN]) && answers[MAIN].revision === revision;
+// Whether the fields have something that no solution belongs to.
+const isRefused = () => !isAnswered() || isMarked();
+
+// ---- The form of the load.
+// The program converts: its answer to the newest state has the values of both forms. An older
+// answer would undo what has been given since.
+function changeForm() {
+  if (!wantedForm || !isAnswered()) return;
+  const form = wantedForm;
+  wantedForm = null;
+  take(answers[MAIN].data.case, form);
+}
+function keepForm() {
+  wantedForm = null;
+  byId("kept").hidden = false;
+  showForm();
+}
+function askForForm(form) {
+  wantedForm = form;
+  // What is no number is not in the state, so that no answer tells of it.
+  if (held === revision && isMarked()) keepForm();
+  else if (isAnswered()) changeForm();
+  else changed(false);
 }
 const lastCase = () => (answers[MAIN] ? answers[MAIN].data.case : start.start);
 const refreshRanges = () => { for (const f of fields.values()) if (f.key && f.key.slider.scale === "length" && document.activeElement !== f.range) f.show(f.input); };
@@ -364,18 +399,19 @@ const overlap = (data) => [0, 1].map((i) => Math[i ? "min" : "max"](...start.bod
 const alongName = (name) => ({ "surface-along-y": "on the surface", "along-y-0.5C": "0.5 C deep", "along-y-0.78C": "0.78 C deep" })[name] || name;
 const downName = (name) => name.replace("depth-", "at ").replace("at centre", "in the middle").replace("at end", "at the end").replace("0.9", "0.9 of the half-length").replace("-x0.7", ", x = 0.7 C").replace("-x1.4", ", x = 1.4 C").replace("-neg", ", \u2212y side");
 
-// Series of all visible models and the pinned state, the main model on top.
+// Series of all visible models and the pinned state, the main model on top. Each is in units of its
+// own C and p0.
 function series(of, near) {
   const all = [];
   const add = (name, label, answer, stale) => {
-    const found = answer && of(answer.data);
-    if (found) all.push({ name, label, stale, ...found, near: near ? near(found, answer.data) : null });
+    const found = answer && of(answer.data, units(answer.data));
+    if (found) all.push({ name, label, stale, ...found, near: near ? near(found, answer.data, units(answer.data)) : null });
   };
   if (pinned) add("pinned", "pinned", pinned.answer, false);
   for (const name of MODELS) {
     if (name !== MAIN && !view.hidden.includes(name) && answers[name]) add(name, name, answers[name], answers[name].revision !== answers[MAIN].revision || answers[MAIN].quick);
   }
-  add(MAIN, MAIN, answers[MAIN], !byId("message").hidden);
+  add(MAIN, MAIN, answers[MAIN], false);
   return all;
 }
 
@@ -398,23 +434,24 @@ function draw() {
   const ends = overlap(data);
   const edge = start.edge_c * u.c_m;
   const shades = (data.case.symmetric ? [ends[1]] : ends).map((y) => [(y - edge) * u.length, (y + edge) * u.length]);
-  const nearY = (s) => s.x.map((y) => Math.min(...ends.map((end) => Math.abs(y - end * u.length))) < edge * u.length * (1 - 1e-6));
+  const nearY = (s, d, own) => s.x.map((y) => Math.min(...overlap(d).map((end) => Math.abs(y / own.length - end))) < start.edge_c * own.c_m * (1 - 1e-6));
   const chart = (id, rest) => charts[id].show(rest);
   chart("p-along", { title: "Pressure along the contact, x = 0", xTitle: `y (${u.l})`, yTitle: `p (${u.s})`, shades, unit: u.stress * u.p0_pa,
-    series: series((d) => ({ x: times(d.pressure["along-y"].at_m, u.length), y: times(d.pressure["along-y"].p_pa, u.stress) }), nearY) });
+    series: series((d, own) => ({ x: times(d.pressure["along-y"].at_m, own.length), y: times(d.pressure["along-y"].p_pa, own.stress) }), nearY) });
   chart("p-across", { title: "Pressure across the contact, in the middle", xTitle: `x (${u.l})`, yTitle: `p (${u.s})`, unit: u.stress * u.p0_pa,
-    series: series((d) => ({ x: times(d.pressure["along-x"].at_m, u.length), y: times(d.pressure["along-x"].p_pa, u.stress) })) });
+    series: series((d, own) => ({ x: times(d.pressure["along-x"].at_m, own.length), y: times(d.pressure["along-x"].p_pa, own.stress) })) });
   const critical = data.summary.critical;
   for (const [place, name, axis] of [["along", view.along, "y"], ["down", curveDown(data.case.symmetric), "z"]]) {
     for (const [which, quantity] of [["stress", view.quantity], ["mises", "von_mises"]]) {
-      const of = (d) => {
+      const of = (d, own) => {
         const curve = d.curves[view.body][name];
-        return curve && { x: times(curve.at_m, u.length), y: times(curve.stress_pa[`${quantity}`], u.stress), from: curve.from_m };
+        return curve && { x: times(curve.at_m, own.length), y: times(curve.stress_pa[quantity], own.stress), from: curve.from_m };
       };
-      const near = (s, d) => {
-        if (axis === "y") return s.from[2] < edge ? nearY(s) : null;
+      const near = (s, d, own) => {
+        const within = start.edge_c * own.c_m;
+        if (axis === "y") return s.from[2] < within ? nearY(s, d, own) : null;
         const off = Math.min(...overlap(d).map((end) => Math.abs(s.from[1] - end)));
-        return off < edge ? s.x.map((z) => Math.hypot(off, z / u.length) < edge * (1 - 1e-6)) : null;
+        return off < within ? s.x.map((z) => Math.hypot(off, z / own.length) < within * (1 - 1e-6)) : null;
       };
       const all = series(of, near);
       const from = all.length ? all[all.length - 1].from : null;
@@ -427,14 +464,22 @@ function draw() {
         xTitle: `${axis} (${u.l})`, yTitle: `${SYMBOL[quantity]} (${u.s})`, shades: axis === "y" ? shades : [], series: all, star, unit: u.stress * u.p0_pa });
     }
   }
-  const q = si() ? 1e-3 : 1 / (u.c_m * u.p0_pa);
+  const perLength = (own) => (si() ? 1e-3 : 1 / (own.c_m * own.p0_pa));
   chart("line-load", { title: "Load per length", xTitle: `y (${u.l})`, yTitle: si() ? "q (N/mm)" : "q (C p0)", shades: ends.map((y) => [(y - edge) * u.length, (y + edge) * u.length]),
-    series: series((d) => ({ x: times(d.line_load.y_m, u.length), y: times(d.line_load.line_load_n_per_m, q) }), nearY) });
+    series: series((d, own) => ({ x: times(d.line_load.y_m, own.length), y: times(d.line_load.line_load_n_per_m, perLength(own)) }), nearY) });
   drawProfile(data, u);
   drawPictures(data, u);
   tiles(data, u);
   modelsTable(u);
   status();
+  clearTimeout(idle);
+  idle = setTimeout(paintLate, IDLE);
+}
+// Charts out of view would cost time while a slider moves. A picture of the whole page, and paper,
+// show them.
+let idle = 0;
+function paintLate() {
+  for (const chart of Object.values(charts)) if (chart.late && !chart.card.hidden) chart.paint();
 }
 
 function drawProfile(data, u) {
@@ -482,14 +527,19 @@ const unbounded = (s) => ([s.details.edge, s.details.edge_neg].some((end) => end
 
 function tiles(data, u) {
   const s = data.summary;
-  const before = pinned && pinned.answer.data.summary;
-  const than = (value, old) => (before && old ? `, ${value >= old ? "+" : "\u2212"}${significant(Math.abs(value / old - 1) * 100, 3)} % against the pinned` : "");
+  // Of the numbers as they are shown: in p0, each in that of its own state.
+  const than = (of) => {
+    const old = pinned && of(pinned.answer.data.summary) * units(pinned.answer.data).stress;
+    if (!old) return "";
+    const ratio = of(s) * u.stress / old;
+    return `${ratio >= 1 ? "+" : "\u2212"}${significant(Math.abs(ratio - 1) * 100, 3)} % against the pinned, `;
+  };
   const place = (at) => at.map((v) => significant(v * u.length, 4)).join(", ");
   const p0 = (v) => (si() ? `${significant(v / u.p0_pa, 4)} p0` : `${significant(v * 1e-6, 4)} MPa`);
   const all = [
-    ["p-centre", "Pressure in the middle", s.p_centre_pa * u.stress, u.s, `${p0(s.p_centre_pa)}` + than(s.p_centre_pa, before && before.p_centre_pa)],
-    ["p-max", "Largest pressure", s.p_max_pa * u.stress, u.s, `mean of the cell at x, y = ${place(s.p_max_at_m)} ${u.l}${unbounded(s) && `, ${unbounded(s)}`}${than(s.p_max_pa, before && before.p_max_pa)}`],
-    ["critical", "Largest von Mises stress", s.critical ? s.critical.value_pa * u.stress : null, u.s, s.critical ? `${s.critical.body}, x, y, z = ${place(s.critical.at_m)} ${u.l}${than(s.critical.value_pa, before && before.critical && before.critical.value_pa)}` : ""],
+    ["p-centre", "Pressure in the middle", s.p_centre_pa * u.stress, u.s, than((of) => of.p_centre_pa) + p0(s.p_centre_pa)],
+    ["p-max", "Largest pressure", s.p_max_pa * u.stress, u.s, `${than((of) => of.p_max_pa)}mean of the cell at x, y = ${place(s.p_max_at_m)} ${u.l}${unbounded(s) && `, ${unbounded(s)}`}`],
+    ["critical", "Largest von Mises stress", s.critical ? s.critical.value_pa * u.stress : null, u.s, s.critical ? `${than((of) => of.critical && of.critical.value_pa)}on the curves${unbounded(s) && `, ${start.edge_c} C and more from an end`}: ${s.critical.body}, x, y, z = ${place(s.critical.at_m)} ${u.l}` : ""],
     ["hertz", "Hertz: C and p0", null, "", ""],
     ["load", "Load", s.load_n, "N", `W ${significant(data.case.factors["dimensionless.W"], 4)}, S_l ${significant(data.case.factors["dimensionless.S_l"], 4)}, L_r ${significant(data.case.factors["dimensionless.L_r"], 4)}`],
     ["approach", "Approach", s.approach_m * 1e6, "\u00b5m", data.case.symmetric ? `contact from y = ${place(s.contact_y_m)} ${u.l}` : `tilt ${significant(s.tilt_rad * 1e3, 4)} mrad, line of action y = ${significant(s.centre_of_pressure_m[1] * u.length, 4)} ${u.l}`],
@@ -500,11 +550,15 @@ function tiles(data, u) {
 }
 
 function status() {
+  const earlier = !byId("message").hidden && isRefused();
+  byId("results").classList.toggle("refused", earlier);
   const main = answers[MAIN];
   if (!main) return;
   const d = main.data.summary;
   const last = moves.length ? `; on the screen ${significant(moves[moves.length - 1], 3)} ms after the last move` : "";
-  byId("status").textContent = `${MAIN}, tolerance ${significant(d.details.tolerance, 2)} p0${main.quick ? " while the slider moves" : ""}: ${d.iterations} iterations, ${significant(d.seconds.total * 1e3, 3)} ms${main.quick ? last : `; ${d.converged ? "converged" : "not converged"}, load met to ${significant(d.load_error_rel, 1)}${last}`}`;
+  const whose = earlier ? "Shown is the last case that was solved, not that of the fields: " : "";
+  const note = main.data.note ? `; note: ${main.data.note}` : "";
+  byId("status").textContent = `${whose}${MAIN}, tolerance ${significant(d.details.tolerance, 2)} p0${main.quick ? " while the slider moves" : ""}: ${d.iterations} iterations, ${significant(d.seconds.total * 1e3, 3)} ms${main.quick ? last : `; ${d.converged ? "converged" : "not converged"}, load met to ${significant(d.load_error_rel, 1)}${last}${note}`}`;
 }
 
 // Largest differences of a model from the main one, in p0.
@@ -665,15 +719,10 @@ function setUp() {
   addEventListener("keydown", (e) => { if (e.key === "Escape") byId("downloads").open = false; });
   byId("controls").addEventListener("submit", (e) => e.preventDefault());
   for (const radio of document.querySelectorAll("#form input")) {
-    radio.addEventListener("change", () => {
-      const known = lastCase();
-      const described = { ...known, name: state.name };
-      take(described, radio.value);
-    });
+    radio.addEventListener("change", () => askForForm(radio.value));
   }
   addEventListener("hashchange", () => { if (recall()) { fillChoices(); showFields(); changed(false); } });
-  // On paper everything is in view.
-  addEventListener("beforeprint", () => { for (const chart of Object.values(charts)) if (chart.late && !chart.card.hidden) chart.paint(); });
+  addEventListener("beforeprint", paintLate);
   let width = innerWidth;
   addEventListener("resize", () => { if (innerWidth !== width) { width = innerWidth; measureAgain(); requestAnimationFrame(draw); } });
   const alive = new EventSource("alive");

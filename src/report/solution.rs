@@ -3,7 +3,9 @@
 
 use super::columns::{Columns, Values};
 use super::study_files::pretty;
+use crate::base::number::stated;
 use crate::base::{HertzScales, Result, StressTensor};
+use crate::body::Resolution;
 use crate::case::Case;
 use crate::host::{Lock, remove_marker, replace_set};
 use crate::solve::{Lamina, Options, Scene, Solution, Summary};
@@ -73,6 +75,19 @@ pub fn unbounded<D>(case: &Case, found: &Summary<D>) -> Option<&'static str> {
     (0..2)
         .any(|side| exponents[side].is_some() && reaches(side))
         .then_some("a singular end: it grows with the resolution")
+}
+
+/// What to know of a case that asks for more than the finest resolution of the engine along a line.
+pub fn too_fine(case: &Case) -> Option<String> {
+    let (asked, finest) = (case.accuracy.tolerance, Resolution::FINEST);
+    let note = || {
+        format!(
+            "the finest resolution is that of a tolerance of {}, which {} takes, too",
+            stated(finest),
+            stated(asked)
+        )
+    };
+    (asked < finest).then(note)
 }
 
 /// All tables of `solution`: `pressure`, `line_load`, `curves` and, if `options` asked for points,

@@ -59,6 +59,28 @@ impl Explored {
         self.rest();
     }
 
+    /// Clicks into the middle of an element with the mouse.
+    fn click(&mut self, selector: &str) {
+        let middle = self.page.eval(&format!(
+            "(() => {{ const e = document.querySelector('{selector}'); \
+             e.scrollIntoView({{ block: 'center' }}); const r = e.getBoundingClientRect(); \
+             return [r.x + r.width / 2, r.y + r.height / 2]; }})()"
+        ));
+        for kind in ["mousePressed", "mouseReleased"] {
+            let event = json!({ "type": kind, "x": middle[0], "y": middle[1], "button": "left", "clickCount": 1 });
+            self.page.call("Input.dispatchMouseEvent", event);
+        }
+    }
+
+    /// Types over what a field has, does not leave it, and clicks a form of the load.
+    fn type_and_click_form(&mut self, key: &str, text: &str, form: &str) {
+        self.click(&format!("[id=\"key-{key}\"]"));
+        self.page.eval("document.activeElement.select()");
+        self.page.call("Input.insertText", json!({ "text": text }));
+        self.click(&format!("#form input[value={form}] + span"));
+        self.rest();
+    }
+
     fn choose(&mut self, id: &str, value: &str) {
         self.page.choose(id, value);
         self.rest();
@@ -127,6 +149,8 @@ impl Explored {
         let tile = self.page.text("document.querySelector('[data-tile=p-max]').innerText");
         let says_so = tile.contains("grows with the resolution");
         assert_eq!(says_so, singular("edge") || singular("edge_neg"), "{what}: {tile}");
+        let tile = self.page.text("document.querySelector('[data-tile=critical]').innerText");
+        assert_eq!(tile.contains("0.1 C and more from an end"), says_so, "{what}: {tile}");
     }
 }
 
@@ -234,6 +258,62 @@ fn every_field_changes_its_key_and_values_are_those_of_solve() {
     assert_eq!(it.page.complaints(&origin), Vec::<String>::new());
 }
 
+#[test]
+fn what_was_given_outlives_another_form_of_the_load() {
+    let Some(mut it) = Explored::new() else { return };
+    let field = "document.getElementById('key-load.force_n').value";
+    let form = "document.querySelector('#form input:checked').value";
+    let kept = "!document.getElementById('kept').hidden";
+    let refused = "document.getElementById('results').classList.contains('refused')";
+
+    // Typed, or set by a slider, and not answered yet.
+    it.type_and_click_form("load.force_n", "4000", "factors");
+    assert_eq!((it.page.text(form), it.shown("load")), ("factors".into(), 4000.0));
+    it.type_and_click_form("dimensionless.W", "1e-3", "load");
+    assert_eq!(it.page.text(form), "load");
+    let tile = it.page.text("document.querySelector('[data-tile=load] p').innerText");
+    assert!(tile.starts_with("W 0.001,"), "{tile}");
+    it.type_in("load.force_n", "2000");
+    let moved = it.page.eval(
+        "(() => { const s = document.querySelector('input[type=range][data-key=\"load.force_n\"]'); \
+         s.value = 0.4; s.dispatchEvent(new Event('input')); s.dispatchEvent(new Event('change')); \
+         const load = Number(document.getElementById('key-load.force_n').value); \
+         document.querySelector('#form input[value=factors]').click(); return load; })()",
+    );
+    it.rest();
+    assert_eq!((it.page.text(form), json!(it.shown("load"))), ("factors".into(), moved));
+    it.click("#form input[value=load] + span");
+    it.rest();
+
+    // What is refused stays with its message, and so does the form.
+    for (text, wanted) in [("1e6", "load.force_n = 1000000 is not valid"), ("much", "not a number")]
+    {
+        it.type_and_click_form("load.force_n", text, "factors");
+        assert_eq!((it.page.text(field), it.page.text(form)), (text.into(), "load".into()));
+        let said = it.page.text("document.getElementById('message').textContent");
+        assert!(said.contains(wanted), "{said}");
+        assert_eq!((it.page.eval(kept), it.page.eval(refused)), (json!(true), json!(true)));
+        let status = it.page.text("document.getElementById('status').textContent");
+        assert!(status.starts_with("Shown is the last case that was solved"), "{status}");
+    }
+    it.type_and_click_form("load.force_n", "2000", "factors");
+    assert_eq!((it.page.text(form), it.shown("load")), ("factors".into(), 2000.0));
+    assert_eq!((it.page.eval(kept), it.page.eval(refused)), (json!(false), json!(false)));
+}
+
+#[test]
+fn a_tolerance_that_is_too_fine_is_noted_as_on_the_command_line() {
+    let Some(mut it) = Explored::new() else { return };
+    it.type_in("accuracy.tolerance", "1e-5");
+    let status = it.page.text("document.getElementById('status').textContent");
+    let out = it.folder.path().join("out");
+    let solve = ["solve", "own.toml", "--tolerance", "1e-5", "--out", out.to_str().unwrap()];
+    let said = edgeline(it.folder.path(), &solve).output().unwrap().stderr;
+    let said = String::from_utf8(said).unwrap();
+    let note = said.lines().find(|line| line.starts_with("note: the finest")).unwrap();
+    assert!(status.ends_with(note), "{status}\n{note}");
+}
+
 /// Moves each slider by one step from the keyboard: its key changes, and no other.
 fn every_slider_moves_its_key(it: &mut Explored) {
     let sliders = it.page.eval(
@@ -319,8 +399,21 @@ fn charts_read_out_the_curves_of_solve() {
     assert_eq!(it.page.eval(mirror), json!(true));
     it.page.eval("document.querySelector('#legend input[data-model=mirror]').click()");
     assert_eq!(it.page.eval(mirror), json!(false));
+    let read_at_the_middle = |it: &mut Explored, series: &str| {
+        it.page.eval("document.querySelector('#chart-p-across svg').focus()");
+        it.page.press("Home");
+        shown(&it.page.text(&format!(
+            "document.querySelector('#chart-p-across [data-read={series}] b').textContent"
+        )))
+    };
+    let before = read_at_the_middle(&mut it, "quarter-space");
     it.page.eval("document.getElementById('pin').click()");
     it.type_in("load.force_n", "3000");
+    assert_eq!(read_at_the_middle(&mut it, "pinned"), before, "in its own p0");
+    let percent = "document.querySelector('[data-tile=p-centre]').innerText.match(/([+\u{2212}][0-9.]+) %/)[1]";
+    let (percent, wanted) =
+        (shown(&it.page.text(percent)), 100.0 * (it.shown("p-centre") / p0 - 1.0));
+    assert!((percent - wanted).abs() < 0.02, "{percent}, not {wanted}");
     let pinned = "document.querySelector('#chart-p-along [data-series=pinned]') !== null";
     assert_eq!(it.page.eval(pinned), json!(true));
     assert!(
@@ -332,13 +425,18 @@ fn charts_read_out_the_curves_of_solve() {
     assert_eq!(it.page.complaints(&origin), Vec::<String>::new());
 }
 
-/// Printed in another width than the screen's, charts that were out of view are those of the newest
-/// state, and the colours lie on their axes.
-fn paper_has_every_chart(it: &mut Explored) {
+/// Charts out of view are drawn when the page rests, and at once when it is printed. In another
+/// width than the screen's the colours of the pressure lie on their axes.
+fn every_chart_is_drawn_in_the_end_and_on_paper(it: &mut Explored) {
     it.page.eval("scrollTo(0, 0)");
-    it.type_in("load.force_n", "1600");
     let late = "Object.values(document.querySelectorAll('.chart')).filter((c) => c.chart.late && !c.hidden).length";
-    assert_ne!(it.page.eval(late), json!(0), "nothing is out of view");
+    let redrawn = format!(
+        "(() => {{ const u = document.getElementById('units'); u.value = u.value === 'si' ? 'c' : 'si'; \
+         u.dispatchEvent(new Event('change')); return {late}; }})()"
+    );
+    assert_ne!(it.page.eval(&redrawn), json!(0), "nothing is out of view");
+    it.page.wait(&format!("{late} === 0"));
+    assert_ne!(it.page.eval(&redrawn), json!(0));
     it.page.call("Page.printToPDF", json!({}));
     assert_eq!(it.page.eval(late), json!(0));
     let off = "(() => { const m = document.getElementById('map'); m.style.width = '200px'; \
@@ -348,14 +446,15 @@ fn paper_has_every_chart(it: &mut Explored) {
     assert!(it.page.eval(off).as_f64().unwrap() < 2.0, "{}", it.page.eval(off));
 }
 
-/// A roller much longer than thick leaves the view from its end little room.
-fn words_of_the_drawing_are_inside(it: &mut Explored) {
+/// A roller much longer than thick leaves the view from its end little room, and the last number of
+/// an axis stands at the edge of its chart.
+fn words_of_the_drawings_are_inside(it: &mut Explored) {
     let before = it.state()["values"]["roller.length_m"].as_f64().unwrap() * 1e3;
     it.type_in("roller.length_m", "300");
-    let outside = "(() => { const d = document.getElementById('drawing').getBoundingClientRect(); \
-                   return [...document.querySelectorAll('#drawing text')].filter((t) => { \
+    let outside = "[...document.querySelectorAll('#drawing text, .chart:not([hidden]) text')].filter((t) => { \
+                   const d = t.closest('svg').getBoundingClientRect(); \
                    const r = t.getBoundingClientRect(); return r.left < d.left || r.right > d.right; \
-                   }).map((t) => t.textContent); })()";
+                   }).map((t) => t.textContent)";
     assert_eq!(it.page.eval(outside), json!([]));
     it.type_in("roller.length_m", &before.to_string());
 }
@@ -421,8 +520,13 @@ fn it_is_readable_at_two_widths_in_two_schemes_and_tells_when_it_has_ended() {
             assert_eq!(it.page.picture(&pictures.join(name)), (width, height));
         }
     }
-    paper_has_every_chart(&mut it);
-    words_of_the_drawing_are_inside(&mut it);
+    every_chart_is_drawn_in_the_end_and_on_paper(&mut it);
+    words_of_the_drawings_are_inside(&mut it);
+    // Where the system sets the colours, the chosen form still differs.
+    let forced = json!({ "features": [{ "name": "forced-colors", "value": "active" }] });
+    it.page.call("Emulation.setEmulatedMedia", forced);
+    let differ = "new Set([...document.querySelectorAll('#form span')].map((s) => getComputedStyle(s).backgroundColor)).size";
+    assert_eq!(it.page.eval(differ), json!(2));
     // A screenshot of the page does not tell the secret word.
     assert!(!it.page.text("document.documentElement.innerText").contains(&it.explorer.token));
     // Every field and chart has a name for those who do not see it.
