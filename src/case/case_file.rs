@@ -1,6 +1,7 @@
 //! The case file: one contact problem.
 
-use super::document::{Document, Entry, Table, did_you_mean, read_text};
+use super::check::of_factors;
+use super::document::{Document, Entry, Table, known_names, read_text};
 use super::draft::{Draft, Form};
 use super::keys::{FLAGS, KEYS, Key, only_keys};
 use super::model::Case;
@@ -50,7 +51,14 @@ impl Case {
                 let Ok(text) = read_text(path) else { return error };
                 let Ok(document) = Document::parse(path, &text) else { return error };
                 let root = document.root();
-                if root.find(key).is_some() { root.place(error) } else { of_file(error) }
+                let error = match root.get("dimensionless") {
+                    Some(_) => of_factors(error),
+                    None => error,
+                };
+                match &error {
+                    Error::Value { key, .. } if root.find(key).is_some() => root.place(error),
+                    _ => of_file(error),
+                }
             }
             Error::NotConverged { .. } | Error::Unsound { .. } | Error::Uncovered { .. } => {
                 of_file(error)
@@ -81,6 +89,11 @@ impl Draft {
                 root.error("is a study file, not a case file", "run `edgeline study` on it")
             );
         }
+        if root.get("sweep").is_some() {
+            return Err(
+                root.error("is a sweep file, not a case file", "run `edgeline sweep` on it")
+            );
+        }
         only_tables(&root, &["name"])?;
         let (form, load) = form(&root)?;
         let mut draft = Draft::new(name(&root)?, form);
@@ -88,6 +101,11 @@ impl Draft {
         read_surface(&root, path, &mut draft)?;
         read_flags(&root, &mut draft)?;
         for (key, entry) in entries(&root, &keys_of(form))? {
+            // Several numbers, as a list or a range.
+            if entry.is_list() || entry.as_table().is_some() {
+                let remedy = "write one, or run `edgeline sweep` on the file";
+                return Err(entry.refuse("a case has one number here", remedy));
+            }
             key.set(&mut draft, entry.number()?);
         }
         draft.case().map_err(|e| load.place(e))?;
@@ -204,8 +222,7 @@ pub(super) fn read_profiles(root: &Table, path: &Path, draft: &mut Draft) -> Res
         let name = entry.string()?;
         let Some(kind) = ProfileKind::ALL.into_iter().find(|kind| kind.name() == name) else {
             let known = ProfileKind::ALL.map(ProfileKind::name);
-            let meant = did_you_mean(name, &known);
-            let remedy = format!("{meant}There are {}", known.join(", "));
+            let remedy = known_names(name, &known, "there are");
             return Err(entry.refuse("there is no such profile", remedy));
         };
         let mut spec = ProfileSpec::new(kind);

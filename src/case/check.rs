@@ -241,12 +241,19 @@ impl Draft {
                 reason: format!("it follows from W, S_l and L_r, and {reason}"),
                 remedy: "check the radius (m), the moduli (Pa) and the factors".into(),
             },
-            // This form has the number at another place.
-            Error::Value { key, value, reason, remedy } if key == "load.eccentricity_m" => {
-                Error::Value { key: "dimensionless.eccentricity_m".into(), value, reason, remedy }
-            }
-            other => other,
+            other => of_factors(other),
         })
+    }
+}
+
+/// The same error where the load is given by factors, which have one of its numbers at another
+/// place.
+pub(super) fn of_factors(error: Error) -> Error {
+    match error {
+        Error::Value { key, value, reason, remedy } if key == "load.eccentricity_m" => {
+            Error::Value { key: "dimensionless.eccentricity_m".into(), value, reason, remedy }
+        }
+        other => other,
     }
 }
 

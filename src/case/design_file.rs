@@ -1,7 +1,7 @@
 //! The design file: which parameters of a profile may vary between which bounds, and the loads that
 //! the roller has to carry.
 
-use super::document::{Document, Entry, Table, did_you_mean, read_text};
+use super::document::{Document, Entry, Table, known_names, read_text};
 use super::keys::Key;
 use super::model::{Case, Load, Pose};
 use super::objective::Objective;
@@ -198,7 +198,7 @@ fn read_profile(root: &Table) -> Result<(BodyKind, ProfileSpec, Vec<Parameter>)>
     let named = ProfileKind::ALL.into_iter().filter(|kind| !kind.keys().is_empty());
     let known: Vec<&str> = named.clone().map(ProfileKind::name).collect();
     let Some(kind) = named.clone().find(|kind| kind.name() == name) else {
-        let remedy = format!("{}There are {}", did_you_mean(name, &known), known.join(", "));
+        let remedy = known_names(name, &known, "there are");
         return Err(entry.refuse("there is no profile of this name with parameters", remedy));
     };
     let body = match table.get("body") {
@@ -269,7 +269,7 @@ fn read_objective(root: &Table) -> Result<Objective> {
     let name = entry.string()?;
     let known = Objective::ALL.map(Objective::name);
     Objective::ALL.into_iter().find(|o| o.name() == name).ok_or_else(|| {
-        let remedy = format!("{}There are {}", did_you_mean(name, &known), known.join(", "));
+        let remedy = known_names(name, &known, "there are");
         entry.refuse("there is no such objective", remedy)
     })
 }

@@ -35,6 +35,13 @@ pub(crate) fn did_you_mean(name: &str, known: &[&str]) -> String {
     }
 }
 
+/// The known name that is most like `name`, if one is, and all that are `known`, told as `lead`.
+pub(crate) fn known_names(name: &str, known: &[&str], lead: &str) -> String {
+    let meant = did_you_mean(name, known);
+    let first = if meant.is_empty() { lead[..1].to_lowercase() } else { lead[..1].to_uppercase() };
+    format!("{meant}{first}{} {}", &lead[1..], known.join(", "))
+}
+
 /// What is wrong with a key or a name that a parser does not know, and what it knows, in the words
 /// of all files; `None` of another `fault`.
 #[cfg(feature = "cli")]
@@ -46,8 +53,7 @@ pub(crate) fn unknown_word(fault: &str) -> Option<(String, String)> {
     let mut words = rest.split('`').step_by(2);
     let word = words.next()?;
     let known: Vec<&str> = words.filter(|known| !known.is_empty()).collect();
-    let remedy = format!("{}There are {}", did_you_mean(word, &known), known.join(", "));
-    Some((format!("{what} {word}"), remedy))
+    Some((format!("{what} {word}"), known_names(word, &known, "there are")))
 }
 
 /// A parsed file that knows the places of its values.

@@ -4,8 +4,10 @@
 use super::document::Table;
 use super::draft::{Draft, Form};
 use super::model::{Case, Cells, Factors};
+use super::profile::ProfileKind;
 use crate::base::number::stated;
 use crate::base::{Error, Result};
+use crate::cells::Detrend;
 
 /// Whether a file must contain a number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -91,19 +93,52 @@ impl Flag {
     }
 }
 
+/// A text of a case.
+#[derive(Debug)]
+pub struct Word {
+    /// Its places in a case file.
+    pub paths: &'static [&'static str],
+    /// What it is, in words.
+    pub what: &'static str,
+    /// The words that it can be; none of a file.
+    pub choices: fn() -> Vec<&'static str>,
+}
+
+/// The texts of a case besides its name.
+pub static WORDS: [Word; 4] = [
+    Word {
+        paths: &["roller.profile.kind", "block.profile.kind"],
+        what: "the kind of the profile",
+        choices: || ProfileKind::ALL.map(ProfileKind::name).to_vec(),
+    },
+    Word {
+        paths: &["roller.profile.file", "block.profile.file"],
+        what: "CSV with the columns y_m,drop_m, beside the case file; for a table",
+        choices: Vec::new,
+    },
+    Word {
+        paths: &["surface.heights"],
+        what: "the file of the heights, .npy, .csv or .x3p, beside the case file; the first two need \
+               dx_m and dy_m",
+        choices: Vec::new,
+    },
+    Word {
+        paths: &["surface.detrend"],
+        what: "what is taken off the heights; nothing without it",
+        choices: || Detrend::ALL.map(Detrend::name).to_vec(),
+    },
+];
+
 /// The table and the name within it of a path.
-fn split(path: &'static str) -> (&'static str, &'static str) {
+pub(super) fn split(path: &'static str) -> (&'static str, &'static str) {
     path.rsplit_once('.').expect("a path has two parts")
 }
 
 /// What a table of a case file has besides its numbers and flags: texts, and tables below it.
-fn others_of(table: &str) -> &'static [&'static str] {
-    match table {
-        "roller" | "block" => &["profile"],
-        "roller.profile" | "block.profile" => &["kind", "file"],
-        "surface" => &["heights", "detrend"],
-        _ => &[],
-    }
+fn others_of(table: &str) -> impl Iterator<Item = &'static str> {
+    let words = WORDS.iter().flat_map(|word| word.paths).map(|path| split(path));
+    let own = words.filter(move |(of, _)| *of == table).map(|(_, leaf)| leaf);
+    own.chain(["roller", "block"].contains(&table).then_some("profile"))
 }
 
 /// Refuses a key of the table `name` that is neither among `keys` nor one of its flags or words.
@@ -114,7 +149,7 @@ pub(super) fn only_keys(
 ) -> Result<()> {
     let same = keys.filter(|key| key.table() == name).map(|key| key.leaf());
     let flags = FLAGS.iter().filter(|flag| flag.table() == name).map(Flag::leaf);
-    let known: Vec<&str> = same.chain(flags).chain(others_of(name).iter().copied()).collect();
+    let known: Vec<&str> = same.chain(flags).chain(others_of(name)).collect();
     table.only(&known)
 }
 
@@ -212,7 +247,7 @@ impl Key {
     }
 
     /// Whether a value is legal.
-    fn takes(&self, value: f64) -> bool {
+    pub(super) fn takes(&self, value: f64) -> bool {
         let (low, high) = self.range;
         (low..=high).contains(&value) && self.is_legal.is_none_or(|legal| legal(value))
     }

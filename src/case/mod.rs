@@ -38,7 +38,7 @@ pub mod two_level;
 
 pub use builtin::{BUILTIN_CASES, BUILTIN_STUDIES, builtin_case};
 pub use draft::{Draft, Form};
-pub use keys::{FLAGS, Flag, KEYS, Key, Presence};
+pub use keys::{FLAGS, Flag, KEYS, Key, Presence, WORDS, Word};
 pub use model::{Accuracy, Block, Case, Cells, Factors, Fatigue, Load, Pose, Roller, Sliding};
 pub use objective::Objective;
 pub use profile::{ProfileKind, ProfileSpec};
@@ -46,7 +46,7 @@ pub use surface::Surface;
 #[cfg(feature = "cli")]
 pub(crate) use {
     builtin::is_given,
-    document::{did_you_mean, unknown_word},
+    document::{did_you_mean, known_names, unknown_word},
 };
 #[cfg(feature = "cli")]
 pub use {

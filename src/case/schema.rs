@@ -2,14 +2,13 @@
 
 use super::check::MAX_NAME;
 use super::draft::Form;
-use super::keys::{FLAGS, KEYS, Key, Presence};
-use super::profile::ProfileKind;
+use super::keys::{FLAGS, KEYS, Key, Presence, WORDS, Word, split};
+use super::profile::{ProfileKind, ProfileSpec};
 use crate::base::BodyKind;
-use crate::cells::Detrend;
 use serde_json::{Map, Value, json};
 
-/// The schema of a case file, JSON Schema of 2020-12. It does not say what several numbers have to
-/// meet together, such as the lengths of both bodies.
+/// The schema of a case file, JSON Schema of 2020-12. A profile has the keys of its kind; what else
+/// several keys have to meet together, such as the lengths of both bodies, it does not say.
 pub fn case_schema() -> Value {
     let mut tables = Map::new();
     for key in &KEYS {
@@ -21,17 +20,15 @@ pub fn case_schema() -> Value {
             push(&mut table["required"], key.leaf());
         }
     }
+    for word in &WORDS {
+        for (table, leaf) in word.paths.iter().map(|path| split(path)) {
+            tables[table]["properties"][leaf] = one_of(word);
+        }
+    }
     for body in BodyKind::ALL.map(BodyKind::name) {
         let mut profile = tables.remove(&format!("{body}.profile")).expect("a body has a profile");
-        profile["properties"]["kind"] = json!({
-            "description": "The kind of the profile.",
-            "enum": ProfileKind::ALL.map(ProfileKind::name),
-        });
-        profile["properties"]["file"] = json!({
-            "description": "CSV with the columns y_m,drop_m, beside the case file; for a table.",
-            "type": "string",
-        });
         push(&mut profile["required"], "kind");
+        profile["allOf"] = ProfileKind::ALL.map(of_kind).into();
         tables[body]["properties"]["profile"] = profile;
     }
     for flag in &FLAGS {
@@ -40,16 +37,7 @@ pub fn case_schema() -> Value {
             "type": "boolean",
         });
     }
-    let surface = &mut tables["surface"];
-    surface["properties"]["heights"] = json!({
-        "description": "The file of the heights, .npy, .csv or .x3p, beside the case file. The first two need dx_m and dy_m.",
-        "type": "string",
-    });
-    surface["properties"]["detrend"] = json!({
-        "description": "What is taken off the heights; nothing without it.",
-        "enum": Detrend::ALL.map(Detrend::name),
-    });
-    push(&mut surface["required"], "heights");
+    push(&mut tables["surface"]["required"], "heights");
     let needed = |(_, table): &(&String, &Value)| table["required"] != json!([]);
     let names = tables.iter().filter(needed).map(|(name, _)| name.as_str());
     let names = names.filter(|name| *name != "surface");
@@ -79,12 +67,35 @@ fn name() -> Value {
 fn number(key: &Key) -> Value {
     let (low, high) = key.range;
     let example: f64 = key.example.parse().expect("an example is a number");
-    json!({
+    let mut schema = json!({
         "description": key.what.trim_end_matches(','),
         "type": "number",
         "minimum": low,
         "maximum": high,
         "examples": [example],
+    });
+    if low < 0.0 && !key.takes(0.0) {
+        schema["not"] = json!({ "const": 0 });
+    }
+    schema
+}
+
+fn one_of(word: &Word) -> Value {
+    match (word.choices)() {
+        choices if choices.is_empty() => json!({ "description": word.what, "type": "string" }),
+        choices => json!({ "description": word.what, "enum": choices }),
+    }
+}
+
+/// What a profile of this kind has to have, and what it has not.
+fn of_kind(kind: ProfileKind) -> Value {
+    let file = (kind == ProfileKind::Table).then_some("file");
+    let own: Vec<&str> = kind.keys().iter().copied().chain(file).collect();
+    let all = ProfileSpec::NUMBERS.into_iter().chain(["file"]);
+    let others = all.filter(|key| !own.contains(key)).map(|key| (key.to_string(), json!(false)));
+    json!({
+        "if": { "properties": { "kind": { "const": kind.name() } }, "required": ["kind"] },
+        "then": { "required": own, "properties": Map::from_iter(others) },
     })
 }
 

@@ -1,6 +1,6 @@
 //! The table `[surface]` of a case file.
 
-use super::document::{Table, did_you_mean};
+use super::document::{Table, known_names};
 use super::draft::Draft;
 use super::keys::{KEYS, only_keys};
 use super::surface::Surface;
@@ -22,11 +22,8 @@ pub(super) fn read_surface(root: &Table, path: &Path, draft: &mut Draft) -> Resu
         detrend = Detrend::ALL.into_iter().find(|detrend| detrend.name() == name);
         if detrend.is_none() {
             let known = Detrend::ALL.map(Detrend::name);
-            let remedy = format!(
-                "{}There are {}; without the key nothing is taken off",
-                did_you_mean(name, &known),
-                known.join(" and ")
-            );
+            let names = known_names(name, &known, "there are");
+            let remedy = format!("{names}; without the key nothing is taken off");
             return Err(entry.refuse("there is no such trend", remedy));
         }
     }

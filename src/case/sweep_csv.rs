@@ -1,6 +1,6 @@
 //! A sweep as a CSV table: one row per case, and a column for each number that varies.
 
-use super::document::did_you_mean;
+use super::document::known_names;
 use super::draft::{Draft, Form};
 use super::keys::{KEYS, Key};
 use super::sweep::{Column, Rows, Sweep, without_effect};
@@ -98,7 +98,7 @@ fn column(name: &str) -> Finding<Column> {
     known.extend(BOTH);
     let columns = KEYS.iter().filter(|key| without_effect(key).is_none());
     known.extend(columns.map(|key| key.column));
-    let remedy = format!("{}The columns are {}", did_you_mean(name, &known), known.join(", "));
+    let remedy = known_names(name, &known, "the columns are");
     Err((format!("unknown column {name}"), remedy))
 }
 

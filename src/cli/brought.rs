@@ -2,7 +2,7 @@
 
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
-use crate::case::{Case, Study, did_you_mean};
+use crate::case::{Case, Study, known_names};
 use crate::study::StudyRun;
 use crate::study::brought::{Beside, BroughtFile, FileRun, Statements};
 use crate::study::verification::refined_tolerance;
@@ -92,6 +92,6 @@ fn unknown_case(name: &str, cases: &[&Case]) -> Error {
         key: "--curves".to_string(),
         value: name.to_string(),
         reason: "the study has no case of this name".to_string(),
-        remedy: format!("{}Its cases are {}", did_you_mean(name, &names), names.join(", ")),
+        remedy: known_names(name, &names, "its cases are"),
     }
 }

@@ -16,8 +16,9 @@ use std::path::PathBuf;
 /// Writes shell completions, manual pages, JSON Schemas and the reference.
 ///
 /// Writes the completions for bash, fish and zsh, a manual page for each command, the schemas of
-/// case files (case.schema.json) and of summary.json (summary.schema.json), and every key, option,
-/// file and column as Markdown (reference.md) into the output folder. Takes less than a second.
+/// case files (case.schema.json) and of `solve`'s summary.json (summary.schema.json), and every
+/// key, option, file and column as Markdown (reference.md) into the output folder. Takes less than
+/// a second.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// Folder for the files; made if it is not there
@@ -58,7 +59,8 @@ pub(super) fn run(arguments: Arguments, mut program: Command) -> Result<Exit> {
             .expect("a vector takes all bytes");
         files.push((format!("{title}.1"), text));
     }
-    let summary = schemars::schema_for!(Summary<EngineDetails>);
+    let mut summary = schemars::schema_for!(Summary<EngineDetails>);
+    summary.insert("title".into(), "summary.json of edgeline solve".into());
     let described = serde_json::to_value(&summary).expect("a schema is JSON");
     files.push(("reference.md".into(), markdown(&program, &described)?.into_bytes()));
     files.push(("summary.schema.json".into(), pretty(&summary).into_bytes()));

@@ -55,7 +55,8 @@ fn command() -> clap::Command {
     Arguments::command().mut_subcommands(|command| {
         command.mut_args(|option| match option.get_value_delimiter() {
             Some(_) => option.allow_hyphen_values(true),
-            None => option.allow_negative_numbers(true),
+            None if option.get_action().takes_values() => option.allow_negative_numbers(true),
+            None => option,
         })
     })
 }

@@ -4,7 +4,7 @@
 use crate::base::Result;
 use crate::base::number::significant;
 use crate::body::EdgeModel;
-use crate::case::{Form, KEYS, Key, ProfileKind, builtin_case};
+use crate::case::{FLAGS, Form, KEYS, Key, ProfileKind, WORDS, builtin_case};
 use crate::report::solution::tables;
 use crate::solve::{Options, Point, solve};
 use crate::stress::BodyKind;
@@ -37,6 +37,15 @@ fn cell(text: &str) -> String {
     text.replace('|', "\\|").replace('\n', " ").replace('<', "&lt;")
 }
 
+/// The least and the largest legal value. A limit that is no round number belongs to what is less.
+fn limits((low, high): (f64, f64)) -> String {
+    let [least, largest] = [low, high].map(|value| significant(value, 4));
+    match largest.parse() == Ok(high) {
+        true => format!("{least}, {largest}"),
+        false => format!("{least}, less than {largest}"),
+    }
+}
+
 fn keys(text: &mut String) {
     text.push_str(
         "## Keys of a case file\n\nBesides these numbers a case has a `name`. The load and the lengths are given by \
@@ -44,13 +53,25 @@ fn keys(text: &mut String) {
          | key | meaning | least and largest | example | given |\n|---|---|---|---|---|\n",
     );
     for key in &KEYS {
-        let [low, high] = [key.range.0, key.range.1].map(|value| significant(value, 4));
+        let limits = limits(key.range);
         let given = given(key);
         let what = cell(key.what.trim_end_matches(','));
         line(
             text,
-            format_args!("| `{}` | {what} | {low}, {high} | {} | {given} |", key.path, key.example),
+            format_args!("| `{}` | {what} | {limits} | {} | {given} |", key.path, key.example),
         );
+    }
+    text.push_str("\n### Words\n\n| key | meaning | words |\n|---|---|---|\n");
+    for word in &WORDS {
+        let paths: Vec<String> = word.paths.iter().map(|path| format!("`{path}`")).collect();
+        let choices: Vec<String> =
+            (word.choices)().iter().map(|choice| format!("`\"{choice}\"`")).collect();
+        let choices = if choices.is_empty() { "a file".to_string() } else { choices.join(", ") };
+        line(text, format_args!("| {} | {} | {choices} |", paths.join(", "), cell(word.what)));
+    }
+    for flag in &FLAGS {
+        let what = cell(flag.what);
+        line(text, format_args!("| `{}` | whether to take in {what} | true, false |", flag.path));
     }
     text.push_str("\n### Profiles\n\n| `kind` | keys |\n|---|---|\n");
     for kind in ProfileKind::ALL {

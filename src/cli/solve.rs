@@ -78,7 +78,8 @@ pub(super) struct Arguments {
     #[arg(long)]
     plots: bool,
     /// Also write the stress fields of both bodies, field-<body>.vtr for ParaView, in the block's
-    /// axes: in the roller z, sigma_xz and sigma_yz have the opposite sign of those in curves.csv
+    /// axes: in the roller z, sigma_xz and sigma_yz have the opposite sign of those in curves.csv;
+    /// and pressure.vtr, and pictures of planes through the fields
     #[arg(long, conflicts_with = "points")]
     field: bool,
     /// Numbers of points of a quarter of a body: across, along and into it

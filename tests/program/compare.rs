@@ -238,6 +238,20 @@ fn files_that_cannot_be_used_are_refused_with_their_place() {
             ":2: length_unit is stated twice",
         ),
         (
+            "x_m,y_m,p_pa\n# length_unit: mm\n0,0,1e9\n".into(),
+            ":2: length_unit is stated below the names of the columns",
+        ),
+        ("x_m,y_m,p_pa\r0,0,1e9\r".into(), "has line ends of carriage returns alone"),
+        // A line along z whose axes are not stated.
+        (
+            "x_m,y_m,z_m,p_pa\n0,0,-0.01,0\n0,0,-9e-3,1e9\n".into(),
+            ":3: in our axes z = -0.009 m is not on the contact: state axes",
+        ),
+        (
+            "x_m,y_m,z_m,p_pa\n0,0,-1e-4,1e9\n0,0,1e-4,1e9\n".into(),
+            "has all 2 pressures of 'points' at one x and y",
+        ),
+        (
             "# body: block\nx_m,y_m,p_pa\n0,0,1e9\n".into(),
             "states a body, but a pressure is that of both",
         ),

@@ -147,7 +147,14 @@ fn the_reference_has_every_key_option_and_column() {
     for key in &edgeline::case::KEYS {
         assert!(text.contains(&format!("| `{}` |", key.path)), "{}", key.path);
     }
+    for word in &edgeline::case::WORDS {
+        assert!(word.paths.iter().all(|path| text.contains(&format!("`{path}`"))), "{word:?}");
+    }
+    for flag in &edgeline::case::FLAGS {
+        assert!(text.contains(&format!("| `{}` |", flag.path)), "{}", flag.path);
+    }
     for part in [
+        "Poisson's ratio | 0, less than 0.5 |",
         "### edgeline explore",
         "`--tolerance TOLERANCE`",
         "`--port PORT`",

@@ -148,6 +148,8 @@ const MISTAKES: &[Mistake] = &[
         "f.toml:10: accuracy.tolerance = 0.5",
     ),
     ("[dimensionless]", "[factors]", "is a study file"),
+    ("[dimensionless]", "[sweep]", "is a sweep file"),
+    ("W = 5e-4", "W = [1e-4, 5e-4]", "write one, or run `edgeline sweep` on the file"),
 ];
 
 const LOADED_MISTAKES: &[Mistake] = &[

@@ -28,6 +28,10 @@ const END: f64 = 1e-5;
 /// Distance from x = 0 (C) within which a contact has some pressure, whatever its profile.
 const NEAR: f64 = 2.0;
 
+/// Distance (C) from the plane where the bodies touch first, beyond which no point can be one of the
+/// contact, however its surfaces are curved and pressed in.
+const OFF_SURFACE: f64 = 2.0;
+
 /// Depths below this (C) are those of the surface.
 const SURFACE: f64 = 1e-6;
 
@@ -159,18 +163,30 @@ fn refuse(path: &Path, line: Option<usize>, message: String) -> Error {
 /// The lines `# key: value` before the table. Other comments are left alone, unless a key is
 /// mistyped.
 fn read_statements(text: &str, path: &Path) -> Result<Statements> {
+    if text.contains('\r') && !text.contains('\n') {
+        let message =
+            "has line ends of carriage returns alone: save it with line feeds".to_string();
+        return Err(refuse(path, None, message));
+    }
     let mut statements = Statements::default();
     let mut stated: Vec<&str> = Vec::new();
+    let mut is_above = true;
     for (i, line) in text.lines().enumerate() {
         let line = line.trim();
         let Some(comment) = line.strip_prefix('#') else {
-            if line.is_empty() {
-                continue;
-            }
-            break;
+            is_above &= line.is_empty();
+            continue;
         };
         let Some((key, value)) = comment.split_once(':') else { continue };
         let (key, value) = (key.trim(), value.trim());
+        if !is_above {
+            if KEYS.iter().any(|(known, _)| *known == key) {
+                let message =
+                    format!("{key} is stated below the names of the columns: put it above them");
+                return Err(refuse(path, Some(i + 1), message));
+            }
+            continue;
+        }
         let distance = |(known, _): &(&str, &str)| strsim::damerau_levenshtein(known, key);
         let nearest = KEYS.iter().min_by_key(|k| distance(k)).expect("there are keys");
         let said = match distance(nearest) {
@@ -269,6 +285,8 @@ struct Table<'a> {
     pressures: bool,
     /// The mesh of the rows so far.
     mesh: f64,
+    /// Whether the rows have a place along the third axis.
+    has_depths: bool,
     /// The names that stay the same.
     same: Vec<String>,
     curves: Curves,
@@ -324,6 +342,7 @@ impl<'a> Table<'a> {
             system: statements.system.unwrap_or(System::Bodies),
             pressures,
             mesh: f64::INFINITY,
+            has_depths: has(&|m| m == Meaning::Place(axes.0[2].0)),
             same: vec![String::new(); columns.len()],
             curves: Curves { hertz: case.hertz(), pressure: Vec::new(), stress: Vec::new() },
             widths: Vec::new(),
@@ -394,7 +413,7 @@ impl<'a> Table<'a> {
         }
         let place = self.axes.turn(std::array::from_fn(|i| place[i] - self.origin_m[i]));
         let added = if self.pressures {
-            self.add_pressure(curve, [place[0], place[1]], width, p)
+            self.add_pressure(curve, place, width, p)
         } else {
             let stress = self.axes.turn_stress(&StressTensor::from_components(stress));
             self.add_stress(body.expect("a column or a statement"), curve, place, stress)
@@ -405,10 +424,17 @@ impl<'a> Table<'a> {
     fn add_pressure(
         &mut self,
         name: String,
-        at_m: [f64; 2],
+        [x_m, y_m, z_m]: [f64; 3],
         width_m: f64,
         p_pa: f64,
     ) -> Checked<(), String> {
+        let at_m = [x_m, y_m];
+        if self.has_depths && p_pa != 0.0 && z_m.abs() > OFF_SURFACE * self.curves.hertz.c_m {
+            let z = stated(z_m);
+            return Err(format!(
+                "in our axes z = {z} m is not on the contact: state axes and origin, as in `# axes: x z -y`"
+            ));
+        }
         // One body may be longer than the other, and nothing presses there.
         let on = |body| self.moved_inside(body, [at_m[0], at_m[1], 0.0]);
         on(BodyKind::Roller).or_else(|_| on(BodyKind::Block))?;
@@ -493,6 +519,17 @@ impl<'a> Table<'a> {
         if self.pressures {
             let [from, to] = self.case.overlap();
             let on = |[x, y]: &[f64; 2]| x.abs() <= NEAR && (from..=to).contains(y);
+            let one_place = |line: &&PressureLine| {
+                line.at.len() > 1 && line.at.iter().all(|at| *at == line.at[0])
+            };
+            if let Some(PressureLine { name, at, .. }) = self.curves.pressure.iter().find(one_place)
+            {
+                let message = format!(
+                    "has all {} pressures of '{name}' at one x and y in our axes: check axes and origin",
+                    at.len()
+                );
+                return Err(refuse(self.path, None, message));
+            }
             if !self.curves.pressure.iter().any(|line| line.at.iter().any(on)) {
                 let [from, to] = self.case.overlap_m().map(stated);
                 let message = format!(
