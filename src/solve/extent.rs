@@ -9,7 +9,8 @@ use crate::stress::BodyKind;
 const ROUNDING: f64 = 1e-9;
 
 /// The extent of a body (m): y from end to end, z from its surface at the point's x down. Across
-/// the contact the block has no end, and the roller its radius on either side.
+/// the contact a flat block has no end, and a round body its radius on either side; around a
+/// concave one there is no end below.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     body: BodyKind,
@@ -64,11 +65,12 @@ impl Outside {
 impl Extent {
     /// The extent of one of the bodies of `case`.
     pub fn of(case: &Case, body: BodyKind) -> Self {
-        let half_width_m = match body {
-            BodyKind::Block => f64::INFINITY,
+        let radius_m = match body {
+            BodyKind::Block => case.block.radius_m.unwrap_or(f64::INFINITY),
             BodyKind::Roller => case.roller.radius_m,
         };
-        Self { body, ends_m: case.ends_m(body), half_width_m, depth_m: 2.0 * half_width_m }
+        let depth_m = if radius_m > 0.0 { 2.0 * radius_m } else { f64::INFINITY };
+        Self { body, ends_m: case.ends_m(body), half_width_m: radius_m.abs(), depth_m }
     }
 
     /// The body's ends along y (m).
@@ -83,6 +85,9 @@ impl Extent {
     pub fn check(&self, at_m: [f64; 3]) -> Result<(), Outside> {
         (0..3).try_for_each(|axis| self.check_axis(axis, at_m[axis]))?;
         let [x_m, _, z_m] = at_m;
+        if self.depth_m.is_infinite() {
+            return Ok(());
+        }
         // Across the round body, from its surface at this x.
         let through_m = 2.0 * (self.half_width_m.powi(2) - x_m * x_m).max(0.0).sqrt();
         if z_m <= through_m + ROUNDING * self.depth_m {
@@ -127,7 +132,7 @@ impl Extent {
                 false => format!("keep y from {} to {} m", stated(from), stated(to)),
             };
             (format!("is outside the {name}"), remedy)
-        } else if self.body == BodyKind::Block {
+        } else if self.depth_m.is_infinite() {
             (format!("is outside the {name}"), "keep z >= 0".to_string())
         } else {
             (format!("is outside the {name}"), format!("keep 0 <= z <= {} m", stated(self.depth_m)))

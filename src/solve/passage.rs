@@ -11,12 +11,13 @@ use crate::stress::{BodyField, EDGE, Load, away_from_edges};
 use rayon::prelude::*;
 use std::f64::consts::FRAC_PI_2;
 
-/// From this x to its opposite the contact passes, in half-widths of the contact.
-const REACH: f64 = 10.0;
+/// From this x to its opposite the contact passes, in half-widths of the contact: there the
+/// material is unloaded within 1e-4 p0. Dang Van's measure may be largest without a load.
+const REACH: f64 = 100.0;
 
 /// Steps of a passage within 1.5 half-widths, and beyond on each side.
 const STEP: f64 = 0.025;
-const BEYOND: i32 = 20;
+const BEYOND: i32 = 44;
 
 /// Distances from the contact's edge of further steps, in its half-width there: on the surface
 /// under a traction sigma_xx has its largest value at the edge, with a vertical tangent beside it

@@ -1,6 +1,6 @@
 //! A solved case gives the same results in all its ways.
 
-use super::{KeySolution, Options, Point, SolvedCase, solve};
+use super::{KeySolution, Options, Point, SolvedCase, check_points, solve};
 use crate::base::Material;
 use crate::body::EdgeModel;
 use crate::case::{Case, Factors, builtin_case};
@@ -84,6 +84,19 @@ fn bad_grids_are_refused() {
     let beyond = 2.0 * case.roller.radius_m / case.hertz().c_m * 1.001;
     let said = refused(Grid { z: vec![beyond], ..good.clone() });
     assert!(said.contains("grid z (roller)") && said.contains("outside the roller"), "{said}");
+    // So does a raceway end; what is around a concave one has no end below.
+    let inside = |radius_m: f64, at_m: [f64; 3]| {
+        let mut raceway = case.clone();
+        raceway.block.radius_m = Some(radius_m);
+        check_points(&raceway, [(BodyKind::Block, at_m)]).map_err(|e| e.to_string())
+    };
+    for radius_m in [0.02, -0.02] {
+        assert!(inside(radius_m, [0.019, 0.0, 1e-3]).is_ok());
+        let said = inside(radius_m, [-0.021, 0.0, 0.0]).unwrap_err();
+        assert!(said.contains("is beside the block; keep |x| <= 0.02 m"), "{said}");
+    }
+    assert!(inside(-0.02, [0.0, 0.0, 0.05]).is_ok());
+    assert!(inside(0.02, [0.0, 0.0, 0.05]).unwrap_err().contains("is outside the block"));
     let many = Grid { x: vec![0.0; 5000], y: vec![0.0; 5000], z: vec![0.0] };
     assert!(refused(many).contains("5000 x 5000 x 1"));
     let said = solved.stress(BodyKind::Roller, &[[0.0, 0.0, beyond]]).unwrap_err().to_string();
