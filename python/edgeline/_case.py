@@ -52,7 +52,8 @@ class Case:
         )
 
     A case cannot be changed; `changed` makes another one. Cases can be compared,
-    pickled and used as keys.
+    pickled and used as keys. Files that a case names, of a profile or of heights,
+    are read when it is made, and read again by `changed` and where it is unpickled.
 
     Raises `edgeline.Error` for an unknown or missing key and for a value that is
     not legal, and `TypeError` for a value of a type that no case file holds.
@@ -139,7 +140,7 @@ class Case:
         return type(self)(**_merged(self.tables, tables))
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Case) and self.to_toml() == other.to_toml()
+        return isinstance(other, Case) and self._native.same(other._native)
 
     def __hash__(self) -> int:
         return hash(self.to_toml())

@@ -19,6 +19,11 @@ if TYPE_CHECKING:
 
 Progress = bool | Callable[[int, int], object]
 
+Column = NDArray[Any] | list[str]
+
+MOST = 2**16
+"""Most cases that are solved at a time, and most parts of a sweep."""
+
 
 @overload
 def sweep(
@@ -87,8 +92,10 @@ def sweep(
         raise Error(
             f"into = {into!r} is not valid: there is no such table; give numpy, pandas or arrow"
         )
-    if jobs is not None and jobs < 1:
-        raise Error(f"jobs = {jobs} is not valid: at least one case is solved at a time")
+    if jobs is not None and not 1 <= operator.index(jobs) <= MOST:
+        raise Error(f"jobs = {jobs} is not valid: give from 1 to {MOST} cases at a time")
+    # A package that is missing is told before anything is solved.
+    made = {"pandas": _pandas, "arrow": _arrow}[into]() if into != "numpy" else _numpy
     if shard is not None:
         shard = _shard(shard)
     natives = [native_of(case) for case in cases]
@@ -97,20 +104,45 @@ def sweep(
             rows, table = _native.sweep(natives, method, tolerance, jobs, shard, bar.update)
     else:
         rows, table = _native.sweep(natives, method, tolerance, jobs, shard, progress or None)
-    if into == "pandas":
-        import pandas
-
-        return pandas.DataFrame({"row": rows, **table})
-    if into == "arrow":
-        import pyarrow
-
-        return pyarrow.table({"row": rows, **table})
-    return {"row": rows, **{name: _column(values) for name, values in table.items()}}
+    return made({"row": rows, **table})
 
 
-def _column(values: NDArray[np.float64] | list[str]) -> NDArray[Any]:
-    """A column of numbers or of texts, which may be empty."""
-    return values if isinstance(values, np.ndarray) else np.asarray(values, dtype=np.str_)
+# A column of texts has their type even where it is empty.
+
+
+def _numpy(table: dict[str, Column]) -> dict[str, NDArray[Any]]:
+    return {
+        name: values if isinstance(values, np.ndarray) else np.asarray(values, dtype=np.str_)
+        for name, values in table.items()
+    }
+
+
+def _pandas() -> Callable[[dict[str, Column]], pandas.DataFrame]:
+    import pandas
+
+    text = pandas.Series([""]).dtype
+
+    def made(table: dict[str, Column]) -> pandas.DataFrame:
+        columns = {
+            name: values if isinstance(values, np.ndarray) else pandas.Series(values, dtype=text)
+            for name, values in table.items()
+        }
+        return pandas.DataFrame(columns)
+
+    return made
+
+
+def _arrow() -> Callable[[dict[str, Column]], pyarrow.Table]:
+    import pyarrow
+
+    def made(table: dict[str, Column]) -> pyarrow.Table:
+        columns = {
+            name: values if isinstance(values, np.ndarray) else pyarrow.array(values, pyarrow.string())
+            for name, values in table.items()
+        }
+        return pyarrow.table(columns)
+
+    return made
 
 
 def _shard(shard: object) -> tuple[int, int]:
@@ -125,7 +157,7 @@ def _shard(shard: object) -> tuple[int, int]:
                 pair = operator.index(part), operator.index(parts)
             except TypeError:
                 pair = (0, 0)
-            if min(pair) > 0:
+            if 1 <= pair[0] <= pair[1] <= MOST:
                 return pair
     raise Error(
         f"shard = {shard!r} is not valid: give a pair of whole numbers, (1, 3) for the first of "

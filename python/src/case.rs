@@ -4,7 +4,7 @@ use crate::errors::raised;
 use edgeline::base;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
+use pyo3::types::{PyDict, PyFloat, PyInt, PyList, PyMapping, PyString, PyTuple};
 use std::path::PathBuf;
 use toml::Value;
 
@@ -29,7 +29,7 @@ impl Case {
     /// Takes a case from what its file would hold.
     #[staticmethod]
     fn from_tables(tables: &Bound<'_, PyDict>) -> PyResult<Self> {
-        let text = toml::to_string(&table(tables, "")?).map_err(|e| {
+        let text = toml::to_string(&table(tables.as_mapping(), "")?).map_err(|e| {
             PyTypeError::new_err(format!("these tables do not make a case file: {e}"))
         })?;
         // The lines are those of a text that nobody has seen.
@@ -39,6 +39,11 @@ impl Case {
     /// The case file, to the last digit.
     fn to_toml(&self) -> String {
         self.0.to_toml()
+    }
+
+    /// Whether it is the same case, with the same data from the files that it names.
+    fn same(&self, other: &Self) -> bool {
+        self.0 == other.0
     }
 
     /// The case's name.
@@ -80,7 +85,7 @@ fn without_line(error: base::Error) -> base::Error {
 const MOST_LEVELS: usize = 8;
 
 /// A table of a case file; what is None does not stand there.
-fn table(values: &Bound<'_, PyDict>, path: &str) -> PyResult<toml::Table> {
+fn table(values: &Bound<'_, PyMapping>, path: &str) -> PyResult<toml::Table> {
     if path.matches('.').count() >= MOST_LEVELS {
         return Err(PyTypeError::new_err(format!(
             "tables stand in each other {MOST_LEVELS} levels deep, or one in itself: a case file has three \
@@ -88,8 +93,8 @@ fn table(values: &Bound<'_, PyDict>, path: &str) -> PyResult<toml::Table> {
         )));
     }
     let mut table = toml::Table::new();
-    for (key, given) in values {
-        let key: String = key.extract()?;
+    for item in values.items()? {
+        let (key, given): (String, Bound<'_, PyAny>) = item.extract()?;
         if !given.is_none() {
             let path = if path.is_empty() { key.clone() } else { format!("{path}.{key}") };
             table.insert(key, value(&given, &path)?);
@@ -121,7 +126,7 @@ fn value(given: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
             PyTypeError::new_err(format!("{path} is no Unicode text: it has a lone surrogate"))
         });
     }
-    if let Ok(values) = given.cast::<PyDict>() {
+    if let Ok(values) = given.cast::<PyMapping>() {
         return table(values, path).map(Value::Table);
     }
     if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {

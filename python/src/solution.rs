@@ -3,12 +3,12 @@
 use crate::case::Case;
 use crate::errors::raised;
 use crate::tables::table;
-use crate::work::work;
+use crate::work::{heard, work};
 use edgeline::base::{BodyKind, Error, HertzScales, Result, StressTensor};
-use edgeline::cli::values::{checked_residual, checked_tolerance, too_fine};
+use edgeline::cli::values::{checked_residual, checked_tolerance};
 use edgeline::report::cells::contents;
 use edgeline::report::columns::Columns;
-use edgeline::report::solution::{tables, write_locked};
+use edgeline::report::solution::{tables, too_fine, write_locked};
 use edgeline::solve::{
     CellOptions, CellSolution, Options, Point, SolvedCase, check_grid, check_points,
     solve_on_cells, stress_on_cells,
@@ -43,7 +43,7 @@ pub fn solve(
     tolerance: Option<f64>,
     engine: Option<&str>,
 ) -> PyResult<Solution> {
-    work(py, || Solution::new(case.0.clone(), method, tolerance, engine))?.map_err(raised)
+    heard(py, || Solution::new(case.0.clone(), method, tolerance, engine))?.map_err(raised)
 }
 
 impl Solution {
@@ -128,16 +128,13 @@ impl Solution {
     }
 
     /// Stresses (Pa) on a grid (m), component by component.
-    fn on_grid(&self, body: BodyKind, grid: Grid) -> Result<Vec<f64>> {
+    fn on_grid(&self, body: BodyKind, grid: &Grid) -> Result<Vec<f64>> {
         let HertzScales { c_m, p0_pa, .. } = self.case.hertz();
-        let scaled = |axis: &[f64]| axis.iter().map(|v| v / c_m).collect();
-        let in_c = Grid { x: scaled(&grid.x), y: scaled(&grid.y), z: scaled(&grid.z) };
         if let Solved::Line(line) = &self.solved {
-            let found = line.0.on_grid(body, &in_c)?;
+            let found = line.0.on_grid(body, &scaled(grid, c_m))?;
             return Ok(found.values().iter().map(|v| v * p0_pa).collect());
         }
-        check_grid(&self.case, body, &in_c)?;
-        let Grid { x, y, z } = &grid;
+        let Grid { x, y, z } = grid;
         let line = |z: f64, y: f64| x.iter().map(move |x| [*x, y, z]);
         let plane = |z: f64| y.iter().flat_map(move |y| line(z, *y));
         let found = self.stresses(body, z.iter().flat_map(|z| plane(*z)).collect())?;
@@ -149,6 +146,15 @@ impl Solution {
 /// Points whose stresses are computed at once: between them signals, such as that of Ctrl-C, are
 /// heard.
 const AT_ONCE: usize = 4096;
+
+/// The same of a grid, in whole planes: what a call sets up costs more on cells than its points.
+const GRID_AT_ONCE: usize = 16384;
+
+/// A grid (m) in units of C.
+fn scaled(grid: &Grid, c_m: f64) -> Grid {
+    let [x, y, z] = [&grid.x, &grid.y, &grid.z].map(|axis| axis.iter().map(|v| v / c_m).collect());
+    Grid { x, y, z }
+}
 
 /// Refuses a place on the surface that is no place.
 fn check_finite(x: &[f64], y: &[f64]) -> Result<()> {
@@ -255,8 +261,19 @@ impl Solution {
         let [x, y, z] = [x, y, z].map(|axis| axis.as_slice().map(<[f64]>::to_vec));
         let grid = Grid { x: x?, y: y?, z: z? };
         let shape = [6, grid.z.len(), grid.y.len(), grid.x.len()];
-        let found = work(py, || self.on_grid(body, grid))?.map_err(raised)?;
-        found.into_pyarray(py).reshape(shape)
+        let c_m = self.case.hertz().c_m;
+        check_grid(&self.case, body, &scaled(&grid, c_m)).map_err(raised)?;
+        let per_plane = grid.x.len() * grid.y.len();
+        let mut components: [Vec<f64>; 6] = Default::default();
+        for z in grid.z.chunks((GRID_AT_ONCE / per_plane.max(1)).max(1)) {
+            let some = Grid { z: z.to_vec(), ..grid.clone() };
+            let found = work(py, || self.on_grid(body, &some))?.map_err(raised)?;
+            for (all, own) in components.iter_mut().zip(found.chunks_exact(some.len().max(1))) {
+                all.extend(own);
+            }
+            py.check_signals()?;
+        }
+        components.concat().into_pyarray(py).reshape(shape)
     }
 
     /// Writes the files of `edgeline solve` into a folder.

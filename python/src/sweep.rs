@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::errors::{Error, raised};
 use crate::tables::table;
-use crate::work::{guarded, panicked};
+use crate::work::{PATIENCE, guarded, panicked};
 use edgeline::base;
 use edgeline::cli::values::checked_tolerance;
 use edgeline::report::columns::{Columns, Value};
@@ -14,10 +14,6 @@ use numpy::{IntoPyArray, PyArray1};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
-use std::time::Duration;
-
-/// How long a signal, such as that of Ctrl-C, may have to wait.
-const PATIENCE: Duration = Duration::from_millis(100);
 
 /// A row and what became of it.
 type Row = (usize, Outcome);

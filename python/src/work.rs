@@ -1,11 +1,17 @@
 //! Where work is done: without the interpreter's lock, and with no panic getting out.
 
 use crate::errors::Error;
+use edgeline::base::stop::stoppable;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+/// How long a signal, such as that of Ctrl-C, may have to wait.
+pub const PATIENCE: Duration = Duration::from_millis(100);
 
 /// Calls that are at work.
 static AT_WORK: AtomicUsize = AtomicUsize::new(0);
@@ -78,6 +84,34 @@ pub fn work<T: Send>(py: Python<'_>, work: impl FnOnce() -> T + Send) -> PyResul
             // Where no thread is to be had, this one is left.
             None => work(),
         }
+    })
+}
+
+/// As [`work`], beside this thread, which listens to signals: one whose handler raises, such as
+/// that of Ctrl-C, stops the work where it asks for that.
+///
+/// # Errors
+/// As [`guarded`], and what a signal's handler raises.
+pub fn heard<T: Send>(py: Python<'_>, todo: impl FnOnce() -> T + Send) -> PyResult<T> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let (done, wait) = channel::<()>();
+    py.detach(move || {
+        std::thread::scope(|scope| {
+            let working = scope.spawn(|| {
+                let _done = done;
+                Python::attach(|py| work(py, || stoppable(&stop, todo)))
+            });
+            let mut raised = Ok(());
+            // Its end is told by the sender's.
+            while wait.recv_timeout(PATIENCE) == Err(RecvTimeoutError::Timeout) {
+                if raised.is_ok() {
+                    raised = Python::attach(|py| py.check_signals());
+                    stop.store(raised.is_err(), Ordering::Relaxed);
+                }
+            }
+            let found = working.join().map_err(|_| panicked())?;
+            raised.and(found)
+        })
     })
 }
 

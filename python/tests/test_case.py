@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import pickle
+from collections import UserDict
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -156,3 +158,29 @@ def test_a_missing_file_is_told_as_by_the_command_line(tmp_path: Path, program: 
     with pytest.raises(edgeline.Error) as refused:
         edgeline.Case.from_toml(tmp_path / "none.toml")
     assert said.stderr == f"error: {refused.value}\n"
+
+
+def test_any_mapping_is_a_table() -> None:
+    case = edgeline.Case(**tables())
+    views = {
+        key: MappingProxyType(value) if isinstance(value, dict) else value
+        for key, value in tables().items()
+    }
+    assert edgeline.Case(**views) == case
+    profile = MappingProxyType({"kind": "crown", "radius_m": 5.0})
+    crowned = case.changed(roller=UserDict(profile=profile))
+    assert crowned.tables["roller"]["profile"] == dict(profile)
+
+
+def test_cases_with_other_data_in_their_files_are_others(tmp_path: Path) -> None:
+    file = tmp_path / "drop.csv"
+
+    def measured(drop_m: float) -> edgeline.Case:
+        file.write_text(f"y_m,drop_m\n-5e-3,{drop_m}\n0,0\n5e-3,{drop_m}\n")
+        profile = {"kind": "table", "file": str(file)}
+        return edgeline.Case(**tables()).changed(roller={"profile": profile})
+
+    case = measured(1e-6)
+    assert case == pickle.loads(pickle.dumps(case))
+    assert case != measured(8e-6)
+    assert case != pickle.loads(pickle.dumps(case)), "the file is read again"

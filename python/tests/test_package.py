@@ -65,6 +65,37 @@ def test_a_forked_process_solves_too() -> None:
     assert edgeline.__version__.count(".") == 2
 
 
+INTERRUPTED = """
+import os, signal, threading, time, numpy, edgeline
+numpy.save("rough.npy", 2e-7 * numpy.random.default_rng(1).standard_normal((300, 300)))
+case = edgeline.Case.from_toml("long-contact")
+steps = {"dx_m": 10e-6, "dy_m": case.tables["roller"]["length_m"] / 299}
+rough = case.changed(surface={"heights": "rough.npy", **steps})
+solution = edgeline.solve(case, tolerance=1e-2)
+axes = numpy.linspace(0, 1e-3, 300), numpy.linspace(0, 2e-3, 300), numpy.linspace(0, 1e-3, 400)
+def grid():
+    solution.to_xarray(*axes)
+for task in (lambda: edgeline.solve(rough), grid):
+    threading.Timer(0.3, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
+    began = time.perf_counter()
+    try:
+        task()
+        print("done")
+    except KeyboardInterrupt:
+        print(time.perf_counter() - began)
+"""
+
+
+def test_an_interrupt_ends_a_contact_on_cells_and_a_grid(tmp_path: Path) -> None:
+    pytest.importorskip("xarray")
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
+    ended = done.stdout.split()
+    assert len(ended) == 2 and "done" not in ended, ended
+
+
 def test_every_public_name_is_documented() -> None:
     for name in edgeline.__all__:
         thing = getattr(edgeline, name)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -79,8 +80,32 @@ def test_shards_have_each_case_once(cases: list[edgeline.Case]) -> None:
     p_max = np.concatenate([shard["p_max_pa"] for shard in shards])
     assert sorted(rows.tolist()) == list(range(len(cases)))
     assert np.array_equal(p_max[np.argsort(rows)], whole["p_max_pa"])
-    with pytest.raises(edgeline.Error, match="write i/n"):
+    with pytest.raises(edgeline.Error, match="give a pair of whole numbers"):
         edgeline.sweep(cases, shard=(3, 2))
+
+
+def test_an_empty_part_has_the_columns_of_the_others(cases: list[edgeline.Case]) -> None:
+    pandas, pyarrow = pytest.importorskip("pandas"), pytest.importorskip("pyarrow")
+    parts = [
+        edgeline.sweep(cases[:1], tolerance=1e-2, shard=(i, 2), into="arrow") for i in (1, 2)
+    ]
+    assert pyarrow.concat_tables(parts).num_rows == 1
+    frames = [
+        edgeline.sweep(cases[:1], tolerance=1e-2, shard=(i, 2), into="pandas") for i in (1, 2)
+    ]
+    assert frames[0].dtypes.equals(frames[1].dtypes)
+    assert len(pandas.concat(frames)) == 1
+
+
+@pytest.mark.parametrize(("into", "package"), [("pandas", "pandas"), ("arrow", "pyarrow")])
+def test_a_missing_package_is_told_before_anything_is_solved(
+    into: Any, package: str, cases: list[edgeline.Case], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setitem(sys.modules, package, None)
+    seen: list[tuple[int, int]] = []
+    with pytest.raises(ImportError):
+        edgeline.sweep(cases, into=into, progress=lambda *rows: seen.append(rows))
+    assert not seen
 
 
 def test_nothing_to_do_is_done() -> None:
@@ -94,10 +119,10 @@ def test_nothing_to_do_is_done() -> None:
 
 
 def test_numbers_of_jobs_and_parts_are_checked(cases: list[edgeline.Case]) -> None:
-    for wrong in (0, -1):
+    for wrong in (0, -1, 10**30):
         with pytest.raises(edgeline.Error, match=f"jobs = {wrong} is not valid"):
             edgeline.sweep(cases, jobs=wrong)
-    for shard in ("1/3", (1.0, 3), (0, 3), 1, (True, 2), (1, np.bool_(True))):
+    for shard in ((4, 3), (1, 10**30), "1/3", (1.0, 3), (0, 3), 1, (True, 2), (1, np.bool_(True))):
         with pytest.raises(edgeline.Error, match="give a pair of whole numbers"):
             edgeline.sweep(cases, shard=shard)  # type: ignore[arg-type]
 

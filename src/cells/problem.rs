@@ -9,6 +9,7 @@ use super::linear::Linear;
 use super::pressure::CellPressure;
 use super::solver::{Complementarity, State};
 use super::whole::WholeConvolution;
+use crate::base::stop::go_on;
 use crate::base::{Error, Parity, Result, Secants};
 use crate::contact::Gap;
 use crate::host::check_memory;
@@ -125,6 +126,7 @@ impl CellProblem {
         let state = self.solve_level(&level, gaps, *grid, own, self.tolerance)?;
         let State { pressure, gap, motion, residual, iterations } = state;
         if residual.is_nan() || residual > self.tolerance {
+            go_on()?;
             if let CellTilt::Free(arm) = self.tilt {
                 return self.solve_balanced(level.gap, arm, progress);
             }

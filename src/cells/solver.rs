@@ -1,6 +1,7 @@
 //! The contact iteration.
 
 use super::linear::Linear;
+use crate::base::stop::go_on;
 
 /// The complementarity problem of a contact over n cells: u + gap = D where p > 0, u + gap >= D
 /// elsewhere, sum p given. With arms y, D + T y takes the place of D, and sum y p is given too.
@@ -54,8 +55,8 @@ const SETTLED: f64 = 0.1;
 
 impl Complementarity<'_> {
     /// Solves from the pressure `start` >= 0, not zero everywhere, to the residual `tolerance`;
-    /// gives up, with what it has, after `most` applications of the displacement. Tells `progress`
-    /// of their number and of the residual.
+    /// gives up, with what it has, after `most` applications of the displacement, or where it is
+    /// stopped. Tells `progress` of their number and of the residual.
     ///
     /// On the set of cells in contact the pressure solves linear equations with one constraint, its
     /// sum, whose multiplier is D, and with arms another one, whose multiplier is T: conjugate
@@ -90,7 +91,7 @@ impl Complementarity<'_> {
             progress(iterations, relative);
             let tensile = pressure.iter().any(|p| *p < 0.0);
             let settled = relative <= tolerance && !tensile;
-            if settled || relative.is_nan() || iterations >= most {
+            if settled || relative.is_nan() || iterations >= most || go_on().is_err() {
                 pressure.iter_mut().for_each(|p| *p = p.max(0.0));
                 return State { pressure, gap: misfit, motion, residual: relative, iterations };
             }
