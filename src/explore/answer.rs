@@ -24,8 +24,8 @@ const PROFILE_POINTS: usize = 81;
 struct Answer {
     case: CaseAnswer,
     summary: Summary,
-    /// What the command line notes about the case.
-    note: Option<String>,
+    /// What the command line notes about the case, and warns of.
+    notes: Vec<String>,
     /// Pressure on the two standard lines, by their names.
     pressure: BTreeMap<String, Line>,
     /// Mean pressures of the cells, row by row along the contact.
@@ -114,7 +114,7 @@ pub fn solved(case: &Case, method: EdgeModel, coarser: Option<f64>) -> Result<Ve
     let found = solved.solution();
     let answer = Answer {
         case: case_answer(case),
-        note: too_fine(&roughly),
+        notes: too_fine(&roughly).into_iter().chain(found.summary.warnings()).collect(),
         pressure: pressure(&found),
         map: map(&found),
         line_load: line_load(&found),

@@ -557,8 +557,8 @@ function status() {
   const d = main.data.summary;
   const last = moves.length ? `; on the screen ${significant(moves[moves.length - 1], 3)} ms after the last move` : "";
   const whose = earlier ? "Shown is the last case that was solved, not that of the fields: " : "";
-  const note = main.data.note ? `; note: ${main.data.note}` : "";
-  byId("status").textContent = `${whose}${MAIN}, tolerance ${significant(d.details.tolerance, 2)} p0${main.quick ? " while the slider moves" : ""}: ${d.iterations} iterations, ${significant(d.seconds.total * 1e3, 3)} ms${main.quick ? last : `; ${d.converged ? "converged" : "not converged"}, load met to ${significant(d.load_error_rel, 1)}${last}${note}`}`;
+  const notes = main.data.notes.map((text) => `; note: ${text}`).join("");
+  byId("status").textContent = `${whose}${MAIN}, tolerance ${significant(d.details.tolerance, 2)} p0${main.quick ? " while the slider moves" : ""}: ${d.iterations} iterations, ${significant(d.seconds.total * 1e3, 3)} ms${main.quick ? last : `; ${d.converged ? "converged" : "not converged"}, load met to ${significant(d.load_error_rel, 1)}${last}${notes}`}`;
 }
 
 // Largest differences of a model from the main one, in p0.

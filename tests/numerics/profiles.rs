@@ -427,8 +427,8 @@ fn a_contact_that_all_but_reaches_an_end_narrows_as_closely_as_asked() {
     assert!(off < 1e-3, "{off:e} p0");
 }
 
-/// A roller with broken edges, arcs of 0.1 mm beside a straight part: the contact ends 0.05 C beyond
-/// it, and within that the pressure rises to 3.8 p0 and falls. At 1e-2 its largest value was 5 p0.
+/// A roller with broken edges, arcs of 0.1 mm beside a straight part: the contact ends 0.05 C
+/// beyond it, and within that the pressure rises to 3.8 p0 and falls. At 1e-2 it was 5 p0 at most.
 #[test]
 fn the_pressure_at_a_broken_edge_is_resolved() {
     let steel = Material { young_pa: 210e9, poisson: 0.3 };

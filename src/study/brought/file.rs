@@ -28,8 +28,8 @@ const END: f64 = 1e-5;
 /// Distance from x = 0 (C) within which a contact has some pressure, whatever its profile.
 const NEAR: f64 = 2.0;
 
-/// Distance (C) from the plane where the bodies touch first, beyond which no point can be one of the
-/// contact, however its surfaces are curved and pressed in.
+/// Distance (C) from the plane where the bodies touch first, beyond which no point can be one of
+/// the contact, however its surfaces are curved and pressed in.
 const OFF_SURFACE: f64 = 2.0;
 
 /// Depths below this (C) are those of the surface.
