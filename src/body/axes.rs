@@ -97,6 +97,10 @@ const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 const TURN: f64 = 0.1;
 const NARROWEST: f64 = 0.02;
 
+/// Most growth of the panels at a corner towards which a half-width falls within that length: over
+/// one of 0.1 C next to one of 0.015 C it falls by a third, and five nodes do not follow that.
+const GENTLE: f64 = 3.0;
+
 /// The least largest wavenumber times that distance, and how many times a level's own it is at
 /// most. Where half-widths fall towards a tip, longer waves leave out what nodes so close do to
 /// each other; far shorter ones than the level's nodes can tell apart are noise.
@@ -536,15 +540,18 @@ impl Resolution {
     }
 
     /// The same with half-widths towards each end of the contact that follow what turns there
-    /// within a length (C), and with waves as short as these ask for. Towards an end that does not
-    /// turn so soon half-widths as close would be noise.
+    /// within a length (C), with waves as short as these ask for, and with panels that grow no
+    /// faster than `GENTLE`. Towards an end that does not turn so soon half-widths as close would
+    /// be noise.
     #[must_use]
     pub fn following(self, lengths: [f64; 2]) -> Self {
         let follows = |side: usize| self.spacing[side].min((TURN * lengths[side]).max(NARROWEST));
         let spacing = [0, 1].map(follows);
         let closest = spacing[0].min(spacing[1]);
         let k_max = (RESOLVED / closest).clamp(self.k_max, SHORTER * self.k_max);
-        Self { spacing, k_max, ..self }
+        let turns = (0..2).any(|side| spacing[side] < self.spacing[side]);
+        let corner_ratio = if turns { self.corner_ratio.min(GENTLE) } else { self.corner_ratio };
+        Self { spacing, k_max, corner_ratio, ..self }
     }
 
     /// The same for a contact that narrows to a tip at an end, for a `tolerance`: panels grow as

@@ -453,6 +453,35 @@ fn the_pressure_at_a_broken_edge_is_resolved() {
     small("largest pressure", (largest / limit - 1.0).abs(), 0.15);
 }
 
+/// A half-width that falls steeply towards the end of the bodies: where panels beside it grew seven
+/// times as long as their neighbours, the pressure had a step of 3 tolerances of 5e-3 between two
+/// of them, and the shear below it a peak of 13.
+#[test]
+fn a_half_width_that_falls_steeply_to_an_end_has_no_steps() {
+    let text = "
+        name = \"steep\"
+        roller = { radius_m = 0.01, length_m = 1.8528741e-3, young_pa = 210e9, poisson = 0.14364172, profile = { kind = \"logarithmic\", amplitude_m = 1.4768448e-7, k = 0.98 } }
+        block = { length_m = 1.8528741e-3, young_pa = 212.67488e9, poisson = 0.32495483 }
+        load = { force_n = 194.65955, eccentricity_m = 0.10404840e-3 }
+        pose.offset_m = 0.013395804e-3";
+    let case = Case::parse(text, Path::new("steep.toml")).unwrap();
+    let places = [8.2, 8.3, 8.35, 8.356, 8.36, 8.38, 8.4];
+    let at = |tolerance: f64| {
+        let solved =
+            SolvedCase::new(&case.clone().with_tolerance(tolerance), &contact_alone()).unwrap();
+        let below = places.map(|y| [0.0, y, 0.78]);
+        let shears = solved.stress(BodyKind::Block, &below).unwrap();
+        (places.map(|y| solved.pressure(0.7, y)), shears)
+    };
+    let ((pressures, shears), (finer, fine)) = (at(5e-3), at(1e-3));
+    for (found, wanted) in pressures.iter().zip(finer) {
+        small("pressure", (found - wanted).abs(), 5e-3);
+    }
+    for (found, wanted) in shears.iter().zip(fine) {
+        small("shear", (found.yz - wanted.yz).abs(), 5e-3);
+    }
+}
+
 /// The contact ends near both singular ends of its bodies: with the resolution of those, and where
 /// it was found to end alternated, the search did not come to an end.
 #[test]
