@@ -19,8 +19,6 @@ if TYPE_CHECKING:
 
 Progress = bool | Callable[[int, int], object]
 
-Column = NDArray[Any] | list[str]
-
 MOST = 2**16
 """Most cases that are solved at a time, and most parts of a sweep."""
 
@@ -95,7 +93,7 @@ def sweep(
     if jobs is not None and not 1 <= operator.index(jobs) <= MOST:
         raise Error(f"jobs = {jobs} is not valid: give from 1 to {MOST} cases at a time")
     # A package that is missing is told before anything is solved.
-    made = {"pandas": _pandas, "arrow": _arrow}[into]() if into != "numpy" else _numpy
+    texts, made = _makers(into)
     if shard is not None:
         shard = _shard(shard)
     natives = [native_of(case) for case in cases]
@@ -104,45 +102,25 @@ def sweep(
             rows, table = _native.sweep(natives, method, tolerance, jobs, shard, bar.update)
     else:
         rows, table = _native.sweep(natives, method, tolerance, jobs, shard, progress or None)
-    return made({"row": rows, **table})
-
-
-# A column of texts has their type even where it is empty.
-
-
-def _numpy(table: dict[str, Column]) -> dict[str, NDArray[Any]]:
-    return {
-        name: values if isinstance(values, np.ndarray) else np.asarray(values, dtype=np.str_)
+    columns = {
+        name: values if isinstance(values, np.ndarray) else texts(values)
         for name, values in table.items()
     }
+    return made({"row": rows, **columns})
 
 
-def _pandas() -> Callable[[dict[str, Column]], pandas.DataFrame]:
-    import pandas
+def _makers(into: str) -> tuple[Callable[[list[str]], Any], Callable[[dict[str, Any]], Any]]:
+    """What makes a column of texts, which has their type even where it is empty, and a table."""
+    if into == "pandas":
+        import pandas
 
-    text = pandas.Series([""]).dtype
+        text = pandas.Series([""]).dtype
+        return lambda values: pandas.Series(values, dtype=text), pandas.DataFrame
+    if into == "arrow":
+        import pyarrow
 
-    def made(table: dict[str, Column]) -> pandas.DataFrame:
-        columns = {
-            name: values if isinstance(values, np.ndarray) else pandas.Series(values, dtype=text)
-            for name, values in table.items()
-        }
-        return pandas.DataFrame(columns)
-
-    return made
-
-
-def _arrow() -> Callable[[dict[str, Column]], pyarrow.Table]:
-    import pyarrow
-
-    def made(table: dict[str, Column]) -> pyarrow.Table:
-        columns = {
-            name: values if isinstance(values, np.ndarray) else pyarrow.array(values, pyarrow.string())
-            for name, values in table.items()
-        }
-        return pyarrow.table(columns)
-
-    return made
+        return lambda values: pyarrow.array(values, pyarrow.string()), pyarrow.table
+    return lambda values: np.asarray(values, dtype=np.str_), dict
 
 
 def _shard(shard: object) -> tuple[int, int]:

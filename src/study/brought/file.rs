@@ -161,7 +161,7 @@ fn refuse(path: &Path, line: Option<usize>, message: String) -> Error {
 }
 
 /// The lines `# key: value` before the table. Other comments are left alone, unless a key is
-/// mistyped.
+/// mistyped, or stands below the names of the columns.
 fn read_statements(text: &str, path: &Path) -> Result<Statements> {
     if text.contains('\r') && !text.contains('\n') {
         let message =
