@@ -75,7 +75,7 @@ fn gates(gates: &[GateOutcome]) -> String {
     match (gates.len(), failed.len()) {
         (0, _) => {
             "No accuracy gate was evaluated: the built-in ones belong to the built-in studies, and \
-                   `edgeline gate` takes others."
+                   edgeline gate takes others."
                 .to_string()
         }
         (n, 0) => format!("All {n} accuracy gates hold."),

@@ -43,7 +43,7 @@ pub struct Summary<D = Details> {
     pub load_error_rel: f64,
     /// Time spent.
     pub seconds: Seconds,
-    /// The most stressed place of the curves asked for, all of them by default, more than 0.1 C
+    /// The most stressed place of the curves asked for, all of them by default, at least 0.1 C
     /// from the surface's edges at the ends of the bodies' overlap.
     pub critical: Option<CriticalSummary>,
     /// The resolution and the work.

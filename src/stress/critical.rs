@@ -26,8 +26,9 @@ impl Critical {
 /// the sampling, not of the contact.
 pub const EDGE: f64 = 0.1;
 
-/// Relative tolerance for rounding of a distance from the edge.
-const SLACK: f64 = 1e-9;
+/// Rounding of places, in half-lengths of the overlap but at least 1 C: files have nine digits. A
+/// point that lies at a distance that is asked for counts, whichever way its place was rounded.
+const SLACK: f64 = 1e-8;
 
 /// Whether the point `at` (C) is at least `distance` (C) away from the edges of an overlap with
 /// these `ends` (C): the lines through them on the surface, z = 0 at any x.
@@ -39,5 +40,23 @@ pub fn away_from_edges(at: [f64; 3], ends: [f64; 2], distance: f64) -> bool {
 
 /// [`away_from_edges`] of an overlap of this `half_length` (C) about y = 0.
 pub fn away_from_edge(at: [f64; 3], half_length: f64, distance: f64) -> bool {
-    (at[1].abs() - half_length).hypot(at[2]) >= distance * (1.0 - SLACK)
+    (at[1].abs() - half_length).hypot(at[2]) >= distance - SLACK * half_length.max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_at_the_distance_counts_whichever_way_files_round_it() {
+        for i in 0..5000 {
+            let half_length = 0.5 + 0.037 * f64::from(i);
+            let c_m = 1e-4 * (1.0 + (0.618 * f64::from(i)).fract());
+            let counts = |off: f64| {
+                let y_m: f64 = format!("{:.8e}", (half_length - off) * c_m).parse().unwrap();
+                away_from_edge([0.0, y_m / c_m, 0.0], half_length, 0.1)
+            };
+            assert!(counts(0.1) && counts(0.10001) && !counts(0.09999), "{half_length} C, {c_m} m");
+        }
+    }
 }

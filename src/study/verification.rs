@@ -4,15 +4,17 @@
 //! themselves: u_num of the code by the grid convergence index of Roache (J. Fluids Eng. 116 (1994)
 //! 405), Fs |f1 - f2| / (r^p - 1), and that of the model by its own refinement. |E| beyond
 //! sqrt(u_code^2 + u_model^2) is a difference of the models; below, nothing can be said but that
-//! they agree. All are root mean squares over the same points, with equal weights for all curves.
+//! they agree. All are root mean squares over the same points, plain means of each curve's points,
+//! with equal weights for all curves.
 //!
-//! Places are kept apart: more than 1 C from the ends of the contact, where solutions are regular,
+//! Places are kept apart: at least 1 C from the ends of the contact, where solutions are regular,
 //! and 0.1 to 1 C from one, where gradients are steep and the pressure of a longer body grows
 //! without bound. Nearer, a singular value belongs to its mesh, and nothing is compared.
 
 use super::brought::{BroughtFile, FileRun, GATED, OnPoints};
 use super::run::Reference;
 use super::source::{Engine, Source};
+use crate::base::number::significant;
 use crate::body::Resolution;
 use crate::case::Case;
 use crate::stress::{Curves, PressureLine, Quantity, StressCurve, away_from_edges};
@@ -29,7 +31,7 @@ pub fn refined_tolerance(case: &Case) -> Option<f64> {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Zone {
-    /// More than 1 C from the ends of the contact.
+    /// At least 1 C from the ends of the contact.
     Regular,
     /// 0.1 to 1 C from one.
     NearEnd,
@@ -289,7 +291,7 @@ impl<'a> Side<'a> {
     /// Relative sizes of its meshes in words, coarse to fine.
     fn sizes(&self) -> String {
         let Own::Meshes(sizes, _) = &self.own else { return String::new() };
-        sizes.iter().rev().map(f64::to_string).collect::<Vec<_>>().join(" ")
+        sizes.iter().rev().map(|size| significant(*size, 6)).collect::<Vec<_>>().join(" ")
     }
 }
 
