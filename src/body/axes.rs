@@ -135,11 +135,11 @@ const FINITE: [Resolution; 5] = [
     },
     Resolution {
         order: 4,
-        corner: 0.04,
+        corner: 0.02,
         corner_ratio: 2.6,
         ratio: 2.6,
         modes: 3,
-        spacing: [0.15; 2],
+        spacing: [0.075; 2],
         k_max: 36.0,
         k_order: 3,
         k_step: 2.5,
@@ -551,7 +551,8 @@ impl Resolution {
         let k_max = (RESOLVED / closest).clamp(self.k_max, SHORTER * self.k_max);
         let turns = (0..2).any(|side| spacing[side] < self.spacing[side]);
         let corner_ratio = if turns { self.corner_ratio.min(GENTLE) } else { self.corner_ratio };
-        Self { spacing, k_max, corner_ratio, ..self }
+        let corner = self.corner.min(closest);
+        Self { spacing, k_max, corner, corner_ratio, ..self }
     }
 
     /// The same for a contact that narrows to a tip at an end, for a `tolerance`: panels grow as
