@@ -42,6 +42,7 @@ impl Case {
         self.check_raceway()?;
         self.check_factors()?;
         self.check_width()?;
+        self.check_approach()?;
         self.check_pose()?;
         self.check_fatigue()?;
         self.check_heights()?;
@@ -192,6 +193,23 @@ impl Case {
         );
         let remedy = "lower the load, or make the raceway's radius differ more from the roller's";
         Err(key("load.force_n").refuse(self.load.force_n, reason, remedy))
+    }
+
+    /// Refuses an approach where no force is legal, so that none can lead to it.
+    fn check_approach(&self) -> Result<()> {
+        let Some(approach) = self.load.approach_m else { return Ok(()) };
+        let [least, most] = self.legal_forces_n();
+        if least <= most {
+            return Ok(());
+        }
+        let [least, most] = [least, most].map(|force| significant(force, 3));
+        let reason = format!(
+            "no force is legal for these radii and lengths: W and S_l ask for at least {least} N and at \
+             most {most} N"
+        );
+        let remedy = "check the units of the lengths and the radii (m), or make the raceway's radius \
+                      differ more from the roller's";
+        Err(key("load.approach_m").refuse(approach, reason, remedy))
     }
 
     /// Checks the factors that follow from the load and the lengths; without a force, the lengths

@@ -119,7 +119,17 @@ impl Design {
         let listed = root.table_entries("loads")?;
         for (i, entry) in listed.iter().enumerate() {
             let shaped = design.loaded(&middle, i);
-            entry.checked(shaped.map_err(|e| design.blamed_on_bounds(e, &middle, &root)))?;
+            let case =
+                entry.checked(shaped.map_err(|e| design.blamed_on_bounds(e, &middle, &root)))?;
+            let [from, to] = case.overlap();
+            if 0.5 * (to - from) <= design.exclude_c {
+                let reason = format!(
+                    "all of the contact lies within exclude_c = {} half-widths of its ends: nothing is \
+                     left to make smaller",
+                    design.exclude_c
+                );
+                return Err(entry.refuse(reason, "lower exclude_c or the load"));
+            }
         }
         Ok(design)
     }

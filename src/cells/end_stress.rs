@@ -5,7 +5,7 @@
 //! mirrored ones, is smooth but at the corner, and taken from the pressures on the nodes that carry
 //! the ends ([`super::FreeEnds`]), for their part that is even and for that which is odd in x.
 
-use super::ends::FreeEnds;
+use super::ends::{FreeBody, FreeEnds};
 use super::pressure::CellPressure;
 use super::profile::nodal;
 use crate::base::{Panels, Parity, StressTensor};
@@ -63,9 +63,8 @@ impl<'a> EndLoads<'a> {
         Self { ends, parts }
     }
 
-    /// The stresses that free ends add in the body of this half-length, Poisson's ratio and middle,
-    /// see [`FreeEnds::fields`].
-    pub fn stress(&self, body: (f64, f64, f64), tolerance: f64) -> EndStress<'_> {
+    /// The stresses that free ends add in `body`, see [`FreeEnds::fields`].
+    pub fn stress(&self, body: &FreeBody, tolerance: f64) -> EndStress<'_> {
         let fields = self
             .parts
             .each_ref()

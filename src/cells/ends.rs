@@ -55,6 +55,8 @@ pub struct FreeBody {
     pub share: f64,
     /// C / R of its surface, to which first order the compliance is wanted.
     pub curvature: f64,
+    /// That as a part of the surface's own C / R.
+    pub felt: f64,
 }
 
 /// Accuracy (p0) of the nodes that carry the free ends.
@@ -250,24 +252,23 @@ impl FreeEnds {
         self.bodies.len() == 1
     }
 
-    /// The stresses in the body of half-length `half` (C), Poisson's ratio `nu` and its middle at
-    /// `middle` (C), one of those given, under `pressure` with its [`FreeEnds::moments`], by free
-    /// ends and by mirrored ones; contributions below `tolerance` (p0) are neglected.
+    /// The stresses in `body`, one of those given, under `pressure` with its [`FreeEnds::moments`],
+    /// by free ends and by mirrored ones; contributions below `tolerance` (p0) are neglected.
     pub fn fields<'a>(
         &'a self,
-        (half, nu, middle): (f64, f64, f64),
+        body: &FreeBody,
         pressure: &'a dyn Load,
         moments: &DMatrix<f64>,
         tolerance: f64,
     ) -> [Field<'a>; 2] {
         let own = |freed: &&Freed| {
-            let (stack, body) = (&freed.stack, freed.stack.body());
-            body.half == half && body.nu == nu && stack.middle == middle
+            let (middle, own) = (freed.stack.middle, freed.stack.body());
+            own.half == body.half && own.nu == body.nu && middle == body.middle
         };
         let freed = self.bodies.iter().find(own).expect("one of the bodies");
         let [free, mirrored] = [&freed.stack, &freed.mirrored]
             .map(|stack| Field::new(stack, &self.wavenumbers, pressure, moments, None, tolerance));
-        [free.with_skins(freed.skins.as_ref()), mirrored]
+        [free.with_skins(freed.skins.as_ref(), body.felt), mirrored]
     }
 
     /// The displacement (C^2 / (2 R)) of the line x = 0 that free ends and round surfaces add, at
@@ -382,9 +383,9 @@ struct Distinct {
 fn distinct(bodies: &[FreeBody]) -> Vec<Distinct> {
     let mut distinct: Vec<Distinct> = Vec::new();
     for body in bodies {
-        let FreeBody { half: _, middle: _, nu: _, share, curvature } = *body;
+        let FreeBody { half: _, middle: _, nu: _, share, curvature, felt } = *body;
         let rounded = curvature * share;
-        let like = |b: &&mut Distinct| FreeBody { share, curvature, ..b.own } == *body;
+        let like = |b: &&mut Distinct| FreeBody { share, curvature, felt, ..b.own } == *body;
         match distinct.iter_mut().find(like) {
             Some(Distinct { own, rounded: sum }) => {
                 own.share += share;
@@ -407,7 +408,7 @@ fn rigid(axis: &Panels, symmetric: bool) -> DMatrix<f64> {
 
 /// What a body's long waves displace over the shapes of rigid motions, times k.
 fn long(body: &FreeBody, symmetric: bool) -> DMatrix<f64> {
-    let FreeBody { half, middle, nu, share, curvature: _ } = *body;
+    let FreeBody { half, middle, nu, share, .. } = *body;
     let uniform = share * Shape { half, nu }.moved();
     if symmetric {
         // A node acts on both sides of the middle.

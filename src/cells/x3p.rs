@@ -16,6 +16,10 @@ const MOST_SAMPLES: usize = 1 << 27;
 /// The feature type of heights on a grid; others are profiles (PRF) and clouds of points (PCL).
 const SURFACE: &str = "SUR";
 
+/// Rotations of the axes by less than this (rad) are none: over a million samples nothing moves by
+/// more than one.
+const LEAST_TURN: f64 = 1e-6;
+
 /// Most bytes of the description, and of each height.
 const MOST_TEXT: u64 = 16 << 20;
 const MOST_BYTES: u64 = 24;
@@ -36,6 +40,7 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
         return Err(format!("has a FeatureType '{kind}', not {SURFACE}: no surface on a grid"));
     }
     let axes = find(root, "Axes")?;
+    unturned(axes)?;
     let steps = [increment(find(axes, "CX")?)?, increment(find(axes, "CY")?)?];
     let height = find(axes, "CZ")?;
     let kind = word(find(height, "DataType")?);
@@ -61,6 +66,22 @@ pub(super) fn read(content: &[u8]) -> Result<Samples, String> {
     let place = |i: usize, j: usize| offset + scale * raw[j * nx + i];
     let values = (0..nx).flat_map(|i| (0..ny).map(move |j| (i, j)));
     Ok(([nx, ny], steps, values.map(|(i, j)| place(i, j)).collect()))
+}
+
+/// Refuses axes that a matrix turns: the heights would stand elsewhere.
+fn unturned(axes: Node) -> Result<(), String> {
+    let Ok(turned) = find(axes, "Rotation") else { return Ok(()) };
+    for (row, column) in (1..=3).flat_map(|row| (1..=3).map(move |column| (row, column))) {
+        let name = format!("r{row}{column}");
+        let wanted = if row == column { 1.0 } else { 0.0 };
+        let value = number(turned, &name)?;
+        if (value - wanted).abs() > LEAST_TURN {
+            return Err(format!(
+                "has a Rotation of its axes, whose {name} is {value}: turn its heights first"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The heights as the file has them, x fastest; those that it marks as missing become NaN.
@@ -189,6 +210,18 @@ mod tests {
 
     /// The same with more elements in the description and these bits of validity.
     fn archive_with(
+        description: [&str; 2],
+        shape: [usize; 2],
+        data: Option<&[u8]>,
+        list: &str,
+        valid: Option<&[u8]>,
+    ) -> Vec<u8> {
+        archive_on("", description, shape, data, list, valid)
+    }
+
+    /// The same with more elements among the axes.
+    fn archive_on(
+        axes: &str,
         [kind, more]: [&str; 2],
         shape: [usize; 2],
         data: Option<&[u8]>,
@@ -210,7 +243,7 @@ mod tests {
              <CX><AxisType>I</AxisType><DataType>D</DataType><Increment>2e-6</Increment></CX>\
              <CY><AxisType>I</AxisType><DataType>D</DataType><Increment>3e-6</Increment></CY>\
              <CZ><AxisType>A</AxisType><DataType>{kind}</DataType><Increment>1e-9</Increment><Offset>0</Offset></CZ>\
-             </Axes></Record1><Record3><MatrixDimension><SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ>\
+             {axes}</Axes></Record1><Record3><MatrixDimension><SizeX>{}</SizeX><SizeY>{}</SizeY><SizeZ>1</SizeZ>\
              </MatrixDimension>{link}{more}</Record3></p:ISO5436_2>",
             shape[0], shape[1]
         );
@@ -277,6 +310,22 @@ mod tests {
         }
         let said = described("SUR", &sum.replace('9', "8")).unwrap_err();
         assert!(said.contains(&format!("damaged bindata/data.bin: its MD5 is {sum}")), "{said}");
+        // Axes that are turned would put the heights elsewhere.
+        let turned = |r12: &str| {
+            let matrix: String = (0..9)
+                .map(|n| (n / 3 + 1, n % 3 + 1))
+                .map(|(i, j)| match (i, j) {
+                    (1, 2) => format!("<r12>{r12}</r12>"),
+                    _ => format!("<r{i}{j}>{}</r{i}{j}>", u8::from(i == j)),
+                })
+                .collect();
+            let axes = format!("<Rotation>{matrix}</Rotation>");
+            read(&archive_on(&axes, ["D", ""], [1, 1], Some(&data), "", None))
+        };
+        assert_eq!(turned("0").unwrap().2, [1.0]);
+        assert_eq!(turned("-1e-9").unwrap().2, [1.0]);
+        let said = turned("0.5").unwrap_err();
+        assert!(said.contains("whose r12 is 0.5: turn its heights first"), "{said}");
         let said = described("PRF", sum).unwrap_err();
         assert!(said.contains("a FeatureType 'PRF', not SUR"), "{said}");
         // A missing height is a hole, which a surface must not have.

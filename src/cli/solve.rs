@@ -211,7 +211,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<Exit> {
         found.summary.details.stiffness = Some(stiffness(&solved, &options)?);
     }
     if let Some(count) = arguments.laminae {
-        let laminae = laminae(&solved, count);
+        let laminae = laminae(&solved, count)?;
         say(&what_laminae_miss(case, &laminae));
         let table = solution::laminae(&laminae);
         more.push((format!("{}.csv", table.name), table.to_csv().into_bytes()));

@@ -222,7 +222,6 @@ impl House {
         if request.headers().contains_key(ORIGIN) && !header(ORIGIN).is_some_and(own) {
             return Err(No(StatusCode::FORBIDDEN, "other pages are not answered".into()));
         }
-        self.charge()?;
         let nothing = || {
             No(
                 StatusCode::NOT_FOUND,
@@ -234,6 +233,8 @@ impl House {
         if !same(token, &self.token) {
             return Err(nothing());
         }
+        // Only what knows the link counts: other pages could use up what this one is allowed.
+        self.charge()?;
         match (request.method(), name) {
             (&Method::GET, "") => Ok(whole("text/html; charset=utf-8", PAGE)),
             (&Method::GET, "page.css") => Ok(whole("text/css; charset=utf-8", STYLE)),

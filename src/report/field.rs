@@ -9,9 +9,7 @@ use super::draw::{Figure, Map};
 use super::plots::origin;
 use super::vtk::VtkGrid;
 use crate::base::number::significant;
-use crate::base::{Result, StressTensor};
-use crate::body::EdgeModel;
-use crate::case::Case;
+use crate::base::{self, Result, StressTensor};
 use crate::solve::SolvedCase;
 use crate::stress::{self, BodyKind, EDGE, GridStress, away_from_edges};
 use rayon::prelude::*;
@@ -41,7 +39,7 @@ fn axes(solved: &SolvedCase, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3
         // The computed sine of a right angle may differ from 1, but the last point must be on the
         // end face.
         y[counts[1] - 1] = half;
-        if ledge > 1e-9 * half {
+        if base::ledge(ledge, half) > 0.0 {
             let reach = ledge.min(REACH[1]);
             y.extend(shares(1 + counts[1] / 2).skip(1).map(|t| half + reach * t * t));
         }
@@ -67,8 +65,7 @@ fn axes(solved: &SolvedCase, body: BodyKind, counts: [usize; 3]) -> [Vec<f64>; 3
 struct Quarter<'a> {
     axes: [Vec<f64>; 3],
     stress: GridStress,
-    case: &'a Case,
-    method: EdgeModel,
+    solved: &'a SolvedCase,
     body: BodyKind,
     /// Whether x and y have one side only, which is mirrored.
     folded: [bool; 2],
@@ -81,8 +78,7 @@ impl<'a> Quarter<'a> {
         let [x, y, z] = axes.clone();
         let stress = solved.on_grid(body, &stress::Grid { x, y, z })?;
         let folded = [solved.case().sliding.friction == 0.0, solved.is_symmetric()];
-        let (case, method) = (solved.case(), solved.method());
-        Ok(Self { axes, stress, case, method, body, folded })
+        Ok(Self { axes, stress, solved, body, folded })
     }
 
     fn at(&self, i: usize, j: usize, k: usize) -> StressTensor {
@@ -100,7 +96,7 @@ impl<'a> Quarter<'a> {
             zs.reverse();
         }
         let side = if roller { -1.0 } else { 1.0 };
-        let p0_pa = self.case.hertz().p0_pa;
+        let p0_pa = self.solved.case().hertz().p0_pa;
         // The quarter is computed once and mirrored.
         let quarter: Vec<[f32; 8]> = (0..self.stress.len())
             .into_par_iter()
@@ -124,10 +120,12 @@ impl<'a> Quarter<'a> {
         VtkGrid { axes_m: self.axes_m(zs.iter().map(|&k| side * self.axes[2][k])), arrays }
     }
 
-    /// The contact pressure, which is -sigma_zz on the loaded surface, in a grid of one layer.
+    /// The contact pressure in a grid of one layer.
     fn pressure(&self) -> VtkGrid {
-        let p0_pa = self.case.hertz().p0_pa;
-        let value = |index: usize| ((-self.stress.at(index).zz * p0_pa) as f32).max(0.0);
+        let p0_pa = self.solved.case().hertz().p0_pa;
+        let [x, y, _] = &self.axes;
+        let at = |index: usize| self.solved.pressure(x[index % x.len()], y[index / x.len()]);
+        let value = |index: usize| (at(index) * p0_pa) as f32;
         let values = self.mirrored(&[0], [false; 2], value);
         VtkGrid {
             axes_m: self.axes_m(std::iter::once(0.0)),
@@ -163,7 +161,7 @@ impl<'a> Quarter<'a> {
 
     /// Coordinates of the whole body (m), at the depths `z` (C, in the global frame).
     fn axes_m(&self, z: impl Iterator<Item = f64>) -> [Vec<f64>; 3] {
-        let c_m = self.case.hertz().c_m;
+        let c_m = self.solved.case().hertz().c_m;
         let whole = |axis: usize| -> Vec<f64> {
             self.mirror(axis).map(|(i, side)| f64::from(side) * self.axes[axis][i] * c_m).collect()
         };
@@ -174,7 +172,7 @@ impl<'a> Quarter<'a> {
     /// singular. Contours there are limited to the largest value outside.
     fn at_edge(&self, j: usize, k: usize) -> bool {
         let at = [0.0, self.axes[1][j], self.axes[2][k]];
-        !away_from_edges(at, self.case.overlap(), EDGE)
+        !away_from_edges(at, self.solved.case().overlap(), EDGE)
     }
 
     /// Von Mises stress (p0) at a point of the grid.
@@ -195,12 +193,12 @@ impl<'a> Quarter<'a> {
     /// largest value, with the names of their files.
     fn figures(&self) -> [(&'static str, Figure); 3] {
         let [x, y, z] = &self.axes;
-        let [_, to] = self.case.overlap();
+        let [_, to] = self.solved.case().overlap();
         let far = |y: &f64| (y - to).abs();
         let end = (0..y.len()).min_by(|i, j| far(&y[*i]).total_cmp(&far(&y[*j]))).expect("places");
         let middle = x.iter().position(|v| *v == 0.0).expect("a point in the middle");
         let (limit, critical) = self.critical();
-        let hertz = self.case.hertz();
+        let hertz = self.solved.case().hertz();
         let (mm, mpa) = (1e3 * hertz.c_m, 1e-6 * hertz.p0_pa);
         let figure = |place: &str,
                       labels,
@@ -208,7 +206,11 @@ impl<'a> Quarter<'a> {
                       down,
                       value: &dyn Fn(usize, usize) -> f64| {
             let n = axes[0].len();
-            let title = format!("{}: {}", origin(&self.case.name, self.method), self.body.name());
+            let title = format!(
+                "{}: {}",
+                origin(&self.solved.case().name, self.solved.method()),
+                self.body.name()
+            );
             let values = (0..n * axes[1].len()).map(|i| mpa * value(i % n, i / n)).collect();
             let axes = axes.map(|axis| axis.iter().map(|v| mm * v).collect());
             let (label, limit) = ("von Mises (MPa)".to_string(), mpa * limit);
@@ -269,6 +271,7 @@ pub fn contents(solved: &SolvedCase, counts: [usize; 3]) -> Result<Vec<(String, 
 mod tests {
     use super::*;
     use crate::body::EdgeModel;
+    use crate::case::Case;
     use crate::solve::Options;
     use std::path::Path;
 
@@ -312,6 +315,28 @@ mod tests {
             let here = f64::from(array(name)[at(6, 9, 3)]) / case.hertz().p0_pa;
             assert!((here - own).abs() < 1e-3 && here * own > 0.0, "{name}: {here} {own}");
         }
+    }
+
+    /// Friction turns the tractions of a round surface, not the pressure.
+    #[test]
+    fn the_pressure_of_a_sliding_raceway_is_even_and_that_of_the_solution() {
+        let mut case = Case::find(Path::new("half-short")).unwrap().with_tolerance(1e-2);
+        case.block.radius_m = Some(-2.0 * case.roller.radius_m);
+        case.sliding.friction = 0.3;
+        let solved = SolvedCase::new(&case, &Options::new(EdgeModel::QuarterSpace)).unwrap();
+        let quarter = Quarter::new(&solved, BodyKind::Block, [11, 5, 2]).unwrap();
+        let grid = quarter.pressure();
+        let (_, pressure) = &grid.arrays[0];
+        let [nx, ny, _] = [0, 1, 2].map(|k| grid.axes_m[k].len());
+        let scales = case.hertz();
+        for (j, i) in (0..ny).flat_map(|j| (0..nx).map(move |i| (j, i))) {
+            let [x, y] = [grid.axes_m[0][i], grid.axes_m[1][j]].map(|at| at / scales.c_m);
+            let found = f64::from(pressure[j * nx + i]) / scales.p0_pa;
+            assert_eq!(pressure[j * nx + i], pressure[j * nx + nx - 1 - i]);
+            let wanted = solved.pressure(x, y);
+            assert!((found - wanted).abs() < 1e-6 * wanted.max(1.0), "{x} {y}: {found} {wanted}");
+        }
+        assert!(pressure.iter().all(|p| p.is_finite()) && pressure.iter().any(|p| *p > 0.0));
     }
 
     #[test]

@@ -16,7 +16,8 @@ const TILT_ERROR: f64 = 1e-6;
 /// Most cells in a direction of the grid on which such a tilt is sought first.
 const SEARCH: usize = 96;
 
-/// Depth (parts of the approach) to which surfaces may penetrate each other beyond the cells.
+/// Depth to which surfaces may penetrate each other beyond the cells, as a part of the height up to
+/// which the parabola between smooth bodies can touch.
 const PENETRATION: f64 = 1e-6;
 
 /// A contact on cells.
@@ -123,10 +124,13 @@ impl<'a> CellContact<'a> {
         let Some((heights, [c_m, unit_m])) = &self.heights else { return Ok(()) };
         let grid = &pressure.grid;
         let (a, _) = grid.half_sides();
-        let closed = pressure.approach + pressure.tilt.abs() * grid.half_length;
+        // A profile may be counted from anywhere, and the approach with it.
+        let rows = (0..grid.ny).map(|j| self.smooth.at(0.0, grid.y(j)));
+        let lowest = rows.fold(f64::INFINITY, f64::min);
+        let closed = pressure.approach + pressure.tilt.abs() * grid.half_length - lowest;
         // Where the parabola alone is higher than all that closes it nothing touches.
-        let highest = (closed + heights.highest_m() / unit_m).max(0.0).sqrt();
-        let reach = highest.min(heights.half_spans_m()[0] / c_m);
+        let most = (closed + heights.highest_m() / unit_m).max(0.0);
+        let reach = most.sqrt().min(heights.half_spans_m()[0] / c_m);
         let more = ((reach - grid.half_width - a) / (2.0 * a) + 1.0).max(0.0) as usize;
         if more == 0 {
             return Ok(());
@@ -144,7 +148,7 @@ impl<'a> CellContact<'a> {
         let problem = CellProblem { grid: wide, ..self.problem.clone() };
         let gaps = self.with_gap(&wide, |gap| problem.gaps(gap, &padded))?;
         let beyond = |i: usize| !(more..more + grid.nx).contains(&(i % nx));
-        let deep = |gap: f64| gap < -PENETRATION * closed;
+        let deep = |gap: f64| gap < -PENETRATION * most;
         let touched = gaps.iter().enumerate().filter(|(i, gap)| beyond(*i) && deep(**gap));
         let place = |i: usize| (wide.x(i % nx).abs(), wide.y(i / nx));
         let Some((i, _)) = touched.max_by(|a, b| place(a.0).0.total_cmp(&place(b.0).0)) else {

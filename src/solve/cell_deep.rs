@@ -63,7 +63,7 @@ fn displaced(
             all.iter_mut().zip(at).for_each(|(sum, y)| *sum += sunk(*y).at(depth));
             continue;
         };
-        let fields = free.fields(scene.free_body(*kind), columns, moments, scene.tolerance);
+        let fields = free.fields(&scene.free_body(*kind), columns, moments, scene.tolerance);
         let reach = deep::reach(body.half, depth);
         let rule = deep::depths(reach);
         for (sum, y) in all.iter_mut().zip(at) {

@@ -65,7 +65,7 @@ pub fn layers_on_cells(
         let end = scene.field_end(body);
         let ends = loads
             .as_ref()
-            .map(|(axis, loads)| (*axis, loads.stress(scene.free_body(body), scene.tolerance)));
+            .map(|(axis, loads)| (*axis, loads.stress(&scene.free_body(body), scene.tolerance)));
         for &depth_m in depths_m {
             let z = depth_m / c_m;
             let mut stress = layer(pressure, end, scene.bodies[body].nu, z);

@@ -8,7 +8,7 @@ use super::shaping::Shaping;
 use super::solved::wanted_curves;
 use crate::base::{HertzScales, PerBody, StressTensor};
 use crate::case::Case;
-use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeEnds};
+use crate::cells::{CellField, CellPressure, CellProblem, EndLoads, EndStress, FreeBody, FreeEnds};
 use crate::stress::round::{ContactEnds, LocalContact, RowLoad, add_skins, rounded};
 use crate::stress::{
     BodyField, BodyKind, CurveSpec, FlatStress, LineLoad, RoundStress, StressCurve, Work,
@@ -100,10 +100,10 @@ fn by_nodes(
     let moments = free.moments(&columns);
     let contact = scene.may_end().then(|| contact_ends(&line_loads(pressure, 0.0)));
     let field = |kind: BodyKind| {
-        let [field, _] = free.fields(scene.free_body(kind), &columns, &moments, scene.tolerance);
+        let [field, _] = free.fields(&scene.free_body(kind), &columns, &moments, scene.tolerance);
         BodyField::new(field.following_contact(contact), 1.0)
     };
-    lines::stresses(free.shared(), field, curves, points)
+    lines::stresses(free.shared() && scene.feels_alike(), field, curves, points)
 }
 
 /// The field of one body: Love's sums over cells and images, and what free ends add.
@@ -129,11 +129,11 @@ fn sums(
 ) -> lines::Stresses {
     let loads = free.map(|free| EndLoads::new(free, pressure));
     let field = |kind: BodyKind| {
-        let (half, _, middle) = scene.free_body(kind);
+        let FreeBody { half, middle, .. } = scene.free_body(kind);
         let ends = loads.as_ref();
         Summed {
             cells: scene.mirrored_field(kind, pressure),
-            ends: ends.map(|loads| loads.stress(scene.free_body(kind), scene.tolerance)),
+            ends: ends.map(|loads| loads.stress(&scene.free_body(kind), scene.tolerance)),
             faces: [middle - half, middle + half],
             near: ON_FACE * half,
             flat: Shaping::of(case).curvatures[kind] == 0.0,

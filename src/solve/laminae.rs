@@ -2,7 +2,7 @@
 //! standard.
 
 use super::solved::SolvedCase;
-use crate::base::{BodyKind, HertzScales};
+use crate::base::{BodyKind, Error, HertzScales, Result};
 use crate::case::Case;
 use crate::stress::Load;
 use std::f64::consts::PI;
@@ -42,8 +42,13 @@ pub struct Lamina {
 /// The standard gives a slice q = c d^(10/9), with d its deflection, which knows nothing of its
 /// neighbours, and c = 2^(10/9) 35948 L^(8/9) / n for one contact (N, mm). The constant is that of
 /// steel. Error of the own loads: the solution's tolerance; their sum is the force within 1e-6.
-pub fn laminae(solved: &SolvedCase, count: usize) -> Vec<Lamina> {
+///
+/// # Errors
+/// [`Error::Value`] where the load acts beyond the middle of the outermost slice: slices alone have
+/// no such moment.
+pub fn laminae(solved: &SolvedCase, count: usize) -> Result<Vec<Lamina>> {
     let case = solved.case();
+    check_arm(case, count)?;
     let hertz = *solved.hertz();
     let HertzScales { c_m, p0_pa, .. } = hertz;
     let [from, to] = case.overlap();
@@ -69,7 +74,26 @@ pub fn laminae(solved: &SolvedCase, count: usize) -> Vec<Lamina> {
             edge_factor,
         }
     };
-    (0..count).map(lamina).collect()
+    Ok((0..count).map(lamina).collect())
+}
+
+/// Refuses a load beyond the middles of the outermost of `count` slices.
+fn check_arm(case: &Case, count: usize) -> Result<()> {
+    let Some(arm_m) = case.load.eccentricity_m else { return Ok(()) };
+    let [from, to] = case.overlap_m();
+    let nearest = (arm_m - from).min(to - arm_m) / (to - from);
+    if nearest * count as f64 >= 0.5 {
+        return Ok(());
+    }
+    Err(Error::Value {
+        key: "laminae".into(),
+        value: count.to_string(),
+        reason:
+            "the load acts beyond the middle of the outermost slice: slices alone have no such \
+                 moment"
+                .into(),
+        remedy: format!("take at least {}", (0.5 / nearest).ceil()),
+    })
 }
 
 /// The loads between the `edges` (C^2 p0).
@@ -200,7 +224,7 @@ mod tests {
         ] {
             let solved = by(method, length_ratio, arm, false);
             let force = solved.case().load.force_n;
-            let [few, many] = [50, 2000].map(|count| laminae(&solved, count));
+            let [few, many] = [50, 2000].map(|count| laminae(&solved, count).unwrap());
             for all in [&few, &many] {
                 let sum: f64 = all.iter().map(|l| l.load_n).sum();
                 assert!((sum / force - 1.0).abs() < 2e-6, "{method}: {sum} of {force}");
@@ -219,7 +243,7 @@ mod tests {
             let solved = solved(eccentricity_m, profile);
             let force = solved.case().load.force_n;
             for count in [30, 77] {
-                let all = laminae(&solved, count);
+                let all = laminae(&solved, count).unwrap();
                 for of in [|l: &Lamina| l.load_n, |l: &Lamina| l.standard_load_n] {
                     let sum: f64 = all.iter().map(of).sum();
                     assert!((sum / force - 1.0).abs() < 1e-6, "{sum} of {force}");
@@ -233,8 +257,18 @@ mod tests {
     }
 
     #[test]
+    fn a_load_beyond_the_outermost_slice_is_refused() {
+        let mut case = solved(None, false).case().clone();
+        let [from, to] = case.overlap_m();
+        case.load.eccentricity_m = Some(to - 0.011 * (to - from));
+        assert!(check_arm(&case, 46).is_ok());
+        let said = check_arm(&case, 40).unwrap_err().to_string();
+        assert!(said.contains("beyond the middle") && said.contains("take at least 46"), "{said}");
+    }
+
+    #[test]
     fn the_standard_is_near_in_the_middle_and_misses_the_end() {
-        let all = laminae(&solved(None, false), 41);
+        let all = laminae(&solved(None, false), 41).unwrap();
         let ratio = |k: usize| all[k].load_n / all[k].standard_load_n;
         assert!((ratio(20) - 1.0).abs() < 0.05, "{}", ratio(20));
         // The outermost slice of a flush end carries less by the true contact of nu = 0.3; the

@@ -35,12 +35,8 @@ impl Scene {
     /// What free end faces add to cells and their images, under pressures that are even in x and y
     /// if they are `symmetric`; none where no end face is free of traction.
     pub(super) fn free_ends(&self, symmetric: bool) -> Option<Arc<FreeEnds>> {
-        let free = BodyKind::ALL.into_iter().filter(|kind| self.end(*kind).freed).map(|kind| {
-            let SceneBody { half, middle, nu, share, .. } = self.bodies[kind];
-            let (middle, curvature) = (self.off_middle(middle), self.curvatures[kind]);
-            FreeBody { half, middle, nu, share, curvature }
-        });
-        let free: Vec<FreeBody> = free.collect();
+        let freed = BodyKind::ALL.into_iter().filter(|kind| self.end(*kind).freed);
+        let free: Vec<FreeBody> = freed.map(|kind| self.free_body(kind)).collect();
         let ends = || {
             let (gap, exponents) = (self.gap_on_cells(), self.end_exponents());
             FreeEnds::new(self.half_length, &free, symmetric, exponents, &gap.generatrix())
@@ -85,9 +81,10 @@ impl Scene {
         }
     }
 
-    /// What names a body among those with free ends: half-length, Poisson's ratio, middle.
-    pub(super) fn free_body(&self, kind: BodyKind) -> (f64, f64, f64) {
-        let body = &self.bodies[kind];
-        (body.half, body.nu, self.off_middle(body.middle))
+    /// A body as those with free ends are described.
+    pub(super) fn free_body(&self, kind: BodyKind) -> FreeBody {
+        let SceneBody { half, middle, nu, share, .. } = self.bodies[kind];
+        let (curvature, felt) = (self.curvatures[kind], self.felt[kind]);
+        FreeBody { half, middle: self.off_middle(middle), nu, share, curvature, felt }
     }
 }

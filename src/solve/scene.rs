@@ -78,6 +78,9 @@ pub struct Scene {
     /// C / R of each body whose round surface changes pressures and stresses beside free end faces,
     /// [`crate::body::Skins`]; zero where that is not asked for or does not matter.
     pub curvatures: PerBody<f64>,
+    /// `curvatures` as parts of each body's own C / R: less than 1 where that is more than terms of
+    /// first order bear, else 1.
+    pub felt: PerBody<f64>,
     /// The edge model.
     pub model: EdgeModel,
     /// Weight of the images of `guilbault`; by default [`crate::body::guilbault_psi`] of each body.
@@ -110,6 +113,7 @@ impl Scene {
             steepness: 0.0,
             depth: 0.0,
             curvatures: PerBody { block: 0.0, roller: 0.0 },
+            felt: PerBody { block: 1.0, roller: 1.0 },
             model,
             psi: None,
             tolerance,
@@ -168,12 +172,14 @@ impl Scene {
             let own = rounded(c_m / radius_m);
             let felt = ROUND * own.abs() > UNFELT * tolerance;
             let matters = *first_order && felt && model.end(nu, psi).freed;
-            if matters { own.clamp(-ROUNDEST, ROUNDEST) } else { 0.0 }
+            if matters { own } else { 0.0 }
         };
         let curvatures = PerBody {
             block: hollow_m.map_or(0.0, |radius_m| curvature(radius_m, block_material.poisson)),
             roller: curvature(*radius_m, roller_material.poisson),
         };
+        let felt = curvatures.map(|own| ROUNDEST / own.abs().max(ROUNDEST));
+        let curvatures = curvatures.map(|own| own.clamp(-ROUNDEST, ROUNDEST));
         let scene = Self {
             half_length: 0.5 * (to - from),
             middle: 0.5 * (from + to),
@@ -181,6 +187,7 @@ impl Scene {
             steepness: if profiled { steepness } else { 0.0 },
             depth: 0.0,
             curvatures,
+            felt,
             bodies,
             tilt,
             slides: *friction != 0.0,
@@ -234,6 +241,11 @@ impl Scene {
     pub fn bodies_are_alike(&self) -> bool {
         let PerBody { block, roller } = &self.bodies;
         block.half == roller.half && block.middle == roller.middle && block.nu == roller.nu
+    }
+
+    /// Whether both bodies feel the same part of their round shapes.
+    pub fn feels_alike(&self) -> bool {
+        self.felt.block == self.felt.roller
     }
 
     /// The bodies whose stresses differ: like ones are one, with the shares of both.
@@ -299,6 +311,7 @@ impl Scene {
             steepness,
             depth,
             curvatures,
+            felt,
             model,
             psi,
             tolerance,
@@ -308,7 +321,7 @@ impl Scene {
             Tilt::Free(arm) => (true, arm),
         };
         let mut numbers = vec![*half_length, *middle, *load, *tilt, *steepness, *depth, *tolerance];
-        numbers.extend(curvatures.iter());
+        numbers.extend(curvatures.iter().chain(felt.iter()));
         for SceneBody { half, middle, nu, share, profile } in bodies.iter() {
             numbers.extend([*half, *middle, *nu, *share]);
             let own = profile.as_ref().map(Profile::numbers).unwrap_or_default();

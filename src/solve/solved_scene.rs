@@ -242,9 +242,9 @@ impl SolvedScene {
         self.is_settled && own.contact.residual <= CONTACT_TOLERANCE * own.scene.tolerance
     }
 
-    /// Whether both bodies share one computation.
+    /// Whether both bodies share one computation and its stresses.
     pub fn bodies_shared(&self) -> bool {
-        self.bodies.len() == 1
+        self.bodies.len() == 1 && self.scene.feels_alike()
     }
 
     /// The stress field of a body, without the contribution of the roller's round shape.
@@ -266,7 +266,8 @@ impl SolvedScene {
         let contact = ContactEnds { at: self.own.pressure.ends(), open };
         let contact = self.scene.may_end().then_some(contact);
         let skins = part_of(&self.skins, kind).as_ref();
-        BodyField::new(field.with_skins(skins).following_contact(contact), self.unit)
+        let field = field.with_skins(skins, self.scene.felt[kind]);
+        BodyField::new(field.following_contact(contact), self.unit)
     }
 
     /// The field of a body in the solution's own unit.

@@ -7,7 +7,8 @@ use crate::base::{BodyKind, HertzScales, StressTensor};
 /// Contact pressure on a line of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct PressureLine {
-    /// `along-y` (x = 0) or `along-x` (y = 0).
+    /// `along-y` (x = 0) or `along-x` (y = 0, or the middle of an overlap that does not contain
+    /// that).
     pub name: String,
     /// Points x, y (C).
     pub at: Vec<[f64; 2]>,

@@ -133,11 +133,13 @@ impl<'a> Field<'a> {
         Self { traction: Some(traction), ..self }
     }
 
-    /// The same field of a body with a round surface, whose `skins` belong to the pressure's line.
+    /// The same field of a body with a round surface, whose `skins` belong to the pressure's line
+    /// and are `felt` in this part.
     #[must_use]
-    pub fn with_skins(self, skins: Option<&'a Skins>) -> Self {
+    pub fn with_skins(self, skins: Option<&'a Skins>, felt: f64) -> Self {
         let reach = [self.beside(), FAR_BELOW * self.stack.body().half];
-        Self { skin: skins.map(|skins| SkinField::new(skins, self.pressure, reach)), ..self }
+        let skin = skins.map(|skins| SkinField::new(skins, felt, self.pressure, reach));
+        Self { skin, ..self }
     }
 
     /// What the skin of a round surface adds at (x, `y`, `z`) for each x of `xs`, per C / R;

@@ -24,6 +24,8 @@ const BESIDE_FACE: f64 = 1.5;
 #[derive(Debug)]
 pub(super) struct SkinField<'a> {
     skins: &'a Skins,
+    /// The part of them that counts.
+    felt: f64,
     pressure: &'a dyn Load,
     /// The distance beside the contact and the depth (C) beyond which its stresses are not felt.
     reach: [f64; 2],
@@ -60,9 +62,9 @@ struct SkinLoads {
 }
 
 impl<'a> SkinField<'a> {
-    /// The field of these `skins` under `pressure`, within the `reach` beside the contact and below
-    /// it (C).
-    pub fn new(skins: &'a Skins, pressure: &'a dyn Load, reach: [f64; 2]) -> Self {
+    /// The field of these `skins`, which are `felt` in this part, under `pressure`, within the
+    /// `reach` beside the contact and below it (C).
+    pub fn new(skins: &'a Skins, felt: f64, pressure: &'a dyn Load, reach: [f64; 2]) -> Self {
         let neighbours =
             |y: &f64| pressure.axis().load_interpolation(pressure.on_axis(*y)).collect();
         let places: Vec<Vec<_>> = skins.line.nodes().iter().map(neighbours).collect();
@@ -72,11 +74,11 @@ impl<'a> SkinField<'a> {
         let moments = DMatrix::from_row_slice(numbers.coarse().len(), places.len(), &moments);
         let order = numbers.coarse().order();
         let k = numbers.coarse().nodes()[order..].to_vec();
-        let weights = vec![1.0 / PI; k.len()];
+        let weights = vec![felt / PI; k.len()];
         let contact = moments.rows_range(order..).into_owned();
         let own = SkinWaves::new(skins, k, weights, contact, |i| (i + order, vec![1.0]));
         let central = Arc::new(SkinWaves { central: true, ..own });
-        Self { skins, pressure, reach, places, central, all: Mutex::default() }
+        Self { skins, felt, pressure, reach, places, central, all: Mutex::default() }
     }
 
     /// The loads of every fine wavenumber, for points up to `farthest` from the plane x = 0.
@@ -96,7 +98,7 @@ impl<'a> SkinField<'a> {
         let fine = numbers.fine().nodes();
         let long = fine.partition_point(|k| *k < self.skins.longest());
         let k = fine[long..].to_vec();
-        let weights = numbers.weights()[long..].iter().map(|w| w / PI).collect();
+        let weights = numbers.weights()[long..].iter().map(|w| self.felt * w / PI).collect();
         let contact = transforms(self.pressure, &self.places, &k).transpose();
         SkinWaves::new(self.skins, k, weights, contact, |i| {
             let (first, shares) = numbers.interpolation(i + long);

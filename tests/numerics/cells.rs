@@ -2,10 +2,10 @@
 //! solver.
 
 use crate::common::{near, scene, small, table};
+use edgeline::base::profile::Table;
 use edgeline::base::{Material, StressTensor};
 use edgeline::body::EdgeModel;
-
-use edgeline::case::{Case, Cells, Factors, Surface, builtin_case};
+use edgeline::case::{Case, Cells, Factors, ProfileKind, ProfileSpec, Surface, builtin_case};
 use edgeline::cells::{CellPressure, CellProblem, CellTilt, Grid, Heights, RoughGap};
 use edgeline::contact::{Gap, Straight};
 use edgeline::solve::{
@@ -689,6 +689,13 @@ fn a_bump_beyond_the_smooth_contact_carries_load() {
     rough.cells = Some(Cells { half_width_m: 1.25 * c_m });
     let said = solve(&rough).unwrap_err().to_string();
     assert!(said.contains("beyond them heights touch") && said.contains("half_width_m"), "{said}");
+    // A straight profile that is counted from elsewhere is the same one.
+    let mut lowered = ProfileSpec::new(ProfileKind::Table);
+    lowered.file = Some("drops.csv".into());
+    lowered.table = Some(Arc::new(Table::new(vec![from, 0.0, to], vec![-1e-5; 3])));
+    rough.roller.profile = Some(lowered);
+    assert_eq!(solve(&rough).unwrap_err().to_string(), said);
+    rough.roller.profile = None;
     // Wide enough, the answer is the same one.
     rough.cells = Some(Cells { half_width_m: found.pressure.grid.half_width * c_m });
     let wide = solve(&rough).unwrap().solution.summary;

@@ -51,6 +51,28 @@ fn the_middle_of_a_long_contact_is_as_narrow_as_in_plane_strain() {
     assert!(want < -2e-3, "{want}");
 }
 
+/// From C / R = 0.1 on the terms of free ends no longer grow, neither in the pressure nor in the
+/// stresses: in the plane x = 0 sigma_yy has no others.
+#[test]
+fn what_is_rounder_than_first_order_bears_has_the_terms_of_its_limit() {
+    let limit = 0.25 * PI * 0.1f64.powi(2);
+    let [flat, bounded, rounder] = [(limit, false), (limit, true), (0.05, true)].map(|it| {
+        let mut case = straight(it.0, 5.0, 0.8).with_tolerance(1e-2);
+        case.accuracy.first_order = it.1;
+        solved(&case)
+    });
+    let mut grown = 0.0f64;
+    for name in ["depth-end", "depth-0.9"] {
+        let of = |s: &Solution| s.curves.curve(BodyKind::Roller, name).unwrap().stress.clone();
+        let [flat, bounded, rounder] = [&flat, &bounded, &rounder].map(of);
+        for ((flat, a), b) in flat.iter().zip(&bounded).zip(&rounder) {
+            small("sigma_yy", (a.yy - b.yy).abs(), 1e-6);
+            grown = grown.max((a.yy - flat.yy).abs());
+        }
+    }
+    assert!(grown > 0.005, "{grown}");
+}
+
 /// Mirror images have mirrored pressures, and those of a body that is not symmetric about the
 /// contact's middle come from both of its parts.
 #[test]

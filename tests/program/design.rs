@@ -93,6 +93,11 @@ fn bad_designs_exit_with_two_and_leave_nothing() {
         ("case = \"flush-short\"", "case = \"sliding-flush\"", "designed without friction"),
         ("[profile]", "objective = \"stress\"\n[profile]", "there is no such objective"),
         ("[profile]", "exclude_c = -0.1\n[profile]", "exclude_c = -0.1 is not valid"),
+        (
+            "case = \"flush-short\"",
+            "case = \"flush-short\"\nexclude_c = 2.0",
+            "all of the contact lies within exclude_c = 2 half-widths of its ends",
+        ),
         ("force_n = 5e3", "force_n = -5e3", "loads.force_n = -5e3 is not valid"),
         ("force_n = 5e3", "", "loads.force_n is missing"),
         ("eccentricity_m = 0.1e-3", "eccentricity_m = 0.1", "the roller would fall over"),

@@ -173,6 +173,30 @@ fn forces_are_legal_between_their_limits_and_not_beyond() {
 }
 
 #[test]
+fn an_approach_needs_a_legal_force() {
+    // A raceway that all but fits the roller, and a wire.
+    for (radius_m, length_m, hollow_m) in
+        [(0.01, 0.01, Some(-0.010_000_01)), (1e-3, 10.0, None), (0.01, 0.01, Some(-0.0101))]
+    {
+        let mut case = legal_with(Key::find("load.approach_m").unwrap());
+        case.roller.profile = None;
+        (case.roller.radius_m, case.roller.length_m) = (radius_m, length_m);
+        (case.block.radius_m, case.block.length_m) = (hollow_m, length_m);
+        case.fatigue = Fatigue::default();
+        case.load.approach_m = Some(1e-6);
+        let [least, most] = case.legal_forces_n();
+        match case.check() {
+            Ok(()) => assert!(least <= most),
+            Err(error) => {
+                let said = error.to_string();
+                assert!(least > most && said.contains("no force is legal for these"), "{said}");
+            }
+        }
+        assert_eq!(least > most, hollow_m != Some(-0.0101), "{least} {most}");
+    }
+}
+
+#[test]
 fn every_factor_is_a_key() {
     let fields = serde_json::to_value(every_field().factors()).unwrap();
     let keys: Vec<&Key> =
