@@ -249,7 +249,8 @@ def _stage(stage, run, request, folder, log):
     here = str(Path(__file__).resolve().parent.parent)
     paths = [here, *filter(None, [os.environ.get("PYTHONPATH")])]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths)}
-    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, check=False, env=environment)
+    # What gmsh and CalculiX print is in it, and may be arbitrary bytes.
+    done = subprocess.run(command, stderr=subprocess.PIPE, text=True, errors="replace", check=False, env=environment)
     if done.returncode != 0:
         tail = "\n".join(done.stderr.strip().splitlines()[-10:])
         raise FemError(f"{request}: stage {stage} failed with exit code {done.returncode}:\n{tail}")

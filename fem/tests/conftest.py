@@ -31,7 +31,9 @@ def run_stage(stage, request, folder, ranks=1):
         **os.environ, "PYTHONPATH": str(FEM), "OMPI_ALLOW_RUN_AS_ROOT": "1",
         "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1",
     }
-    return subprocess.run(command, capture_output=True, text=True, env=environment, cwd="/", check=False)
+    # What gmsh prints may be arbitrary bytes.
+    return subprocess.run(command, capture_output=True, text=True, errors="replace", env=environment, cwd="/",
+                          check=False)
 
 
 def _solved(folder, case, size):

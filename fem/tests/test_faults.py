@@ -4,6 +4,9 @@ import json
 import os
 import re
 import shutil
+import subprocess
+import sys
+import time
 
 import pytest
 
@@ -54,6 +57,22 @@ def test_a_gmsh_without_a_version_is_told(tmp_path, script):
     done = run_stage("mesh", tmp_path / "request.json", tmp_path / "out")
     assert done.returncode == 2 and "Traceback" not in done.stderr, done.stderr
     assert str(gmsh) in done.stderr
+
+
+def test_what_a_hanging_gmsh_prints_is_in_the_log(tmp_path):
+    """The stage is killed at its time limit: what the log has not got by then is lost."""
+    log = tmp_path / "log"
+    code = ("from edgeline_fem.programs import run_program\n"
+            "run_program(['sh', '-c', 'echo node 7; echo edge 3 >&2; exec sleep 600'], 'gmsh')\n")
+    environment = {**os.environ, "PYTHONPATH": str(FEM)}
+    with log.open("wb") as file:
+        stage = subprocess.Popen([sys.executable, "-c", code], stderr=file, env=environment)
+    until = time.monotonic() + 30
+    while log.read_bytes() != b"node 7\nedge 3\n" and time.monotonic() < until:
+        time.sleep(0.02)
+    stage.kill()
+    stage.wait()
+    assert log.read_bytes() == b"node 7\nedge 3\n"
 
 
 def test_meshes_that_were_cut_or_changed_are_refused(live):

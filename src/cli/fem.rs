@@ -72,7 +72,7 @@ fn text(case: &Case, result: &MeshResult, arguments: &Arguments) -> String {
         "{} by {}: size {}, {} unknowns, {} process(es)\n  \
          pressure {:.4} p0 at the centre, {:.4} p0 at most\n  \
          load met to {:.0e}, equilibrium to {:.0e}, {:.1} s, {:.2} GiB\n\
-         wrote curves.csv, pressure.csv, mesh.json, fem.json into {}\n",
+         in {}: curves.csv, pressure.csv, mesh.json, fem.json\n",
         case.name,
         arguments.fem.engine().title(),
         result.size,

@@ -1,22 +1,24 @@
 //! One case on one mesh with gmsh and FEniCSx, as child processes.
 //!
-//! Each run has its own folder. The subfolder `work/` holds the input and output of the child
-//! processes. When the results have been checked they are moved beside it, `fem.json` last. A run
-//! that was stopped continues at its unfinished stage: each stage writes its JSON file last, and
-//! `work/request.key` tells whether the files belong to the same request.
+//! Each run has its own folder. The subfolder `work/` holds the input, output and logs of the child
+//! processes. When the results have been checked they take the place of those beside it in one
+//! step, `request.key` last, which has the request's key and the results' check sums. A run that
+//! was stopped continues at its unfinished stage: each stage writes its JSON file last,
+//! `work/request.key` tells whether the files belong to the same request, and `work/mesh.key`
+//! whether the meshes are whole.
 
 use super::code::Code;
 use super::jit_cache;
 use super::request::Request;
 use super::result::{MeshResult, MeshSummary, ResultTexts};
 use super::settings::{FemSettings, LinearSolver};
-use super::sum::sha256;
+use super::sum::{sha256, sha256_of};
 use super::tools::{self, Interpreter};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{
-    Lock, Stage, check_memory, kill_marked, prepare_folder, read_text, remove_if_there,
-    remove_marker, write_set, write_whole,
+    Lock, Stage, check_memory, check_not_given, kill_marked, prepare_folder, read_text,
+    remove_if_there, write_set_over, write_whole,
 };
 use std::ffi::OsString;
 use std::num::NonZero;
@@ -44,7 +46,8 @@ impl Driver {
     /// # Errors
     /// [`Error::Missing`] if gmsh, a suitable interpreter or, for several ranks, mpirun is missing;
     /// [`Error::Value`] if a setting is not legal.
-    pub fn new(settings: FemSettings) -> Result<Self> {
+    pub fn new(mut settings: FemSettings) -> Result<Self> {
+        settings.ccx = tools::from_here(&settings.ccx);
         let ccx = match settings.code {
             Code::Calculix => Some(tools::require_ccx(&settings.ccx)?),
             Code::Fenicsx => None,
@@ -58,7 +61,8 @@ impl Driver {
     ///
     /// # Errors
     /// As [`Driver::new`].
-    pub fn without_solver(settings: FemSettings) -> Result<Self> {
+    pub fn without_solver(mut settings: FemSettings) -> Result<Self> {
+        settings.gmsh = tools::from_here(&settings.gmsh);
         let (low, high) = FemSettings::SIZE_RANGE;
         let refuse = |key: &str, value: String, reason: String, remedy: &str| {
             Err(Error::Value { key: key.into(), value, reason, remedy: remedy.into() })
@@ -113,40 +117,34 @@ impl Driver {
     /// solved before. `progress` receives messages on the state of the run.
     ///
     /// Leaves `curves.csv`, `pressure.csv`, `mesh.json`, `request.json`, `fem.json` and the log of
-    /// each stage. On failure all files that help to find the cause are kept.
+    /// each stage. On failure what was there stays as it is, and all files that help to find the
+    /// cause are kept in `work/`.
     ///
     /// # Errors
     /// [`Error::Value`] about a scene that the code does not take, [`Error::Busy`] when another run
-    /// uses the folder, [`Error::Child`] when a stage fails or takes too long, [`Error::File`] when
-    /// its output is invalid or the folder has a `work` of somebody else, [`Error::Interrupted`]
-    /// when this process was asked to stop, [`Error::Io`] when a file cannot be written.
+    /// uses the folder, [`Error::Child`] when a stage fails, takes too long or writes invalid
+    /// output, [`Error::File`] when the folder has a `work` of somebody else or a file that was
+    /// given to this run has the name of a result, [`Error::Interrupted`] when this process was
+    /// asked to stop, [`Error::Io`] when a file cannot be written.
     pub fn run(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         self.settings.code.check(case)?;
         let (folder, _lock) = &claim(folder)?;
-        let (text, key) = self.request(case);
-        let run = Run { driver: self, case, folder, work: folder.join("work") };
-        if read(&folder.join("request.key")).is_ok_and(|known| known == key)
+        let run = Run::new(self, case, folder);
+        if is_whole(&run.key, folder, &RESULTS, KEY)
             && let Ok(result) = run.result(folder)
         {
             progress("done already");
             return Ok(result);
         }
-        // A summary is that of another run, whose curves give way to these.
-        remove_marker(folder, "summary.json")?;
-        // In this order, so that a run killed here does not look finished.
-        for name in ["request.key", "fem.json", "mesh.json", "curves.csv", "pressure.csv"] {
-            remove_if_there(&folder.join(name))?;
-        }
-        run.prepare(&text, &key)?;
+        check_not_given(folder, RESULTS.iter().chain(&LOGS).chain([&KEY]))?;
+        run.prepare()?;
         run.mesh(progress)?;
-        run.solve(progress)?;
-        let result = run.result(&run.work)?;
-        let mut files = Vec::new();
-        for name in ["curves.csv", "pressure.csv", "mesh.json", "request.json", "fem.json"] {
-            files.push((name, read(&run.work.join(name))?.into_bytes()));
-        }
-        write_set(folder, &files)?;
-        write_whole(&folder.join("request.key"), key)?;
+        let result = run.solve(progress)?;
+        let mut files = run.files(&RESULTS)?;
+        files.extend(run.logs());
+        files.push((KEY, check_sums(&run.key, &run.work, &RESULTS)?.into_bytes()));
+        // A summary is that of another run, whose curves give way to these.
+        write_set_over(folder, &files, &["fem.json", "summary.json"])?;
         jit_cache::keep(&run.cache());
         if !self.settings.keep {
             remove_if_there(&run.work)?;
@@ -162,26 +160,18 @@ impl Driver {
     pub fn deck(&self, case: &Case, folder: &Path, progress: &dyn Fn(&str)) -> Result<MeshSummary> {
         self.settings.code.check(case)?;
         let (folder, _lock) = &claim(folder)?;
-        let (text, key) = self.request(case);
-        let run = Run { driver: self, case, folder, work: folder.join("work") };
-        run.prepare(&text, &key)?;
-        run.mesh(progress)?;
+        let run = Run::new(self, case, folder);
+        run.prepare()?;
+        let summary = run.mesh(progress)?;
         progress("writing the deck");
         let python = Command::new(&self.interpreter.path);
-        run.stage("deck", python, self.settings.mesh_timeout, "--mesh-timeout")?;
-        let mut files = Vec::new();
-        for name in DECK_FILES {
-            let path = run.work.join(name);
-            let bytes = std::fs::read(&path).map_err(|source| Error::Io {
-                action: "read",
-                path: path.clone(),
-                source,
-            })?;
-            files.push((name, bytes));
-        }
-        write_set(folder, &files)?;
-        let done = run.work.join("mesh.json");
-        let summary = MeshSummary::parse(&read(&done)?, &done)?;
+        let timeout = self.settings.mesh_timeout;
+        let deck = || run.files(&DECK_FILES);
+        let deck = run.stage("deck", python, timeout, "--mesh-timeout", deck)?;
+        // Its last file marks the deck as complete.
+        let files: Vec<_> = run.logs().chain(deck).collect();
+        // The meshes of results give way to these.
+        write_set_over(folder, &files, &["fem.json"])?;
         remove_if_there(&run.work)?;
         Ok(summary)
     }
@@ -204,6 +194,39 @@ impl Driver {
         }
         format!("{}\n", sha256(&text))
     }
+}
+
+/// The results of a run, the one that says that they are complete last.
+const RESULTS: [&str; 5] = ["curves.csv", "pressure.csv", "mesh.json", "request.json", "fem.json"];
+
+/// The logs of the stages.
+const LOGS: [&str; 3] = ["mesh.log", "deck.log", "solve.log"];
+
+/// The file beside results, and in the working folder, that says to which request they belong.
+const KEY: &str = "request.key";
+
+/// What the mesh stage writes.
+const MESHES: [&str; 3] = ["block.msh", "roller.msh", "mesh.json"];
+
+/// The file in the working folder that says that the meshes of a request are whole.
+const MESH_KEY: &str = "mesh.key";
+
+/// The `key` of a request, and below it the check sums of the files `names` in `folder`.
+fn check_sums(key: &str, folder: &Path, names: &[&str]) -> Result<String> {
+    let mut text = key.to_string();
+    for name in names {
+        let path = folder.join(name);
+        let sum = sha256_of(&path).map_err(|source| Error::Io { action: "read", path, source })?;
+        text += &format!("{sum}  {name}\n");
+    }
+    Ok(text)
+}
+
+/// Whether the files `names` in `folder` are those of the request with `key`, and as they were when
+/// the file `mark` beside them was written.
+fn is_whole(key: &str, folder: &Path, names: &[&str], mark: &str) -> bool {
+    let known = read(&folder.join(mark)).ok();
+    known.is_some() && known == check_sums(key, folder, names).ok()
 }
 
 /// The files of a deck, the one that includes others last.
@@ -259,12 +282,20 @@ struct Run<'a> {
     folder: &'a Path,
     /// The working folder of the child processes.
     work: PathBuf,
+    /// The text of the request, and its key.
+    request: String,
+    key: String,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
+    fn new(driver: &'a Driver, case: &'a Case, folder: &'a Path) -> Self {
+        let (request, key) = driver.request(case);
+        Self { driver, case, folder, work: folder.join("work"), request, key }
+    }
+
     /// Prepares the working folder and keeps the files of the same request.
-    fn prepare(&self, request: &str, key: &str) -> Result<()> {
-        let marker = self.work.join("request.key");
+    fn prepare(&self) -> Result<()> {
+        let marker = self.work.join(KEY);
         if self.work.exists() && !marker.exists() {
             return Err(Error::File {
                 path: self.work.clone(),
@@ -273,12 +304,12 @@ impl Run<'_> {
                 remedy: "give another --out, or move it away".into(),
             });
         }
-        if read(&marker).ok().as_deref() != Some(key) {
+        if read(&marker).ok().as_ref() != Some(&self.key) {
             remove_if_there(&self.work)?;
         }
         // First of all: without it the folder would be taken for somebody else's.
         prepare_folder(&self.work)?;
-        write_whole(&marker, key)?;
+        write_whole(&marker, &self.key)?;
         let package = self.work.join("package/edgeline_fem");
         prepare_folder(&package)?;
         for (name, source) in SOURCES {
@@ -287,43 +318,45 @@ impl Run<'_> {
         // Incomplete entries of an earlier run would block the compilation.
         remove_if_there(&self.work.join("cache"))?;
         jit_cache::seed(&self.cache());
-        write_whole(&self.work.join("request.json"), request)
+        write_whole(&self.work.join("request.json"), &self.request)
     }
 
     fn cache(&self) -> PathBuf {
         self.work.join("cache/fenics")
     }
 
-    fn mesh(&self, progress: &dyn Fn(&str)) -> Result<()> {
+    /// Makes the meshes, unless they are there and whole; refuses those whose equations do not fit
+    /// into memory.
+    fn mesh(&self, progress: &dyn Fn(&str)) -> Result<MeshSummary> {
         let done = self.work.join("mesh.json");
-        let read = || read(&done).and_then(|text| MeshSummary::parse(&text, &done));
-        if let Ok(meshes) = read() {
+        let parse = || read(&done).and_then(|text| MeshSummary::parse(&text, &done));
+        let meshes = if is_whole(&self.key, &self.work, &MESHES, MESH_KEY) {
             progress("meshes are there already");
-            return self.check_memory(meshes);
-        }
-        progress("meshing");
-        let python = Command::new(&self.driver.interpreter.path);
-        let timeout = self.driver.settings.mesh_timeout;
-        self.stage("mesh", python, timeout, "--mesh-timeout")?;
-        self.check_memory(read()?)
-    }
-
-    /// Refuses meshes whose equations do not fit into memory.
-    fn check_memory(&self, meshes: MeshSummary) -> Result<()> {
+            parse()?
+        } else {
+            progress("meshing");
+            let python = Command::new(&self.driver.interpreter.path);
+            let timeout = self.driver.settings.mesh_timeout;
+            let made = || Ok((parse()?, check_sums(&self.key, &self.work, &MESHES)?));
+            let (meshes, sums) = self.stage("mesh", python, timeout, "--mesh-timeout", made)?;
+            write_whole(&self.work.join(MESH_KEY), sums)?;
+            meshes
+        };
         let unknowns = meshes.unknowns as f64;
         check_memory(
             &format!("solving for {unknowns:.1e} unknowns"),
             self.driver.settings.linear.bytes(unknowns),
             "take a coarser mesh with a larger --size, or --linear iterative",
-        )
+        )?;
+        Ok(meshes)
     }
 
-    fn solve(&self, progress: &dyn Fn(&str)) -> Result<()> {
+    fn solve(&self, progress: &dyn Fn(&str)) -> Result<MeshResult> {
         let done = self.work.join("fem.json");
         if done.is_file() {
-            if self.result(&self.work).is_ok() {
+            if let Ok(result) = self.result(&self.work) {
                 progress("solved already");
-                return Ok(());
+                return Ok(result);
             }
             remove_if_there(&done)?;
         }
@@ -344,17 +377,19 @@ impl Run<'_> {
             mpirun.env("OMPI_MCA_mpi_yield_when_idle", "1");
             mpirun
         };
-        self.stage("solve", command, settings.solve_timeout, "--solve-timeout")
+        let solved = || self.result(&self.work);
+        self.stage("solve", command, settings.solve_timeout, "--solve-timeout", solved)
     }
 
-    /// Runs a stage of the finite-element program.
-    fn stage(
+    /// Runs a stage of the finite-element program, and returns what `output` reads of its files.
+    fn stage<T>(
         &self,
         stage: &str,
         mut command: Command,
         timeout: Duration,
         timeout_option: &str,
-    ) -> Result<()> {
+        output: impl FnOnce() -> Result<T>,
+    ) -> Result<T> {
         let path = search_path(self.folder)?;
         command
             .args(["-m", "edgeline_fem", stage])
@@ -368,13 +403,34 @@ impl Run<'_> {
         let stage = Stage {
             name: &format!("{}, stage {stage}", self.case.name),
             command,
-            log: self.folder.join(format!("{stage}.log")),
+            log: self.work.join(format!("{stage}.log")),
             timeout,
             timeout_option,
             folder: self.folder,
             max_bytes: self.driver.settings.max_bytes,
         };
-        stage.run()
+        stage.run(output)
+    }
+
+    /// The content of the files `names` in the working folder.
+    fn files(&self, names: &[&'static str]) -> Result<Vec<(&'static str, Vec<u8>)>> {
+        let mut files = Vec::new();
+        for name in names {
+            let path = self.work.join(name);
+            let content = std::fs::read(&path).map_err(|source| Error::Io {
+                action: "read",
+                path,
+                source,
+            })?;
+            files.push((*name, content));
+        }
+        Ok(files)
+    }
+
+    /// The logs of the stages that have one.
+    fn logs(&self) -> impl Iterator<Item = (&'static str, Vec<u8>)> {
+        let log = |name| Some((name, std::fs::read(self.work.join(name)).ok()?));
+        LOGS.into_iter().filter_map(log)
     }
 
     /// Reads and checks the result in `folder`.

@@ -13,7 +13,8 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Names of the pressure lines: x = 0, and y = 0.
+/// Names of the pressure lines: x = 0, and y = 0 or, where the overlap does not contain that, its
+/// middle.
 pub const LINE_NAMES: [&str; 2] = ["along-y", "along-x"];
 
 /// Points that differ by less than this (C) are equal: files have nine digits.

@@ -15,6 +15,21 @@ pub const PYTHON_VARIABLE: &str = "EDGELINE_PYTHON";
 const IMPORT_TIMEOUT: Duration = Duration::from_secs(120);
 const VERSION_TIMEOUT: Duration = Duration::from_secs(20);
 
+/// A program as children in other folders find it: a path from here in full, and a bare name, which
+/// is looked up on the PATH, as it is.
+pub(super) fn from_here(program: &Path) -> PathBuf {
+    if is_bare(program) {
+        return program.to_path_buf();
+    }
+    // Links stay: an interpreter finds its modules by the name that it is called by.
+    std::path::absolute(program).unwrap_or_else(|_| program.to_path_buf())
+}
+
+/// Whether a program is named alone, without a folder.
+fn is_bare(program: &Path) -> bool {
+    !program.as_os_str().as_encoded_bytes().contains(&b'/')
+}
+
 /// A Python interpreter that imports what a code takes.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interpreter {
@@ -30,10 +45,10 @@ pub struct Interpreter {
 /// own and the PATH's.
 pub fn candidates(explicit: Option<&Path>) -> Vec<(PathBuf, &'static str)> {
     if let Some(path) = explicit {
-        return vec![(path.to_path_buf(), "--python")];
+        return vec![(from_here(path), "--python")];
     }
     if let Some(path) = std::env::var_os(PYTHON_VARIABLE).filter(|value| !value.is_empty()) {
-        return vec![(path.into(), PYTHON_VARIABLE)];
+        return vec![(from_here(Path::new(&path)), PYTHON_VARIABLE)];
     }
     let mut found = vec![(PathBuf::from("/usr/bin/python3"), "the system's")];
     if let Some(path) = which("python3")
@@ -169,7 +184,7 @@ pub fn is_slow_blas(name: &str) -> bool {
 /// Whether there is a file where a program is named, or on the PATH if it is named alone.
 pub fn is_there(program: &Path) -> bool {
     match program.to_str() {
-        Some(name) if !name.contains(std::path::is_separator) => which(name).is_some(),
+        Some(name) if is_bare(program) => which(name).is_some(),
         _ => program.is_file(),
     }
 }

@@ -55,6 +55,25 @@ pub fn write_set<N: AsRef<Path>>(folder: &Path, files: &[(N, Vec<u8>)]) -> Resul
     move_into_place(folder, files, &|| Ok(()))
 }
 
+/// As [`write_set`], for files whose names those of other sets may have: what `marks` such a set as
+/// complete is removed before its first file gives way. A folder of that name is somebody else's,
+/// and stays.
+///
+/// # Errors
+/// As [`write_set`].
+///
+/// # Panics
+/// As [`write_set`].
+pub fn write_set_over<N: AsRef<Path>>(
+    folder: &Path,
+    files: &[(N, Vec<u8>)],
+    marks: &[&str],
+) -> Result<()> {
+    move_into_place(folder, files, &|| {
+        marks.iter().try_for_each(|mark| remove_marker(folder, mark))
+    })
+}
+
 /// As [`write_set`], for a set whose files depend on what was asked for: those of the last set with
 /// this mark that are not in this one are removed. They would be taken for parts of it.
 ///
@@ -275,6 +294,28 @@ mod tests {
         write_set(folder.path(), &set("three")).unwrap_err();
         assert!(!folder.path().join("done").exists());
         assert_eq!(files(), 2);
+    }
+
+    #[test]
+    fn marks_of_other_sets_go_with_the_first_file_and_not_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let folder = folder.path();
+        let write = |last: &str| {
+            write_set_over(folder, &[("a", b"new".to_vec()), (last, Vec::new())], &["other"])
+        };
+        for name in ["a", "other"] {
+            std::fs::write(folder.join(name), "old").unwrap();
+        }
+        // The second set cannot be put together: its last file would be below a file.
+        write("a/b").unwrap_err();
+        assert_eq!(std::fs::read_to_string(folder.join("a")).unwrap(), "old");
+        assert!(folder.join("other").exists());
+        write("done").unwrap();
+        assert_eq!(std::fs::read_to_string(folder.join("a")).unwrap(), "new");
+        assert!(folder.join("done").exists() && !folder.join("other").exists());
+        std::fs::create_dir(folder.join("other")).unwrap();
+        write("done").unwrap();
+        assert!(folder.join("other").exists());
     }
 
     #[test]

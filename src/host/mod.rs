@@ -21,7 +21,7 @@ mod text;
 pub(crate) use {
     files::{
         check_not_given, prepare_folder, remove_if_there, remove_marker, replace_set, write_set,
-        write_whole,
+        write_set_over, write_whole,
     },
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},

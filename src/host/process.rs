@@ -9,7 +9,7 @@ use super::system;
 use crate::base::{Error, Result};
 use rustix::process::{Pid, Signal, getpid, kill_process, kill_process_group};
 use std::fs::{self, File};
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::os::unix::process::{CommandExt, ExitStatusExt};
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus, Stdio};
@@ -48,13 +48,13 @@ pub(crate) struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// Runs the child to its end.
+    /// Runs the child to its end, and returns what `output` reads of the files that it wrote.
     ///
     /// # Errors
     /// [`Error::Child`] with the end of the log when it cannot be started, fails, takes too long,
-    /// or fills the disk; [`Error::Interrupted`] when this process received a request to stop. No
-    /// process of the child is left in any case.
-    pub fn run(mut self) -> Result<()> {
+    /// fills the disk, or ends well without files that `output` takes; [`Error::Interrupted`] when
+    /// this process received a request to stop. No process of the child is left in any case.
+    pub fn run<T>(mut self, output: impl FnOnce() -> Result<T>) -> Result<T> {
         let _active = Active::new();
         check_interrupt()?;
         let log = File::create(&self.log).and_then(|log| Ok((log.try_clone()?, log)));
@@ -71,10 +71,11 @@ impl Stage<'_> {
         }
         kill_marked(self.folder);
         let status = ended?;
-        if status.success() {
-            return Ok(());
-        }
         let message = match (status.code(), status.signal()) {
+            (Some(0), _) => match output() {
+                Ok(output) => return Ok(output),
+                Err(error) => format!("ended with exit code 0, but {}", fault(error)),
+            },
             (Some(code), _) => format!("failed with exit code {code}"),
             (None, Some(signal)) if signal == Signal::KILL.as_raw() => {
                 "was killed (signal 9), perhaps because memory ran out".to_string()
@@ -136,6 +137,22 @@ impl Stage<'_> {
             log_tail: tail(&self.log),
             remedy: format!("{} (the whole log: {})", remedy.into(), self.log.display()),
         }
+    }
+}
+
+/// What is wrong with a file that a child was to write, without the remedy of the error: that is
+/// for files which somebody gave.
+fn fault(error: Error) -> String {
+    match error {
+        Error::Io { path, source, .. } if source.kind() == ErrorKind::NotFound => {
+            format!("did not write {}", path.display())
+        }
+        Error::Io { path, source, .. } => format!("{} cannot be read: {source}", path.display()),
+        Error::File { path, line, message, .. } => {
+            let line = line.map(|line| format!(":{line}")).unwrap_or_default();
+            format!("{}{line}: {message}", path.display())
+        }
+        other => other.to_string(),
     }
 }
 

@@ -30,9 +30,12 @@ fn a_missing_calculix_and_scenes_it_does_not_take_are_refused() {
     assert!(said.contains("leave out --ranks"), "{said}");
     let said = refused(bench.fake("").args(["--engine", "ansys"]));
     assert!(said.contains("fenicsx, calculix"), "{said}");
-    // The interpreter needs numpy alone.
-    succeeded(bench.fake("").args(calculix).arg("--ccx").arg(&ccx));
+    // The interpreter needs numpy alone. The program is named from here, and runs elsewhere.
+    succeeded(bench.fake("").args(calculix).args(["--ccx", "./ccx"]));
     assert_eq!(bench.notes(), ["mesh", "solve"]);
+    let text = fs::read_to_string(bench.out().join("request.json")).unwrap();
+    let request: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(request["ccx"].as_str().unwrap(), ccx.to_str().unwrap());
     let body = "young_pa = 210e9\npoisson = 0.3\nlength_m = 4e-3\n";
     for (more, wanted) in [
         ("[pose]\noffset_m = 1e-4\n", "symmetric along y"),
@@ -55,7 +58,7 @@ fn a_missing_calculix_and_scenes_it_does_not_take_are_refused() {
 fn a_hanging_or_killed_calculix_is_ended_and_leaves_nothing() {
     let bench = Bench::new();
     let notes = bench.folder.path().join("began");
-    let script = format!("touch {}; exec sleep 600", notes.display());
+    let script = format!("echo iteration 7; touch {}; exec sleep 600", notes.display());
     let ccx = stand_in(bench.folder.path(), &script);
     let run = || {
         let mut run = bench.live("flush-short");
@@ -65,6 +68,7 @@ fn a_hanging_or_killed_calculix_is_ended_and_leaves_nothing() {
     let began = Instant::now();
     let said = refused(run().args(["--solve-timeout", "4"]));
     assert!(said.contains("stage solve: took longer than 4 s and was stopped"), "{said}");
+    assert!(said.contains("| iteration 7"), "what it printed is lost: {said}");
     assert!(notes.exists() && began.elapsed() < Duration::from_secs(60));
     bench.assert_no_process_is_left();
     // Killed from outside, the driver leaves no process; the next run goes on after the mesh.
@@ -123,6 +127,9 @@ fn a_deck_is_written_and_runs() {
     let compare = ["compare", "flush-short", "run/curves.csv", "run/pressure.csv"];
     let done = edgeline(folder, &[&compare[..], &error].concat()).output().unwrap();
     assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stdout));
+    // A deck takes the place of the meshes of results, which are not complete without.
+    succeeded(edgeline(folder, &deck[..4]).args(["--out", "run"]));
+    assert!(bench.out().join("model.inp").exists() && !bench.out().join("fem.json").exists());
 }
 
 #[test]

@@ -4,9 +4,11 @@
 //! Most tests use the stand-ins in `tests/fake/`. Those that run gmsh and FEniCSx are marked
 //! `ignore`, since not every machine has them; `tests/all.sh` installs both and runs all tests.
 
-use crate::support::{Bench, edgeline, fake, files, kill, refused, start, succeeded, wait_for};
+use crate::support::{
+    self, Bench, edgeline, fake, files, kill, refused, start, succeeded, wait_for,
+};
 use std::fs;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::{Duration, Instant};
 
@@ -30,15 +32,120 @@ fn a_run_leaves_checked_results_and_is_not_repeated() {
         "solve.log",
     ];
     assert_eq!(files(&bench.out()), wanted);
-    succeeded(&mut bench.fake(""));
+    let done = support::said(&succeeded(&mut bench.fake("")));
+    assert!(done.contains("done already") && !done.contains("wrote"), "{done}");
     assert_eq!(bench.notes(), ["mesh", "solve"]);
-    // A changed request starts a new run, and so do changed results.
+    // A changed request starts a new run, and so does a changed result, whichever it is.
     succeeded(bench.fake("").args(["--size", "2"]));
     assert_eq!(bench.notes().len(), 4);
-    fs::write(bench.out().join("curves.csv"), "body\n").unwrap();
-    succeeded(bench.fake("").args(["--size", "2", "--keep"]));
-    assert_eq!(bench.notes().len(), 6);
+    for name in ["curves.csv", "pressure.csv", "mesh.json", "request.json", "fem.json"] {
+        let (path, before) = (bench.out().join(name), bench.notes().len());
+        fs::write(&path, "").unwrap();
+        let done = support::said(&succeeded(bench.fake("").args(["--size", "2", "--keep"])));
+        assert!(!done.contains("done already"), "{name}: {done}");
+        assert!(fs::metadata(&path).unwrap().len() > 0, "{name} is still damaged");
+        // What was kept of that run is taken again.
+        assert_eq!(bench.notes().len(), if name == "curves.csv" { before + 2 } else { before });
+    }
     assert!(bench.out().join("work/block.msh").is_file());
+}
+
+/// The files of `folder` with their content, without those below it.
+fn content(folder: &Path) -> Vec<(String, Vec<u8>)> {
+    let named = files(folder).into_iter().filter(|name| folder.join(name).is_file());
+    named.map(|name| (name.clone(), fs::read(folder.join(name)).unwrap())).collect()
+}
+
+#[test]
+fn earlier_results_stay_until_the_new_ones_are_complete() {
+    let bench = Bench::new();
+    let failing = ["fail-mesh", "half-mesh", "fail-solve", "cut-json", "not-finite"];
+    // Those of a semi-analytical solution, whose tables have the same names.
+    let solve = ["solve", "flush-short", "--method", "half-space", "--tolerance", "1e-2"];
+    succeeded(edgeline(bench.folder.path(), &solve).args(["--out", "run"]));
+    let before = content(&bench.out());
+    assert!(before.iter().any(|(name, _)| name == "summary.json"));
+    fs::create_dir(bench.out().join("work")).unwrap();
+    let said = refused(&mut bench.fake(""));
+    assert!(said.contains("work: was not made by this program"), "{said}");
+    assert_eq!(content(&bench.out()), before);
+    fs::remove_dir(bench.out().join("work")).unwrap();
+    for mode in failing {
+        refused(&mut bench.fake(mode));
+        assert!(content(&bench.out()) == before, "{mode}: {:?}", files(&bench.out()));
+    }
+    succeeded(&mut bench.fake(""));
+    assert!(!bench.out().join("summary.json").exists(), "curves of another run are marked");
+    // Those of another mesh, which are not taken for those of the mesh that failed.
+    let before = content(&bench.out());
+    for mode in failing {
+        refused(bench.fake(mode).args(["--size", "2"]));
+        assert!(content(&bench.out()) == before, "{mode}: {:?}", files(&bench.out()));
+    }
+    let notes = bench.notes().len();
+    succeeded(&mut bench.fake(""));
+    assert_eq!(bench.notes().len(), notes, "a finished run was repeated");
+    let done = support::said(&succeeded(bench.fake("").args(["--size", "2"])));
+    assert!(!done.contains("done already"), "{done}");
+    assert!(content(&bench.out()) != before);
+    // A profile that was given has the name of a result.
+    let body = "young_pa = 210e9\npoisson = 0.3\nlength_m = 4e-3\n";
+    let case = format!(
+        "name = \"a\"\n[roller]\nradius_m = 0.01\n{body}[block]\n{body}[load]\nforce_n = 1e3\n\
+         [roller.profile]\nkind = \"table\"\nfile = \"run/pressure.csv\"\n"
+    );
+    fs::write(bench.folder.path().join("case.toml"), case).unwrap();
+    let table = "y_m,drop_m\n-2e-3,1e-6\n0,0\n2e-3,1e-6\n";
+    fs::write(bench.out().join("pressure.csv"), table).unwrap();
+    let mut run = edgeline(bench.folder.path(), &["fem", "case.toml", "--out", "run"]);
+    run.env("FAKE_NOTES", bench.folder.path().join("notes"));
+    let notes = bench.notes().len();
+    let said = refused(run.arg("--python").arg(fake("python3")).arg("--gmsh").arg(fake("gmsh")));
+    assert!(said.contains("pressure.csv: was given to this run"), "{said}");
+    assert_eq!(bench.notes().len(), notes, "it ran first");
+    assert_eq!(fs::read_to_string(bench.out().join("pressure.csv")).unwrap(), table);
+}
+
+#[test]
+fn a_damaged_mesh_is_made_again() {
+    for name in ["block.msh", "roller.msh", "mesh.json", "mesh.key"] {
+        let bench = Bench::new();
+        refused(&mut bench.fake("fail-solve"));
+        let path = bench.out().join("work").join(name);
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        let done = support::said(&succeeded(&mut bench.fake("")));
+        assert!(!done.contains("meshes are there already"), "{name}: {done}");
+        assert_eq!(bench.notes(), ["mesh", "solve", "mesh", "solve"], "{name}");
+    }
+}
+
+#[test]
+fn programs_are_found_from_where_the_command_was_typed() {
+    let bench = Bench::new();
+    let bin = bench.folder.path().join("bin");
+    fs::create_dir(&bin).unwrap();
+    // Under other names, so that no PATH with them hides the real ones.
+    for (name, other) in [("python3", "py"), ("gmsh", "mesher")] {
+        std::os::unix::fs::symlink(fake(name), bin.join(other)).unwrap();
+    }
+    let run = || {
+        let mut run = bench.live("flush-short");
+        run.args(["--gmsh", "bin/mesher"]);
+        run
+    };
+    succeeded(run().args(["--python", "./bin/py"]));
+    succeeded(run().args(["--size", "2"]).env("EDGELINE_PYTHON", "bin/py"));
+    let text = fs::read_to_string(bench.out().join("request.json")).unwrap();
+    let request: serde_json::Value = serde_json::from_str(&text).unwrap();
+    assert!(Path::new(request["gmsh"].as_str().unwrap()).is_absolute(), "{}", request["gmsh"]);
+    // A bare name is looked up on the PATH.
+    let paths = std::env::var("PATH").unwrap();
+    let mut bare = bench.live("flush-short");
+    bare.env("PATH", format!("{}:{paths}", bin.display()));
+    succeeded(bare.args(["--size", "4", "--gmsh", "mesher", "--python", "py"]));
+    let text = fs::read_to_string(bench.out().join("request.json")).unwrap();
+    assert!(text.contains("\"gmsh\": \"mesher\""), "{text}");
 }
 
 #[test]
@@ -88,15 +195,28 @@ fn nonsense_is_refused_and_computed_anew() {
         ("cut-json", "fem.json:1: is not JSON"),
         ("bad-mesh-json", "mesh.json:1: is not JSON"),
         ("lost-load", "load_error_rel = 0.001 is more than 1e-6"),
-        ("nothing", "fem.json"),
+        ("nothing", "but did not write"),
+        ("nothing", "| no solution today"),
+        ("half-mesh", "but did not write"),
     ] {
         let bench = Bench::new();
         let said = refused(&mut bench.fake(mode));
         assert!(said.contains(wanted), "{mode}: {said}");
+        let (stage, file) = match mode {
+            "bad-mesh-json" => ("mesh", "mesh.json"),
+            "half-mesh" => ("mesh", "roller.msh"),
+            "not-finite" | "too-few-rows" => ("solve", "curves.csv"),
+            _ => ("solve", "fem.json"),
+        };
+        let stage_ended = format!("flush-short, stage {stage}: ended with exit code 0, but ");
+        assert!(said.contains(&stage_ended) && said.contains(file), "{mode}: {said}");
+        let log = bench.out().join(format!("work/{stage}.log"));
+        assert!(said.contains("the whole log: ") && log.is_file(), "{mode}: {said}");
+        assert!(!said.contains("check the path"), "{mode}: {said}");
         assert!(!bench.out().join("curves.csv").exists(), "{mode}");
         succeeded(&mut bench.fake(""));
         let meshed = bench.notes().iter().filter(|note| *note == "mesh").count();
-        assert_eq!(meshed, if mode == "bad-mesh-json" { 2 } else { 1 }, "{mode}");
+        assert_eq!(meshed, if stage == "mesh" { 2 } else { 1 }, "{mode}");
     }
 }
 
