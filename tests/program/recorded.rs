@@ -131,8 +131,8 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 }
 
 /// The study of profiled, eccentrically loaded rollers, at the tolerance of its file. Where a steep
-/// end is loaded (`w1e-4_sl5_lr1_drop0.5_ecc0`), pressure and normal stress of the recorded mesh are
-/// 0.015 p0 apart 0.1 C beside it.
+/// end is loaded (`w1e-4_sl5_lr1_drop0.5_ecc0`), pressure and normal stress of the recorded mesh
+/// are 0.015 p0 apart 0.1 C beside it.
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
