@@ -136,7 +136,8 @@ fn real_rollers_have_the_stresses_of_finite_elements() {
 #[test]
 fn profiled_rollers_have_the_stresses_of_finite_elements() {
     for case in Study::find(Path::new("profiled")).unwrap().cases() {
-        within(case, [0.0035, 0.0095, 0.0095], 0.055);
+        let pressure = if case.name == "w1e-4_sl5_lr1_drop0.5_ecc0" { 0.0035 } else { 0.003 };
+        within(case, [pressure, 0.0095, 0.0095], 0.055);
     }
 }
 
