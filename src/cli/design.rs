@@ -108,7 +108,7 @@ fn text(design: &Design, found: &Optimum, arguments: &Arguments, seconds: f64) -
     let mut lines = vec![
         format!("{}: {}", design.case.name, values.join(", ")),
         format!(
-            "  largest {} {}, more than {} C from the edges of the overlap (search: {})",
+            "  largest {} {}, at least {} C from the edges of the overlap (search: {})",
             design.objective.label(),
             mpa(found.confirmed_pa),
             design.exclude_c,

@@ -51,7 +51,7 @@ fn accuracy(summary: &StudySummary) -> Vec<String> {
     let first = match (best.pressure_rms, best.stress_rms, best.stress_max) {
         (Some(p), Some(s), Some(max)) => format!(
             "{name} is off FEM by {} p0 RMS in pressure, {} p0 RMS in the stresses and {} p0 at \
-             most, in the worst of {} cases, more than {} C from the contact's edges.",
+             most, in the worst of {} cases, at least {} C from the contact's edges.",
             fraction(p),
             fraction(s),
             fraction(max),
