@@ -19,7 +19,7 @@ use std::time::Instant;
 /// Varies the parameters of a profile within bounds (a TOML file, see cases/README.md): first a
 /// sample of the bounds, then descents by Nelder and Mead's simplex from its best points. Trials
 /// look at the loads that stress good profiles most; the best one is the best under all. The stress
-/// is the largest one of both bodies, more than exclude_c half-widths from the surface's edges at
+/// is the largest one of both bodies, at least exclude_c half-widths from the surface's edges at
 /// the ends of their overlap. Writes case.toml (the case with the profile, ready for `edgeline
 /// solve`), loads.csv (what each load sees, at the case's own tolerance), history.csv (all trials,
 /// with how many loads they looked at), scans.csv (lines through the optimum along each parameter),

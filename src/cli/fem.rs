@@ -15,8 +15,9 @@ use std::path::PathBuf;
 ///
 /// Writes curves.csv and pressure.csv (at the points of the semi-analytical solution), fem.json,
 /// mesh.json, request.json and the log of each stage into the output folder. Takes a few seconds at
-/// --size 2 and a minute at --size 1; with --engine calculix one to two minutes at --size 2. The
-/// next run continues a run that was stopped; a finished run is not repeated.
+/// --size 2 and a minute at --size 1, with --engine calculix one to two minutes at --size 2; what
+/// is not symmetric along y takes up to a minute at --size 2. The next run continues a run that was
+/// stopped; a finished run is not repeated.
 #[derive(Args)]
 pub(super) struct Arguments {
     /// A case file, or the name of a case that `edgeline cases` lists
