@@ -49,11 +49,13 @@ struct SolverFindings {
     milliseconds: f64,
 }
 
-/// The tools for finite elements; a missing one is `None`.
+/// The tools for finite elements; one that cannot be used is `None`.
 #[derive(Serialize)]
 struct FemFindings {
     ready: bool,
     gmsh: Option<String>,
+    /// Why gmsh cannot be used.
+    gmsh_fault: Option<String>,
     /// The interpreter that finite elements would use.
     interpreter: Option<String>,
     interpreters: Vec<Interpreter>,
@@ -72,6 +74,8 @@ struct Interpreter {
     found: bool,
     /// Versions of the imported packages; `None` if it does not import dolfinx.
     imports: Option<BTreeMap<String, String>>,
+    /// Why it does not.
+    fault: Option<String>,
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Exit> {
@@ -104,26 +108,35 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
 
 /// Looks for the tools for finite elements.
 fn fem_findings(arguments: &Arguments) -> FemFindings {
-    let gmsh = tools::gmsh_version(&arguments.gmsh);
-    let mpirun = tools::version(Path::new("mpirun"));
+    let (gmsh, gmsh_fault) = parts(tools::gmsh_version(&arguments.gmsh));
+    let mpirun = tools::version(Path::new("mpirun")).ok();
     let mut interpreters = Vec::new();
     let mut chosen: Option<PathBuf> = None;
     for (path, source) in tools::candidates(arguments.python.as_deref()) {
-        let imports = tools::imports(&path, Code::Fenicsx);
+        let (imports, fault) = parts(tools::imports(&path, Code::Fenicsx));
         if imports.is_some() && chosen.is_none() {
             chosen = Some(path.clone());
         }
         let (found, path) = (tools::is_there(&path), path.display().to_string());
-        interpreters.push(Interpreter { path, source, found, imports });
+        interpreters.push(Interpreter { path, source, found, imports, fault });
     }
     FemFindings {
         ready: gmsh.is_some() && chosen.is_some(),
         gmsh,
+        gmsh_fault,
         interpreter: chosen.as_ref().map(|path| path.display().to_string()),
         interpreters,
         mpirun,
-        ccx: tools::ccx_version(Path::new("ccx")),
+        ccx: tools::ccx_version(Path::new("ccx")).ok(),
         blas: chosen.as_deref().and_then(tools::blas),
+    }
+}
+
+/// What was found, and why it was not.
+fn parts<T>(found: tools::Found<T>) -> (Option<T>, Option<String>) {
+    match found {
+        Ok(value) => (Some(value), None),
+        Err(why) => (None, Some(why)),
     }
 }
 
@@ -141,15 +154,16 @@ fn text(findings: &Findings) -> String {
             duration(findings.solver.milliseconds * 1e-3)
         ),
         format!("recorded finite-element cases: {}", findings.records),
-        format!("gmsh: {}", or(&fem.gmsh, "not found")),
+        format!("gmsh: {}", fem.gmsh.as_ref().or(fem.gmsh_fault.as_ref()).expect("one of the two")),
     ];
-    for Interpreter { path, source, found, imports } in &fem.interpreters {
+    for Interpreter { path, source, found, imports, fault } in &fem.interpreters {
+        let why = fault.as_deref().unwrap_or_default();
         let imports = match imports {
             Some(versions) => {
                 let all = versions.iter().map(|(name, version)| format!("{name} {version}"));
                 all.collect::<Vec<_>>().join(", ")
             }
-            None if *found => "does not import dolfinx".to_string(),
+            None if *found => format!("does not import dolfinx: it {why}"),
             None => "not found".to_string(),
         };
         let mark = if fem.interpreter.as_ref() == Some(path) { " <- used" } else { "" };

@@ -100,7 +100,7 @@ impl Driver {
                 return refuse(key, program.display().to_string(), reason, remedy);
             }
         }
-        let versions = vec![tools::require_gmsh(&settings.gmsh)?];
+        let versions = vec![tools::require_gmsh(&settings.gmsh, settings.code)?];
         if settings.ranks > 1 {
             tools::require_mpirun()?;
         }

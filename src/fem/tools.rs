@@ -59,8 +59,11 @@ pub fn candidates(explicit: Option<&Path>) -> Vec<(PathBuf, &'static str)> {
     found
 }
 
-/// Versions of what `code` imports, or `None` if an interpreter does not import it.
-pub fn imports(python: &Path, code: Code) -> Option<BTreeMap<String, String>> {
+/// What was found out about a program, or in words why it is not usable.
+pub type Found<T> = std::result::Result<T, String>;
+
+/// Versions of what an interpreter imports for `code`, or why it does not.
+pub fn imports(python: &Path, code: Code) -> Found<BTreeMap<String, String>> {
     let modules = code.modules().join(", ");
     let named = code.modules().iter().filter(|name| !name.contains('.'));
     let versions: Vec<String> = named.map(|name| format!("'{name}': {name}.__version__")).collect();
@@ -70,7 +73,8 @@ pub fn imports(python: &Path, code: Code) -> Option<BTreeMap<String, String>> {
         versions.join(", ")
     );
     let (out, _) = capture(Command::new(python).args(["-c", &probe]), IMPORT_TIMEOUT)?;
-    serde_json::from_str(out.lines().last()?).ok()
+    let versions = out.lines().last().and_then(|line| serde_json::from_str(line).ok());
+    versions.ok_or_else(|| "does not print the versions that it is asked for".to_string())
 }
 
 /// The interpreter to use: the first candidate that imports what `code` takes.
@@ -78,15 +82,14 @@ pub fn imports(python: &Path, code: Code) -> Option<BTreeMap<String, String>> {
 /// # Errors
 /// [`Error::Missing`] that lists what was tried.
 pub fn find_interpreter(explicit: Option<&Path>, code: Code) -> Result<Interpreter> {
-    let candidates = candidates(explicit);
-    for (path, source) in &candidates {
-        if let Some(versions) = imports(path, code) {
-            return Ok(Interpreter { path: path.clone(), source, versions });
+    let mut tried = Vec::new();
+    for (path, source) in candidates(explicit) {
+        match imports(&path, code) {
+            Ok(versions) => return Ok(Interpreter { path, source, versions }),
+            Err(why) => tried.push(format!("{} ({source}), which {why}", path.display())),
         }
     }
     check_interrupt()?;
-    let tried: Vec<String> =
-        candidates.iter().map(|(path, source)| format!("{} ({source})", path.display())).collect();
     Err(Error::Missing {
         tool: format!("a Python interpreter that imports {}", code.modules()[0]),
         searched: format!("tried {}", tried.join(", ")),
@@ -98,25 +101,31 @@ pub fn find_interpreter(explicit: Option<&Path>, code: Code) -> Result<Interpret
 }
 
 /// The version that a program prints with `--version`: the first line with a digit.
-pub fn version(program: &Path) -> Option<String> {
+pub fn version(program: &Path) -> Found<String> {
     let (out, err) = capture(Command::new(program).arg("--version"), VERSION_TIMEOUT)?;
-    let line = out.lines().chain(err.lines()).find(|l| l.chars().any(|c| c.is_ascii_digit()))?;
-    Some(line.trim().to_string())
+    let has_digit = |line: &&str| line.chars().any(|c| c.is_ascii_digit());
+    let line = out.lines().chain(err.lines()).find(has_digit);
+    line.map(|line| line.trim().to_string()).ok_or_else(no_version)
 }
 
 /// The version that gmsh prints: a line of nothing but it, which other programs do not have.
-pub fn gmsh_version(program: &Path) -> Option<String> {
-    let is_version =
-        |text: &String| text.contains('.') && text.starts_with(|c: char| c.is_ascii_digit());
-    version(program).filter(is_version)
+pub fn gmsh_version(program: &Path) -> Found<String> {
+    let version = version(program)?;
+    let is_version = version.contains('.') && version.starts_with(|c: char| c.is_ascii_digit());
+    if is_version { Ok(version) } else { Err(no_version()) }
 }
 
-/// The version of the gmsh `program`.
+fn no_version() -> String {
+    "does not print a version of it".to_string()
+}
+
+/// The version of the gmsh `program`, which meshes for `code`.
 ///
 /// # Errors
 /// [`Error::Missing`] when it cannot be run.
-pub(super) fn require_gmsh(program: &Path) -> Result<String> {
-    require(program, gmsh_version(program), "--gmsh")
+pub(super) fn require_gmsh(program: &Path, code: Code) -> Result<String> {
+    let remedy = format!("{}; or name it with --gmsh", code.install());
+    require(program, "--version", gmsh_version(program), remedy)
 }
 
 /// The version of mpirun.
@@ -125,27 +134,30 @@ pub(super) fn require_gmsh(program: &Path) -> Result<String> {
 /// [`Error::Missing`] when it cannot be run.
 pub(super) fn require_mpirun() -> Result<String> {
     let program = Path::new("mpirun");
-    require(program, version(program), "the PATH")
+    let remedy = format!("{}; or put it on the PATH", Code::Fenicsx.install());
+    require(program, "--version", version(program), remedy)
 }
 
-fn require(program: &Path, version: Option<String>, option: &str) -> Result<String> {
-    if let Some(version) = version {
-        return Ok(version);
-    }
+/// The version that a program printed, or an error with the reason why there is none.
+fn require(program: &Path, option: &str, version: Found<String>, remedy: String) -> Result<String> {
+    let why = match version {
+        Ok(version) => return Ok(version),
+        Err(why) => why,
+    };
     check_interrupt()?;
     Err(Error::Missing {
-        tool: program.display().to_string(),
-        searched: format!("`{} --version` does not print a version of it", program.display()),
-        remedy: format!("{}; or name it with {option}", Code::Fenicsx.install()),
+        tool: format!("a working {}", program.display()),
+        searched: format!("`{} {option}` {why}", program.display()),
+        remedy,
     })
 }
 
 /// The version that the CalculiX program prints with `-v`.
-pub fn ccx_version(program: &Path) -> Option<String> {
+pub fn ccx_version(program: &Path) -> Found<String> {
     // It calls that a failure.
     let (out, _) = capture_any(Command::new(program).arg("-v"), VERSION_TIMEOUT)?;
-    let line = out.lines().find(|l| l.contains("Version"))?;
-    Some(line.trim().trim_start_matches("This is ").to_string())
+    let line = out.lines().find(|l| l.contains("Version")).ok_or_else(no_version)?;
+    Ok(line.trim().trim_start_matches("This is ").to_string())
 }
 
 /// The version of the CalculiX `program`.
@@ -153,15 +165,8 @@ pub fn ccx_version(program: &Path) -> Option<String> {
 /// # Errors
 /// [`Error::Missing`] when it cannot be run.
 pub(super) fn require_ccx(program: &Path) -> Result<String> {
-    if let Some(version) = ccx_version(program) {
-        return Ok(version);
-    }
-    check_interrupt()?;
-    Err(Error::Missing {
-        tool: program.display().to_string(),
-        searched: format!("`{} -v` does not print a version", program.display()),
-        remedy: format!("{}; or name it with --ccx", Code::Calculix.install()),
-    })
+    let remedy = format!("{}; or name it with --ccx", Code::Calculix.install());
+    require(program, "-v", ccx_version(program), remedy)
 }
 
 /// The BLAS library that an interpreter's numpy and PETSc load, as `folder/file`.
@@ -172,7 +177,7 @@ import dolfinx.fem.petsc
 names = {os.path.realpath(line.split()[-1]) for line in open('/proc/self/maps') if 'libblas' in line}
 print(min('/'.join(name.split('/')[-2:]) for name in names))
 ";
-    let (out, _) = capture(Command::new(python).args(["-c", PROBE]), IMPORT_TIMEOUT)?;
+    let (out, _) = capture(Command::new(python).args(["-c", PROBE]), IMPORT_TIMEOUT).ok()?;
     out.lines().last().map(str::to_string)
 }
 

@@ -71,16 +71,13 @@ impl Stage<'_> {
         }
         kill_marked(self.folder);
         let status = ended?;
-        let message = match (status.code(), status.signal()) {
-            (Some(0), _) => match output() {
+        let message = if status.success() {
+            match output() {
                 Ok(output) => return Ok(output),
                 Err(error) => format!("ended with exit code 0, but {}", fault(error)),
-            },
-            (Some(code), _) => format!("failed with exit code {code}"),
-            (None, Some(signal)) if signal == Signal::KILL.as_raw() => {
-                "was killed (signal 9), perhaps because memory ran out".to_string()
             }
-            (None, signal) => format!("was ended by signal {}", signal.unwrap_or(0)),
+        } else {
+            ending(status)
         };
         Err(self.failed(message, if is_full(self.folder) {
             "no space is left on the disk; make room there, or give a folder on another disk, then run again"
@@ -140,6 +137,17 @@ impl Stage<'_> {
     }
 }
 
+/// How a child ended that did not succeed.
+fn ending(status: ExitStatus) -> String {
+    match (status.code(), status.signal()) {
+        (Some(code), _) => format!("failed with exit code {code}"),
+        (None, Some(signal)) if signal == Signal::KILL.as_raw() => {
+            "was killed (signal 9), perhaps because memory ran out".to_string()
+        }
+        (None, signal) => format!("was ended by signal {}", signal.unwrap_or(0)),
+    }
+}
+
 /// What is wrong with a file that a child was to write, without the remedy of the error: that is
 /// for files which somebody gave.
 fn fault(error: Error) -> String {
@@ -156,19 +164,31 @@ fn fault(error: Error) -> String {
     }
 }
 
-/// Runs a short command and returns what it printed on both streams, or `None` when it cannot be
-/// started, fails, or takes longer than `timeout`.
-pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
-    captured(command, timeout).filter(|(status, _)| status.success()).map(|(_, texts)| texts)
+/// What a short command printed on both streams, or in words why it has no such answer: it cannot
+/// be started, fails, or takes longer than `timeout`.
+pub(crate) type Captured = std::result::Result<(String, String), String>;
+
+/// Runs a short command that is to succeed.
+pub(crate) fn capture(command: &mut Command, timeout: Duration) -> Captured {
+    let (status, (out, err)) = captured(command, timeout)?;
+    if status.success() {
+        return Ok((out, err));
+    }
+    let last = err.lines().rev().find(|line| !line.trim().is_empty());
+    let cause = last.map(|line| format!(": {}", plain(line).trim())).unwrap_or_default();
+    Err(format!("{}{cause}", ending(status)))
 }
 
 /// As [`capture`], whatever the exit code is.
-pub(crate) fn capture_any(command: &mut Command, timeout: Duration) -> Option<(String, String)> {
+pub(crate) fn capture_any(command: &mut Command, timeout: Duration) -> Captured {
     captured(command, timeout).map(|(_, texts)| texts)
 }
 
-/// The exit status and the output of a child; `None` if it cannot be run or takes too long.
-fn captured(command: &mut Command, timeout: Duration) -> Option<(ExitStatus, (String, String))> {
+/// The exit status and the output of a child, or in words why there are none.
+fn captured(
+    command: &mut Command,
+    timeout: Duration,
+) -> std::result::Result<(ExitStatus, (String, String)), String> {
     let _active = Active::new();
     let reader = |stream: Option<Box<dyn Read + Send>>| {
         std::thread::spawn(move || {
@@ -182,24 +202,27 @@ fn captured(command: &mut Command, timeout: Duration) -> Option<(ExitStatus, (St
     let count = COUNT.fetch_add(1, Ordering::SeqCst);
     let mark = PathBuf::from(format!("probe-{}-{count}", std::process::id()));
     command.stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let mut child = spawn(command, &mark).ok()?;
+    let mut child = spawn(command, &mark).map_err(|e| format!("cannot be started: {e}"))?;
     let out = reader(child.stdout.take().map(|s| Box::new(s) as _));
     let err = reader(child.stderr.take().map(|s| Box::new(s) as _));
     let began = Instant::now();
     let status = loop {
         match child.try_wait() {
-            Ok(Some(status)) => break Some(status),
-            Ok(None) if began.elapsed() < timeout && check_interrupt().is_ok() => {
-                std::thread::sleep(Duration::from_millis(2));
+            Ok(Some(status)) => break Ok(status),
+            Ok(None) if check_interrupt().is_err() => break Err("was interrupted".to_string()),
+            Ok(None) if began.elapsed() > timeout => {
+                break Err(format!("took longer than {} s", timeout.as_secs_f64()));
             }
-            _ => break None,
+            Ok(None) => std::thread::sleep(Duration::from_millis(2)),
+            Err(e) => break Err(format!("cannot be waited for: {e}")),
         }
     };
-    if status.is_none() {
+    if status.is_err() {
         stop(&mut child);
     }
     kill_marked(&mark);
-    let texts = (out.join().ok()?, err.join().ok()?);
+    // A reader has no reason to panic; it would have no text then.
+    let texts = (out.join().unwrap_or_default(), err.join().unwrap_or_default());
     status.map(|status| (status, texts))
 }
 
@@ -280,13 +303,16 @@ fn tail(log: &Path) -> String {
         Ok(bytes)
     };
     let text = String::from_utf8_lossy(&read().unwrap_or_default()).into_owned();
-    // Control characters of a child must not reach the user's terminal.
-    let plain = |line: &str| format!("  | {}", line.replace(|c: char| c.is_control(), " "));
-    let lines: Vec<String> = text.lines().map(plain).collect();
+    let lines: Vec<String> = text.lines().map(|line| format!("  | {}", plain(line))).collect();
     match lines.len() {
         0 => "  (it printed nothing)".to_string(),
         n => lines[n.saturating_sub(LINES)..].join("\n"),
     }
+}
+
+/// A line without a child's control characters, which must not reach the user's terminal.
+fn plain(line: &str) -> String {
+    line.replace(|c: char| c.is_control(), " ")
 }
 
 /// Whether the disk of a folder is almost full. A child that stopped for this reason has an empty

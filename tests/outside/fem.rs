@@ -225,7 +225,9 @@ fn missing_tools_are_named_with_what_to_install() {
     let bench = Bench::new();
     let said = refused(&mut bench.fake("no-dolfinx"));
     assert!(said.contains("imports dolfinx was not found"), "{said}");
-    assert!(said.contains("tests/fake/python3 (--python)"), "{said}");
+    let why =
+        "tests/fake/python3 (--python), which failed with exit code 1: ModuleNotFoundError: No";
+    assert!(said.contains(why), "{said}");
     assert!(said.contains("apt-get install gmsh python3-dolfinx"), "{said}");
     let said = refused(bench.live("flush-short").args(["--gmsh", "no-such-gmsh"]));
     assert!(said.contains("no-such-gmsh was not found") && said.contains("--gmsh"), "{said}");
@@ -257,7 +259,11 @@ fn doctor_says_what_is_missing() {
     let output = doctor("no-dolfinx", &["--gmsh", gmsh]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(0), "{said}");
-    assert!(said.contains("does not import dolfinx") && said.contains("apt-get"), "{said}");
+    let why = "does not import dolfinx: it failed with exit code 1: ModuleNotFoundError: No module";
+    assert!(said.contains(why) && said.contains("apt-get"), "{said}");
+    let output = doctor("", &["--gmsh", "/bin/false"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("gmsh: failed with exit code 1"), "{said}");
     let none = ["doctor", "--gmsh", gmsh, "--python", "no-such-python"];
     let output = edgeline(bench.folder.path(), &none).output().unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
@@ -266,6 +272,8 @@ fn doctor_says_what_is_missing() {
     assert_eq!(output.status.code(), Some(2));
     let printed: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert_eq!(printed["fem"]["ready"], false);
+    let why = printed["fem"]["gmsh_fault"].as_str().unwrap();
+    assert!(why.starts_with("cannot be started: No such file"), "{why}");
     assert_eq!(printed["fem"]["interpreters"][0]["imports"]["dolfinx"], "0");
     assert!(String::from_utf8(output.stderr).unwrap().contains("gmsh was not found"));
 }
