@@ -43,9 +43,9 @@ const LIMIT: Resolution = Resolution {
     k_step: 3.0,
     k_min: 0.004,
     k_ratio: 2.0,
-    images: 2,
-    face_reach: 20.0,
-    reach: 20.0,
+    images: 8,
+    face_reach: 24.0,
+    reach: 24.0,
 };
 
 /// The tolerance that it is solved for.

@@ -145,6 +145,11 @@ impl Panels {
         &self.corners
     }
 
+    /// The corner towards which the loads of panel `i` grow, if any.
+    pub fn law_of(&self, i: usize) -> Option<Corner> {
+        self.laws[i]
+    }
+
     /// The corner at which panel `i` ends, if any.
     pub fn corner_of(&self, i: usize) -> Option<Corner> {
         self.laws[i].filter(|law| self.panel(i).contains(&law.at))

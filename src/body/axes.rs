@@ -341,6 +341,7 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         k_step: 3.8,
         k_min: 0.004,
         k_ratio: 2.2,
+        images: 8,
         face_reach: 17.0,
         ..FINITE[4]
     },

@@ -15,7 +15,7 @@ use super::slow_change::SlowChange;
 use super::target::{KeptPlates, Loaded, ON_FACE, Target, add_wave};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
-use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
+use crate::base::{Corner, Growth, Panels, Parity, Samples, StressTensor, Wavenumbers};
 use crate::body::{Skins, Stack};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -29,11 +29,11 @@ const SMOOTH_DEPTH: f64 = 0.14;
 /// where the pressure's panels grow with the distance from the end.
 const SMOOTH_DISTANCE: f64 = 1.0;
 
-/// The bound r^-n of the interpolation along a line is this times a power of the tolerance. Its
-/// unknown factor makes errors of some tenths of a tolerance of it, and grows with n: in proportion
-/// to the tolerance it made 0.5 tolerances of 1e-4.
-const INTERPOLATION: f64 = 0.015;
-const INTERPOLATION_POWER: f64 = 1.25;
+/// The bound r^-n of the interpolation along a line, in tolerances: where the pressure has a limit
+/// at its ends, and where it grows without one. The unknown factor of the bound is larger there:
+/// with 0.1 errors are up to two tolerances, with 0.03 half of one more of 1e-4 than with 0.01.
+const INTERPOLATION: f64 = 0.1;
+const STEEP_INTERPOLATION: f64 = 0.01;
 
 /// What may be neglected of a stress's sum over the wavenumbers, in tolerances. Amplitudes that
 /// fall like a power of k leave about k times the last one.
@@ -314,11 +314,11 @@ impl<'a> Field<'a> {
         };
         let change = self.slow_change(y);
         let at_node = |t: &f64| self.remainders(&change, y, scale * t.sinh(), xs);
-        let nodes: Vec<Vec<FlatStress>> = axis.nodes().iter().map(at_node).collect();
+        let nodes: Vec<Vec<FlatStress>> = axis.places().iter().map(at_node).collect();
         let smooth = |z: f64| {
-            let weights: Vec<(usize, f64)> = axis.interpolation(place(z)).collect();
+            let shares = axis.shares(place(z));
             let at = |(i, &x): (usize, &f64)| {
-                let own = weights.iter().map(|(node, weight)| (&nodes[*node][i], *weight));
+                let own = nodes.iter().zip(&shares).map(|(node, share)| (&node[i], *share));
                 self.complete(&change, [x, y, z], self.weighted(own))
             };
             xs.iter().enumerate().map(at).collect()
@@ -335,8 +335,9 @@ impl<'a> Field<'a> {
         }
         let [from, to] = self.pressure.ends();
         let face = self.stack.body().half - (y - self.stack.middle).abs();
-        // Half-widths are near 1.
-        let places = [y - from, to - y, face, 1.0 - x.abs()];
+        let half_width = self.pressure.local_contact(y).half_width;
+        let edge = if half_width > 0.0 { half_width - x.abs() } else { f64::INFINITY };
+        let places = [y - from, to - y, face, edge];
         places.into_iter().fold(f64::INFINITY, |near, to| near.min(to.abs()))
     }
 
@@ -400,7 +401,7 @@ impl<'a> Field<'a> {
                 let y = line.y(off_middle(*t));
                 self.remainders(&self.slow_change(y), y, 0.0, &[x])[0]
             };
-            let values: Vec<FlatStress> = axis.nodes().iter().map(at_node).collect();
+            let values: Vec<FlatStress> = axis.places().iter().map(at_node).collect();
             (axis, values)
         });
         ys.iter()
@@ -428,13 +429,13 @@ impl<'a> Field<'a> {
             return ys.iter().map(|&y| self.at(y, z, &[x])[0]).collect();
         };
         let at_node = |t: &f64| self.at(line.y(end + z * t.sinh()), z, &[x])[0];
-        let nodes: Vec<FlatStress> = axis.nodes().iter().map(at_node).collect();
+        let nodes: Vec<FlatStress> = axis.places().iter().map(at_node).collect();
         ys.iter().map(|y| self.interpolated(&axis, &nodes, place(*y))).collect()
     }
 
-    /// The stress at `place` of the polynomial through `values` at the nodes of `axis`.
-    fn interpolated(&self, axis: &Panels, values: &[FlatStress], place: f64) -> FlatStress {
-        self.weighted(axis.interpolation(place).map(|(node, weight)| (&values[node], weight)))
+    /// The stress at `place` of the polynomial through `values` at the places of `axis`.
+    fn interpolated(&self, axis: &Samples, values: &[FlatStress], place: f64) -> FlatStress {
+        self.weighted(values.iter().zip(axis.shares(place)))
     }
 
     /// The sum of stresses with their weights.
@@ -449,17 +450,17 @@ impl<'a> Field<'a> {
         sum
     }
 
-    /// The nodes for the interpolation to `places` within [`INTERPOLATION`], of functions that have
-    /// `poles` (position, and distance from the axis) between the outermost two places. None if
-    /// there would be no fewer nodes than places.
+    /// The samples for the interpolation to `places` as [`INTERPOLATION`] asks for, of functions
+    /// that have `poles` (position, and distance from the axis) between the outermost two places.
+    /// None if there would be no fewer samples than places.
     ///
-    /// Interpolation through n Gauss nodes errs by about r^-n, with r the parameter of Bernstein's
+    /// Interpolation through n of them errs by about r^-n, with r the parameter of Bernstein's
     /// ellipse through the pole, see [`crate::body::stencil`].
     fn sampling(
         &self,
         places: impl Iterator<Item = f64> + Clone,
         poles: impl Fn([f64; 2]) -> Vec<(f64, f64)>,
-    ) -> Option<Panels> {
+    ) -> Option<Samples> {
         let from = places.clone().fold(f64::INFINITY, f64::min);
         let to = places.clone().fold(f64::NEG_INFINITY, f64::max);
         let count = places.count();
@@ -471,10 +472,12 @@ impl<'a> Field<'a> {
             .map(|(at, off)| ((at - from).hypot(off) + (at - to).hypot(off)) / (to - from))
             .fold(f64::INFINITY, f64::min);
         let rate = (slowest + (slowest * slowest - 1.0).max(0.0).sqrt()).ln();
-        let bound = INTERPOLATION * self.tolerance.powf(INTERPOLATION_POWER);
+        let grows = |corner: &Corner| matches!(corner.growth, Growth::Power(_));
+        let steep = self.pressure.axis().corners().iter().any(grows);
+        let bound = if steep { STEEP_INTERPOLATION } else { INTERPOLATION } * self.tolerance;
         let wanted = -bound.ln() / rate;
         (wanted < count as f64 - 1.0)
-            .then(|| Panels::new(vec![from, to], wanted.ceil().max(2.0) as usize))
+            .then(|| Samples::new(from, to, wanted.ceil().max(2.0) as usize))
     }
 
     /// Whether `y` (C) lies on an end face.
@@ -608,7 +611,14 @@ impl<'a> Field<'a> {
         }
         self.counters.add(&target.work);
         let flat = |sums: [[f64; 6]; 2]| {
-            let [pressure, traction] = sums.map(StressTensor::from_components);
+            let [pressure, traction] = sums.map(|sums| {
+                let mut s = StressTensor::from_components(sums);
+                if z == 0.0 {
+                    // The tractions there are those of the endless contact.
+                    (s.zz, s.xz, s.yz) = (0.0, 0.0, 0.0);
+                }
+                s
+            });
             FlatStress { pressure, traction }
         };
         sums.into_iter().map(flat).collect()

@@ -168,12 +168,17 @@ impl Pressure {
         sum
     }
 
+    /// The load per length at node `j`.
+    fn line_load(&self, j: usize) -> f64 {
+        let (half_width, modes) = self.at_node(j);
+        strip::cumulative(half_width, modes, half_width)
+    }
+
     /// The load per length at every node.
     pub fn line_loads(&self) -> Vec<LineLoad> {
         let nodes = self.axis.nodes().iter().zip(self.axis.weights()).enumerate();
         let at = |(j, (&y, &weight))| {
-            let (half_width, modes) = self.at_node(j);
-            let load = strip::cumulative(half_width, modes, half_width);
+            let (half_width, load) = (self.half_widths[j], self.line_load(j));
             LineLoad { y, weight, load, half_width: if load > 0.0 { half_width } else { 0.0 } }
         };
         nodes.map(at).collect()
@@ -234,7 +239,9 @@ impl Load for Pressure {
             let own = &self.fading[panel * order..(panel + 1) * order];
             let least = own.iter().copied().fold(f64::INFINITY, f64::min);
             let faded = (k_max / least).log2().clamp(0.0, 1.0);
-            if faded == 0.0 || self.axis.corner_of(panel).is_some() {
+            // Towards a singular end slopes are steep, and those of what is interpolated are not
+            // what waves have: half-widths are polynomials there, loads powers.
+            if faded == 0.0 || self.axis.law_of(panel).is_some() {
                 continue;
             }
             // At a break the polynomials of both sides differ, and their difference is no slope.
@@ -249,11 +256,21 @@ impl Load for Pressure {
             let slow = (FAST - ((after - before) / CHANGE).abs()) / (FAST - SLOW);
             let factor = share * faded * slow.clamp(0.0, 1.0) / CHANGE;
             if factor > 0.0 {
-                change.contacts.extend([(factor, after, more), (-factor, before, less)]);
+                let mut load = 0.0;
                 for (y, factor) in sides.into_iter().zip([factor, -factor]) {
-                    let nodes = self.neighbours(y).into_iter();
-                    change.nodes.extend(nodes.map(|(j, weight)| (j, factor * weight)));
+                    for (j, weight) in self.neighbours(y) {
+                        change.nodes.push((j, factor * weight));
+                        load += factor * weight * self.line_load(j);
+                    }
                 }
+                // The waves' load is interpolated between nodes, and that of the interpolated
+                // half-width and modes has another slope, which long waves would show at any depth.
+                let [ahead, behind] = [(after, &more), (before, &less)]
+                    .map(|(a, modes)| strip::cumulative(a, modes, a));
+                let both = ahead + behind;
+                let rest = if both > 0.0 { (load / factor - ahead + behind) / both } else { 0.0 };
+                let [ahead, behind] = [factor * (1.0 + rest), factor * (rest - 1.0)];
+                change.contacts.extend([(ahead, after, more), (behind, before, less)]);
             }
         }
         change
@@ -269,6 +286,7 @@ impl Traction for Pressure {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::base::{Corner, Growth};
     use std::f64::consts::PI;
 
     #[test]
@@ -343,5 +361,25 @@ mod tests {
         assert!(of_slopes([0.26; 2]).slow_change(1.0, k_max).contacts.is_empty());
         let half = of_slopes([0.2; 2]).slow_change(1.0, k_max);
         assert!((half.contacts[0].0 * CHANGE - 0.5).abs() < 1e-6, "{half:?}");
+    }
+
+    /// Between nodes the product of half-width and modes is not the load that waves interpolate;
+    /// the closed form has the latter. Towards a singular end there is none.
+    #[test]
+    fn changes_along_the_line_have_the_load_of_the_waves() {
+        let corner = Corner { at: 6.0, side: -1.0, growth: Growth::Power(0.2), reach: 1.0 };
+        let axis = Panels::new(vec![0.0, 3.0, 5.2, 6.0], 4).with_corners(&[corner]);
+        let half_width = |y: &f64| 1.6 - 0.05 * (2.0 * y).sin();
+        let half_widths: Vec<f64> = axis.nodes().iter().map(half_width).collect();
+        let coefficients = half_widths.iter().map(|a| vec![a.powi(3), -0.1]).collect();
+        let pressure = Pressure::new(axis, true, half_widths, coefficients);
+        for y in [-4.4, 0.3, 1.7, 3.0, 4.1] {
+            let change = pressure.slow_change(y, 1e3);
+            let own = |(j, weight): &(usize, f64)| weight * pressure.line_load(*j);
+            let waves: f64 = change.nodes.iter().map(own).sum();
+            assert!((change.load() - waves).abs() < 1e-9, "{y}: {} {waves}", change.load());
+            assert!(waves.abs() > 1e-3);
+        }
+        assert!(pressure.slow_change(5.5, 1e3).contacts.is_empty());
     }
 }

@@ -3,7 +3,7 @@
 use super::load::Load;
 use super::target::{INTO_FACES, add_side, add_wave, from_face, in_body, off_middle};
 use super::waves::{Influence, LoadBlock, blocks};
-use crate::base::{Panels, Parity, StressTensor, Wavenumbers};
+use crate::base::{Parity, Samples, StressTensor, Wavenumbers};
 use crate::body::{Body, Skin, Skins};
 use crate::kernels::line_load::WaveStress;
 use crate::kernels::plate::Remainder;
@@ -214,12 +214,12 @@ fn sampled(
     if places.len() <= nodes || from >= to {
         return places.iter().map(|t| at(*t)).collect();
     }
-    let axis = Panels::new(vec![from, to], nodes);
-    let known: Vec<_> = axis.nodes().iter().map(|t| at(*t)).collect();
+    let axis = Samples::new(from, to, nodes);
+    let known: Vec<_> = axis.places().iter().map(|t| at(*t)).collect();
     let interpolated = |t: &f64| {
         let mut sums = vec![StressTensor::default(); known[0].len()];
-        for (node, w) in axis.interpolation(*t) {
-            sums.iter_mut().zip(&known[node]).for_each(|(sum, own)| *sum += *own * w);
+        for (share, known) in axis.shares(*t).into_iter().zip(&known) {
+            sums.iter_mut().zip(known).for_each(|(sum, own)| *sum += *own * share);
         }
         sums
     };
