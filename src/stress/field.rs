@@ -15,7 +15,7 @@ use super::slow_change::SlowChange;
 use super::target::{KeptPlates, Loaded, ON_FACE, Target, add_wave};
 use super::waves::{LongQuadrature, Waves};
 use super::work::{Counters, Work};
-use crate::base::{Corner, Growth, Panels, Parity, Samples, StressTensor, Wavenumbers};
+use crate::base::{Panels, Parity, Samples, StressTensor, Wavenumbers};
 use crate::body::{Skins, Stack};
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -302,8 +302,7 @@ impl<'a> Field<'a> {
         if zs.iter().any(|z| xs.iter().any(|x| self.is_far(*x, *z))) {
             return zs.iter().map(|&z| self.at(y, z, xs)).collect();
         }
-        let near =
-            xs.iter().fold(f64::INFINITY, |near: f64, &x| near.min(self.smooth_within(x, y)));
+        let near = self.smooth_within(xs, y);
         let least = if near >= SMOOTH_DEPTH { 0.0 } else { SMOOTH_DEPTH };
         let scale = near.max(ON_SURFACE);
         let place = |z: f64| (z / scale).asinh();
@@ -326,19 +325,19 @@ impl<'a> Field<'a> {
         zs.iter().map(|&z| if z >= least { smooth(z) } else { self.at(y, z, xs) }).collect()
     }
 
-    /// Distance along the surface from (`x`, `y`) to the nearest place where the load is not
-    /// smooth: the edges and ends of the contact, and the ends of the body. Zero if a
+    /// Least distance along the surface from (x, `y`), with the x of `xs`, to a place where the
+    /// load is not smooth: the edges and ends of the contact, and the ends of the body. Zero if a
     /// [`transition`] corrects the stresses, because it is singular on the surface itself.
-    fn smooth_within(&self, x: f64, y: f64) -> f64 {
+    fn smooth_within(&self, xs: &[f64], y: f64) -> f64 {
         if self.gamma.is_some() {
             return 0.0;
         }
         let [from, to] = self.pressure.ends();
         let face = self.stack.body().half - (y - self.stack.middle).abs();
         let half_width = self.pressure.local_contact(y).half_width;
-        let edge = if half_width > 0.0 { half_width - x.abs() } else { f64::INFINITY };
-        let places = [y - from, to - y, face, edge];
-        places.into_iter().fold(f64::INFINITY, |near, to| near.min(to.abs()))
+        let edges = xs.iter().filter(|_| half_width > 0.0).map(|x| half_width - x.abs());
+        let places = [y - from, to - y, face].into_iter().chain(edges);
+        places.fold(f64::INFINITY, |near, to| near.min(to.abs()))
     }
 
     /// [`Field::along`] in the plane x = 0, with the contribution of a round surface per C / R.
@@ -472,8 +471,7 @@ impl<'a> Field<'a> {
             .map(|(at, off)| ((at - from).hypot(off) + (at - to).hypot(off)) / (to - from))
             .fold(f64::INFINITY, f64::min);
         let rate = (slowest + (slowest * slowest - 1.0).max(0.0).sqrt()).ln();
-        let grows = |corner: &Corner| matches!(corner.growth, Growth::Power(_));
-        let steep = self.pressure.axis().corners().iter().any(grows);
+        let steep = self.pressure.axis().corners().iter().any(|c| c.exponent().is_some());
         let bound = if steep { STEEP_INTERPOLATION } else { INTERPOLATION } * self.tolerance;
         let wanted = -bound.ln() / rate;
         (wanted < count as f64 - 1.0)
