@@ -317,8 +317,8 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
     Resolution {
         order: 4,
         ratio: 2.3,
-        modes: 5,
-        spacing: [0.053; 2],
+        modes: 4,
+        spacing: [0.08; 2],
         k_min: 0.035,
         k_ratio: 7.0,
         reach: 9.2,
@@ -328,15 +328,15 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         order: 5,
         corner: 0.0045,
         ratio: 2.3,
-        modes: 8,
-        spacing: [0.02; 2],
-        k_max: 140.0,
-        face_reach: 19.0,
+        modes: 6,
+        spacing: [0.04; 2],
+        k_max: 110.0,
+        face_reach: 23.0,
         ..FINITE[3]
     },
     Resolution {
         ratio: 1.85,
-        k_max: 220.0,
+        k_max: 170.0,
         k_order: 5,
         k_step: 3.8,
         k_min: 0.004,
@@ -363,8 +363,17 @@ const STRAIGHT_SINGULAR: [Resolution; 6] = [
     SINGULAR[0],
     Resolution { spacing: [0.13; 2], ..SINGULAR[1] },
     Resolution { order: 4, corner: 0.002, corner_ratio: 6.0, ratio: 2.4, ..SINGULAR[2] },
-    Resolution { order: 5, corner: 0.0009, ratio: 2.3, reach: 15.0, ..SINGULAR[3] },
-    SINGULAR[4],
+    Resolution {
+        order: 5,
+        corner: 0.0009,
+        ratio: 2.3,
+        modes: 5,
+        spacing: [0.06; 2],
+        k_order: 5,
+        reach: 15.0,
+        ..SINGULAR[3]
+    },
+    Resolution { spacing: [0.04; 2], k_max: 160.0, ..SINGULAR[4] },
 ];
 
 /// Those of contacts that end before their bodies do at both ends: the pressure falls to zero

@@ -1,4 +1,4 @@
-//! The laws of contact, checked between the collocation points.
+//! The laws of contact, checked at points of their own.
 
 use super::operator::{LineOperator, Operator};
 use super::problem::Problem;
@@ -6,8 +6,7 @@ use super::solution::ContactSolution;
 use crate::base::{Error, Result, worse};
 use crate::kernels::strip;
 
-/// Positions of the check across the contact, in half-widths of each node; none is a collocation
-/// point.
+/// Positions of the check across the contact, in half-widths of each node.
 const PLACES: [f64; 6] = [0.31, 0.73, 0.97, 1.05, 1.3, 2.2];
 
 /// Distance from the line's end (C) within which interpolated half-widths leave gaps that say

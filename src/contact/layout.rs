@@ -4,7 +4,6 @@ use super::problem::Problem;
 use super::settings::ContactSettings;
 use crate::kernels::strip;
 use nalgebra::DVector;
-use std::f64::consts::PI;
 use std::ops::Range;
 
 /// Distance from the line's end (C) beyond which a few modes describe the pressure.
@@ -21,9 +20,8 @@ const ENDLESS_EXPONENT: f64 = 0.5;
 
 /// Modes that a node without an independent half-width has of its own, where the pressure has a
 /// limit at the end. Its higher ones are small, change slowly along the line, and are interpolated
-/// as its half-width is: nodes beside each other, with all modes of their own, would make noise of
-/// them that pressures between the nodes show.
-const OWN_MODES: usize = 3;
+/// as its half-width is: fewer unknowns, at 1e-4 no further from the limit than with all of them.
+const OWN_MODES: usize = 4;
 
 /// Points across the contact at which the sign of a pressure is checked.
 const SHAPE_POINTS: i32 = 8;
@@ -40,13 +38,18 @@ const LEAST: usize = 2;
 const STEEPEST: f64 = 10.0;
 
 /// Power of the distance from the contact's end in which the half-width is interpolated: it
-/// steepens towards an end where the pressure changes by s^-m or by s ln s.
+/// steepens towards an end, where the pressure changes by s ln s, or by s^-m (the second one).
 const STEEPENING: f64 = 0.6;
+const STEEPENING_WITHOUT_LIMIT: f64 = 0.75;
 
-/// Knots between which the square of a half-width is interpolated towards a tip, by the cubic
-/// through them. By straight lines from node to node errors of pressures 0.03 to 0.1 C from a steep
-/// tip are as large at 3e-4 as at 1e-3.
+/// Knots through which a half-width, or towards a tip its square, is interpolated, and beyond the
+/// last of them extrapolated: cubics, but parabolas towards an end without a limit and straight
+/// lines towards a tip. By straight lines throughout, errors of pressures 0.03 to 0.1 C from a
+/// steep tip are as large at 3e-4 as at 1e-3, and those 0.03 to 0.05 C from an end with a limit up
+/// to ten times 1e-4.
 const CUBIC: usize = 4;
+const PARABOLA: usize = 3;
+const LINE: usize = 2;
 
 /// What is interpolated at a node: positions of free nodes, and their shares.
 pub(super) type Shares = [(usize, f64); CUBIC];
@@ -121,16 +124,12 @@ fn free_nodes(problem: &Problem, spacing: [f64; 2], contact: &Range<usize>) -> V
     if free.is_empty() { vec![middle] } else { free }
 }
 
-/// The [`STEEPENING`] power of the distance from the nearer end, as a coordinate that ascends with
-/// y.
-fn steepening(problem: &Problem, y: f64) -> f64 {
-    let (from, to) = (problem.axis.breaks()[0], problem.axis.end());
-    let half = if problem.both_ends { 0.5 * (to - from) } else { to - from };
-    if to - y <= half {
-        -(to - y).powf(STEEPENING)
-    } else {
-        (y - from).powf(STEEPENING) - 2.0 * half.powf(STEEPENING)
-    }
+/// The coordinate in which half-widths next to `y` are interpolated: a power of the distance from
+/// the end next to it, see [`STEEPENING`].
+fn steepening(problem: &Problem, y: f64) -> impl Fn(f64) -> f64 {
+    let end = [problem.axis.breaks()[0], problem.axis.end()][problem.side_of(y)];
+    let power = if problem.is_steep(y) { STEEPENING_WITHOUT_LIMIT } else { STEEPENING };
+    move |at| (at - end).abs().powf(power)
 }
 
 /// A place at which the half-width is known: a free node, by its position among these, or a tip,
@@ -161,11 +160,18 @@ fn shares_of<'a>(knots: impl IntoIterator<Item = (&'a Knot, f64)>) -> Shares {
     shares
 }
 
-/// The shares at `y` of the cubic through knots.
-fn shares_of_cubic(y: f64, knots: &[Knot; CUBIC]) -> Shares {
+/// The `count` knots nearest to a place between or beyond them, of which the first `after` lie
+/// before it.
+fn knots_around(knots: &[Knot], after: usize, count: usize) -> &[Knot] {
+    let first = after.saturating_sub(count.div_ceil(2)).min(knots.len() - count);
+    &knots[first..first + count]
+}
+
+/// The shares of free nodes at `y` by the polynomial through knots in the coordinate `at`.
+fn shares_through(knots: &[Knot], at: impl Fn(f64) -> f64, y: f64) -> Shares {
     let share = |own: &Knot| {
         let others = knots.iter().filter(|other| other.y != own.y);
-        others.map(|other| (y - other.y) / (own.y - other.y)).product()
+        others.map(|other| (at(y) - at(other.y)) / (at(own.y) - at(other.y))).product()
     };
     shares_of(knots.iter().map(|own| (own, share(own))))
 }
@@ -179,12 +185,12 @@ fn narrows(problem: &Problem, contact: &Range<usize>, y: f64) -> bool {
 
 impl Layout {
     /// All modes at the nodes that are in `contact`, at most `tail_modes` behind the last free one,
-    /// none at the others; half-widths towards a tip by `cubic`s, or by straight lines.
+    /// none at the others; half-widths by curves if `bent`, or by straight lines.
     pub fn new(
         problem: &Problem,
         settings: &ContactSettings,
         tail_modes: usize,
-        cubic: bool,
+        bent: bool,
         contact: Range<usize>,
     ) -> Self {
         let axis = problem.axis;
@@ -202,20 +208,21 @@ impl Layout {
                 if free.len() == 1 || after == 0 && !problem.both_ends {
                     return shares_of([(&knots[0], 1.0)]);
                 }
-                let before = after.clamp(1, knots.len() - 1) - 1;
-                let first = before.saturating_sub(1).min(knots.len().saturating_sub(CUBIC));
-                let around = &knots[first..(first + CUBIC).min(knots.len())];
-                let all_narrow =
-                    around.iter().all(|knot| knot.free.is_none_or(|at| narrows[free[at]]));
-                let within = cubic && after > 0 && after < knots.len();
-                if let (true, Ok(around)) = (all_narrow && within, around.try_into()) {
-                    return shares_of_cubic(*y, around);
-                }
-                let own = if *narrow { |_: &Problem, y: f64| y } else { steepening };
-                let [from, to] = [&knots[before], &knots[before + 1]];
-                let [a, b] = [from, to].map(|knot| own(problem, knot.y));
-                let share = (own(problem, *y) - a) / (b - a);
-                shares_of([(from, 1.0 - share), (to, share)])
+                let beyond = after == 0 || after == knots.len();
+                let most = if !bent || knots.len() < CUBIC || beyond && *narrow {
+                    LINE
+                } else if beyond && problem.is_steep(*y) {
+                    PARABOLA
+                } else {
+                    CUBIC
+                };
+                let alike = |near: &&[Knot]| {
+                    near.iter().all(|knot| knot.free.is_none_or(|at| narrows[free[at]]) == *narrow)
+                };
+                let near = Some(knots_around(&knots, after, most)).filter(alike);
+                let near = near.unwrap_or_else(|| knots_around(&knots, after, LINE));
+                let steepened = steepening(problem, *y);
+                shares_through(near, |y| if *narrow { y } else { steepened(y) }, *y)
             })
             .collect();
         let (first, last) = (free[0], free[free.len() - 1]);
@@ -296,8 +303,7 @@ impl Layout {
         self.free.binary_search(&j).is_ok()
     }
 
-    /// Unknowns and collocation equations of node `j`: its modes, then the singular one if it is
-    /// free.
+    /// Unknowns and equations of node `j`: its modes, then the singular one if it is free.
     pub fn unknowns(&self, j: usize) -> Range<usize> {
         self.starts[j]..self.starts[j + 1]
     }
@@ -348,21 +354,6 @@ impl Layout {
             })
             .into_iter()
             .filter(|(_, factor)| *factor != 0.0)
-    }
-
-    /// Collocation points of node `j`, as t in (0, 1): zeros of T_2n with the singular mode,
-    /// otherwise those of U_2n, the points of Gauss's rule for the weight sqrt(1 - t^2).
-    pub fn points(&self, j: usize) -> impl Iterator<Item = f64> {
-        let count = self.unknowns(j).len();
-        let free = self.is_free(j);
-        (0..count).map(move |l| {
-            let angle = if free {
-                PI * (2 * l + 1) as f64 / (4 * count) as f64
-            } else {
-                PI * (l + 1) as f64 / (2 * count + 1) as f64
-            };
-            angle.cos()
-        })
     }
 
     /// Removes modes from nodes that are not free and whose pressure is tensile somewhere across

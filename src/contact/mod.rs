@@ -16,8 +16,8 @@
 //! int p cos(k x) dx.
 
 mod check;
-mod collocation;
 mod ends;
+mod galerkin;
 mod gap;
 mod layout;
 mod operator;

@@ -1,8 +1,8 @@
 //! The Newton iteration for the contact's boundary.
 
 use super::check::check;
-use super::collocation::LinearProblem;
 use super::ends::ends;
+use super::galerkin::LinearProblem;
 use super::layout::{Layout, Shares};
 use super::operator::LineOperator;
 use super::problem::{Problem, Rotation};
@@ -72,11 +72,11 @@ const FIRST_ITERATIONS: usize = 10;
 
 /// Solves for the pressure that carries the problem's load.
 ///
-/// For fixed half-widths the problem is linear: collocation determines the modes at every node, and
-/// the load determines the approach. Nodes whose half-width is unknown also have the amplitude b of
-/// the singular mode 1/sqrt(1 - t^2); at the correct boundary b = 0. To first order b / sqrt(1 -
-/// t^2) is the effect of moving the boundary of S sqrt(1 - t^2) to a sqrt(1 + 2 b / S), so this
-/// update is Newton's and converges quadratically.
+/// For fixed half-widths the problem is linear: Galerkin's method determines the modes at every
+/// node, and the load determines the approach. Nodes whose half-width is unknown also have the
+/// amplitude b of the singular mode 1/sqrt(1 - t^2); at the correct boundary b = 0. To first order
+/// b / sqrt(1 - t^2) is the effect of moving the boundary of S sqrt(1 - t^2) to a sqrt(1 + 2 b /
+/// S), so this update is Newton's and converges quadratically.
 ///
 /// # Errors
 /// [`Error::NotConverged`] if the boundary does not converge, [`Error::Unsound`] if the solution
@@ -109,8 +109,8 @@ struct Attempt {
     tail_modes: usize,
     /// Whether nodes take parts of Newton's steps, see [`STAYS`].
     by_secants: bool,
-    /// Whether half-widths towards a tip are interpolated by cubics.
-    cubic: bool,
+    /// Whether half-widths are interpolated by cubics, not by straight lines.
+    bent: bool,
     /// Iterations after which it is given up, unless it [`ARRIVES`].
     iterations: usize,
 }
@@ -131,10 +131,10 @@ fn attempts(settings: &ContactSettings, may_end: bool) -> Vec<Attempt> {
     let one = |by_secants, times: f64, modes, tail_modes, iterations| {
         let spacing = settings.spacing.map(|apart| times * apart);
         let settings = ContactSettings { spacing, modes, ..*settings };
-        Attempt { settings, tail_modes, by_secants, cubic: false, iterations }
+        Attempt { settings, tail_modes, by_secants, bent: false, iterations }
     };
     let first = || one(true, 1.0, all, all, ATTEMPT);
-    let mut list = vec![Attempt { cubic: true, ..first() }];
+    let mut list = vec![Attempt { bent: true, ..first() }];
     list.extend(may_end.then(first));
     if all > FEWER_MODES {
         list.push(one(true, 1.0, FEWER_MODES, FEWER_MODES, ATTEMPT));
@@ -169,7 +169,7 @@ fn first_guess(
         settings: fewer,
         tail_modes: FEW_TAIL_MODES,
         by_secants: true,
-        cubic: false,
+        bent: false,
         iterations: FIRST_ITERATIONS,
     };
     match solve_once(operator, problem, &fewer, known.clone()) {
@@ -185,10 +185,10 @@ fn solve_once(
     attempt: &Attempt,
     mut half_widths: Vec<f64>,
 ) -> Result<ContactSolution> {
-    let Attempt { ref settings, tail_modes, by_secants, cubic, iterations } = *attempt;
+    let Attempt { ref settings, tail_modes, by_secants, bent, iterations } = *attempt;
     let n = problem.axis.len();
     let mut contact = 0..n;
-    let layout_of = |contact| Layout::new(problem, settings, tail_modes, cubic, contact);
+    let layout_of = |contact| Layout::new(problem, settings, tail_modes, bent, contact);
     let mut layout = layout_of(contact.clone());
     let mut parts = StepParts::new(n);
     // Edge slopes S of the pressure at the nodes: sum (2m + 1) c_m.

@@ -1,9 +1,10 @@
 //! A solved case gives the same results in all its ways.
 
-use super::{KeySolution, Options, Point, Scene, SolvedCase, SolvedScene, check_points, solve};
+use super::{Options, Point, Scene, SolvedCase, SolvedScene, check_points, solve};
 use crate::base::Material;
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Factors, builtin_case};
+use crate::contact::Coarser;
 use crate::stress::{BodyKind, Grid};
 
 #[test]
@@ -139,29 +140,36 @@ fn contact_of(model: EdgeModel, case: &Case) -> SolvedCase {
 const STEEP: &str = include_str!("../../tests/data/steep.toml");
 
 #[test]
+fn the_first_attempt_solves_steep_ends() {
+    for model in EdgeModel::ALL {
+        for tolerance in [3e-2, 1e-2] {
+            let summary = solved_by(model, STEEP, tolerance).solution().summary.clone();
+            assert_eq!(
+                (summary.details.coarser, summary.warnings()),
+                (None, Vec::new()),
+                "{model}"
+            );
+        }
+    }
+}
+
+/// It tells what was given up alone.
+#[test]
 fn a_contact_coarser_than_its_resolution_says_so() {
-    let tolerance = 3e-2;
-    let summary = |model| solved_by(model, STEEP, tolerance).solution().summary.clone();
-    let first = summary(EdgeModel::Mirror);
-    assert_eq!((first.details.coarser, first.warnings()), (None, Vec::new()));
-    let later = summary(EdgeModel::HalfSpace);
-    let (coarser, wanted) = (later.details.coarser.unwrap(), later.details.resolution);
-    assert!(
-        coarser.spacing[1] > 1.9 * wanted.spacing[1] || coarser.modes < wanted.modes,
-        "{coarser:?}"
-    );
-    let said = later.warnings();
-    let times = format!("{:.0} times as far apart", coarser.spacing[1] / wanted.spacing[1]);
-    assert!(later.converged && said.len() == 1 && said[0].contains("`coarser`"), "{said:?}");
-    // It tells what was given up alone.
-    let modes = format!("{} of {} modes", coarser.modes, wanted.modes);
-    assert_eq!(said[0].contains(&times), coarser.spacing[1] > 1.01 * wanted.spacing[1], "{said:?}");
-    assert_eq!(said[0].contains(&modes), coarser.modes < wanted.modes, "{said:?}");
-    for (model, want) in [(EdgeModel::Mirror, vec![]), (EdgeModel::HalfSpace, vec!["coarser"])] {
-        let mut case = Case::from_toml(STEEP).unwrap();
-        case.accuracy.tolerance = tolerance;
-        let (case, key) = KeySolution::new(&case, model).unwrap();
-        assert_eq!(key.of(&case).warnings, want, "{model}");
+    let mut summary = solved_by(EdgeModel::Mirror, STEEP, 3e-2).solution().summary.clone();
+    let Resolution { spacing, modes, .. } = summary.details.resolution;
+    for (times, fewer) in [(4.0, 0), (1.0, 1), (8.0, 1)] {
+        summary.details.coarser = Some(Coarser {
+            spacing: spacing.map(|apart| times * apart),
+            modes: modes - fewer,
+            end_modes: modes - fewer,
+        });
+        let said = summary.warnings();
+        assert!(summary.converged && said.len() == 1 && said[0].contains("`coarser`"), "{said:?}");
+        let farther = format!("{times:.0} times as far apart");
+        assert_eq!(said[0].contains(&farther), times > 1.0, "{said:?}");
+        let left = format!("{} of {modes} modes", modes - fewer);
+        assert_eq!(said[0].contains(&left), fewer > 0, "{said:?}");
     }
 }
 

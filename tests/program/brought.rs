@@ -53,7 +53,7 @@ fn own_curves_stand_beside_the_references() {
     let stresses = |row: &&Row| row["quantity"].starts_with("sigma_");
     let own = of("si", "quarter-space");
     let stress = own.iter().filter(stresses).map(|row| number(row, "max")).fold(0.0, f64::max);
-    assert!((stress - number(row, "stress_max")).abs() < 1e-5);
+    assert!((stress - number(row, "stress_max")).abs() < 1e-5, "{stress} {row:?}");
 
     // Beside the uncertainty of both sides, which the file states or not.
     let verification = rows(&at("o/verification.csv"));

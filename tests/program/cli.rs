@@ -437,7 +437,10 @@ fn plots_name_case_version_and_units() {
     let page = std::fs::read_to_string(out.join("summary.html")).unwrap();
     let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
     let summary: Value = serde_json::from_str(&text).unwrap();
-    let mpa = |value: &Value| format!("{:.1} MPa", value.as_f64().unwrap() * 1e-6);
+    let mpa = |value: &Value| {
+        let text = format!("{:.1}", value.as_f64().unwrap() * 1e-6);
+        format!("{} MPa", text.trim_end_matches(".0"))
+    };
     for part in [
         "half-short".to_string(),
         version.to_string(),

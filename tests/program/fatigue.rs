@@ -94,20 +94,29 @@ fn cells_refuse_friction() {
 
 /// What to beware of in the contact holds for its passages, too.
 #[test]
-fn a_passage_under_a_coarser_contact_says_so() {
+fn a_passage_under_a_profile_of_noise_says_so() {
     let folder = tempfile::tempdir().unwrap();
-    let steep = include_str!("../data/steep.toml");
-    fs::write(folder.path().join("case.toml"), steep).unwrap();
-    for (model, count) in [("mirror", 0), ("half-space", 1)] {
+    let plain = include_str!("../data/steep.toml");
+    let profile = plain.lines().find(|line| line.starts_with("profile")).unwrap();
+    for (name, noise, count) in [("smooth", 0.0, 0), ("noisy", 1e-7, 1)] {
+        let point = |i: i32| {
+            let place = f64::from(i) / 15.0 - 1.0;
+            let noise = noise * f64::from(37 * i * i % 101) / 101.0;
+            format!("{:.9},{:.12}\n", place * 0.5 * 0.0029844, 3e-6 * place * place + noise)
+        };
+        let points: String = (0..31).map(point).collect();
+        fs::write(folder.path().join("drops.csv"), format!("y_m,drop_m\n{points}")).unwrap();
+        let table = "profile = { kind = \"table\", file = \"drops.csv\" }";
+        fs::write(folder.path().join("case.toml"), plain.replace(profile, table)).unwrap();
         let arguments =
             ["fatigue", "case.toml", "--places", "3,2", "--tolerance", "3e-2", "--json"];
-        let own = ["--method", model, "--out", model];
+        let own = ["--method", "mirror", "--out", name];
         let run = edgeline(folder.path(), &arguments).args(own).output().unwrap();
         let said = String::from_utf8_lossy(&run.stderr);
         assert!(run.status.success(), "{said}");
         let summary: Value = serde_json::from_slice(&run.stdout).unwrap();
         let warnings = summary["warnings"].as_array().unwrap();
-        assert_eq!(warnings.len(), count, "{model}: {warnings:?}");
+        assert_eq!(warnings.len(), count, "{name}: {warnings:?}");
         assert_eq!(said.matches("warning: ").count(), count, "{said}");
     }
 }
