@@ -331,7 +331,7 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         modes: 6,
         spacing: [0.04; 2],
         k_max: 110.0,
-        face_reach: 23.0,
+        face_reach: 19.0,
         ..FINITE[3]
     },
     Resolution {

@@ -46,8 +46,8 @@ impl LinearProblem<'_> {
             iterations: 0,
             residual: f64::INFINITY,
             remedy:
-                "the equations of the contact are singular: check the case's lengths, and how near \
-                     its load is to an end, or take --engine cells"
+                "the contact's equations are singular: check the case's lengths, and how near its \
+                     load is to an end, or take --engine cells"
                     .into(),
         })?;
         Ok(solution.column(0).into_owned())

@@ -137,17 +137,23 @@ fn steepening(problem: &Problem, y: f64) -> impl Fn(f64) -> f64 {
 struct Knot {
     y: f64,
     free: Option<usize>,
+    /// See [`Layout::narrows`]; a tip does.
+    narrows: bool,
 }
 
 /// The knots along the line, ascending. A contact that has receded from the end of the line has its
 /// tip somewhere beyond the last free node.
-fn knots(problem: &Problem, contact: &Range<usize>, free: &[usize]) -> Vec<Knot> {
+fn knots(problem: &Problem, contact: &Range<usize>, free: &[usize], narrows: &[bool]) -> Vec<Knot> {
     let axis = problem.axis;
-    let tip = |y: f64, open: bool| open.then_some(Knot { y, free: None });
-    let nodes = free.iter().enumerate().map(|(at, j)| Knot { y: axis.nodes()[*j], free: Some(at) });
+    let tip = |y: f64, open: bool| open.then_some(Knot { y, free: None, narrows: true });
+    let node = |(at, j): (usize, &usize)| Knot {
+        y: axis.nodes()[*j],
+        free: Some(at),
+        narrows: narrows[*j],
+    };
     tip(axis.breaks()[0], problem.open[0] && contact.start == 0)
         .into_iter()
-        .chain(nodes)
+        .chain(free.iter().enumerate().map(node))
         .chain(tip(axis.end(), problem.open[1] && contact.end == axis.len()))
         .collect()
 }
@@ -167,13 +173,35 @@ fn knots_around(knots: &[Knot], after: usize, count: usize) -> &[Knot] {
     &knots[first..first + count]
 }
 
-/// The shares of free nodes at `y` by the polynomial through knots in the coordinate `at`.
-fn shares_through(knots: &[Knot], at: impl Fn(f64) -> f64, y: f64) -> Shares {
+/// The shares of free nodes at `y`, next to which the contact narrows to a tip or not: by the
+/// polynomial through the knots around it, of which the first `after` lie before it. Knots of both
+/// kinds have a straight line between them.
+fn shares_at(
+    problem: &Problem,
+    knots: &[Knot],
+    after: usize,
+    y: f64,
+    narrow: bool,
+    bent: bool,
+) -> Shares {
+    let beyond = after == 0 || after == knots.len();
+    let count = if !bent || knots.len() < CUBIC || beyond && narrow {
+        LINE
+    } else if beyond && problem.is_steep(y) {
+        PARABOLA
+    } else {
+        CUBIC
+    };
+    let alike = |near: &&[Knot]| near.iter().all(|knot| knot.narrows == narrow);
+    let near = Some(knots_around(knots, after, count)).filter(alike);
+    let near = near.unwrap_or_else(|| knots_around(knots, after, LINE));
+    let steepened = steepening(problem, y);
+    let at = |y: f64| if narrow { y } else { steepened(y) };
     let share = |own: &Knot| {
-        let others = knots.iter().filter(|other| other.y != own.y);
+        let others = near.iter().filter(|other| other.y != own.y);
         others.map(|other| (at(y) - at(other.y)) / (at(own.y) - at(other.y))).product()
     };
-    shares_of(knots.iter().map(|own| (own, share(own))))
+    shares_of(near.iter().map(|own| (own, share(own))))
 }
 
 /// Whether the contact ends before the bodies do towards the end next to `y`.
@@ -197,7 +225,7 @@ impl Layout {
         let free = free_nodes(problem, settings.spacing, &contact);
         let narrows: Vec<bool> =
             axis.nodes().iter().map(|y| narrows(problem, &contact, *y)).collect();
-        let knots = knots(problem, &contact, &free);
+        let knots = knots(problem, &contact, &free, &narrows);
         let shares: Vec<Shares> = axis
             .nodes()
             .iter()
@@ -208,21 +236,7 @@ impl Layout {
                 if free.len() == 1 || after == 0 && !problem.both_ends {
                     return shares_of([(&knots[0], 1.0)]);
                 }
-                let beyond = after == 0 || after == knots.len();
-                let most = if !bent || knots.len() < CUBIC || beyond && *narrow {
-                    LINE
-                } else if beyond && problem.is_steep(*y) {
-                    PARABOLA
-                } else {
-                    CUBIC
-                };
-                let alike = |near: &&[Knot]| {
-                    near.iter().all(|knot| knot.free.is_none_or(|at| narrows[free[at]]) == *narrow)
-                };
-                let near = Some(knots_around(&knots, after, most)).filter(alike);
-                let near = near.unwrap_or_else(|| knots_around(&knots, after, LINE));
-                let steepened = steepening(problem, *y);
-                shares_through(near, |y| if *narrow { y } else { steepened(y) }, *y)
+                shares_at(problem, &knots, after, *y, *narrow, bent)
             })
             .collect();
         let (first, last) = (free[0], free[free.len() - 1]);

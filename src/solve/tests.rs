@@ -1,6 +1,6 @@
 //! A solved case gives the same results in all its ways.
 
-use super::{Options, Point, Scene, SolvedCase, SolvedScene, check_points, solve};
+use super::{KeySolution, Options, Point, Scene, SolvedCase, SolvedScene, check_points, solve};
 use crate::base::Material;
 use crate::body::{EdgeModel, Resolution};
 use crate::case::{Case, Factors, builtin_case};
@@ -143,12 +143,11 @@ const STEEP: &str = include_str!("../../tests/data/steep.toml");
 fn the_first_attempt_solves_steep_ends() {
     for model in EdgeModel::ALL {
         for tolerance in [3e-2, 1e-2] {
-            let summary = solved_by(model, STEEP, tolerance).solution().summary.clone();
-            assert_eq!(
-                (summary.details.coarser, summary.warnings()),
-                (None, Vec::new()),
-                "{model}"
-            );
+            let summary = solved_by(model, STEEP, tolerance).solution().summary;
+            assert_eq!((summary.details.coarser, summary.warnings()), (None, vec![]), "{model}");
+            let case = Case::from_toml(STEEP).unwrap().with_tolerance(tolerance);
+            let (case, key) = KeySolution::new(&case, model).unwrap();
+            assert_eq!(key.of(&case).warnings, [""; 0], "{model}");
         }
     }
 }
@@ -156,14 +155,19 @@ fn the_first_attempt_solves_steep_ends() {
 /// It tells what was given up alone.
 #[test]
 fn a_contact_coarser_than_its_resolution_says_so() {
-    let mut summary = solved_by(EdgeModel::Mirror, STEEP, 3e-2).solution().summary.clone();
+    let case = Case::from_toml(STEEP).unwrap().with_tolerance(3e-2);
+    let mut scene = SolvedScene::new(&Scene::new(&case, EdgeModel::Mirror, None)).unwrap();
+    let mut summary = contact_of(EdgeModel::Mirror, &case).solution().summary;
     let Resolution { spacing, modes, .. } = summary.details.resolution;
     for (times, fewer) in [(4.0, 0), (1.0, 1), (8.0, 1)] {
-        summary.details.coarser = Some(Coarser {
+        let coarser = Coarser {
             spacing: spacing.map(|apart| times * apart),
             modes: modes - fewer,
             end_modes: modes - fewer,
-        });
+        };
+        summary.details.coarser = Some(coarser);
+        scene.contact.coarser = Some(coarser);
+        assert_eq!(scene.warnings(), ["coarser"]);
         let said = summary.warnings();
         assert!(summary.converged && said.len() == 1 && said[0].contains("`coarser`"), "{said:?}");
         let farther = format!("{times:.0} times as far apart");
