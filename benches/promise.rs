@@ -40,7 +40,7 @@ const LIMIT: Resolution = Resolution {
     spacing: [0.01; 2],
     k_max: 600.0,
     k_order: 6,
-    k_step: 3.0,
+    k_across: 4.0,
     k_min: 0.004,
     k_ratio: 2.0,
     images: 8,
@@ -429,7 +429,7 @@ impl Random {
                 4 => next.spacing = next.spacing.map(|apart| factor * apart),
                 5 => next.k_max *= factor,
                 6 => next.k_order = step(next.k_order, 2, up),
-                7 => next.k_step *= factor,
+                7 => next.k_across *= factor,
                 8 => next.k_ratio = 1.0 + (next.k_ratio - 1.0) * factor,
                 9 => next.k_min *= factor,
                 10 => next.face_reach *= factor,
@@ -550,7 +550,7 @@ fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 8] 
             "k panels",
             Resolution {
                 k_order: finer.k_order,
-                k_step: finer.k_step,
+                k_across: finer.k_across,
                 k_ratio: finer.k_ratio,
                 k_min: finer.k_min,
                 ..own

@@ -74,8 +74,9 @@ pub struct Resolution {
     pub k_max: f64,
     /// Gauss nodes per panel of wavenumbers.
     pub k_order: usize,
-    /// Largest width of the panels on which the pressure's transform is resolved (1/C).
-    pub k_step: f64,
+    /// Distance x (C) up to which the fine wavenumbers resolve cos(k x) in what the compliance and
+    /// the pressure's transforms have together: a contact's half-widths count twice there.
+    pub k_across: f64,
     /// Growth of the wavenumber panels above 0.5; below it panels grow by 10 or 20.
     pub k_ratio: f64,
     /// Largest end of the first wavenumber panel (1/C).
@@ -126,7 +127,7 @@ const FINITE: [Resolution; 5] = [
         spacing: [0.15; 2],
         k_max: 12.0,
         k_order: 3,
-        k_step: 2.5,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 5.0,
         images: 1,
@@ -142,7 +143,7 @@ const FINITE: [Resolution; 5] = [
         spacing: [0.075; 2],
         k_max: 36.0,
         k_order: 3,
-        k_step: 2.5,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 5.5,
         images: 1,
@@ -157,8 +158,8 @@ const FINITE: [Resolution; 5] = [
         modes: 6,
         spacing: [0.05; 2],
         k_max: 36.0,
-        k_order: 4,
-        k_step: 5.0,
+        k_order: 3,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 6.0,
         images: 1,
@@ -170,13 +171,13 @@ const FINITE: [Resolution; 5] = [
         corner: 0.0055,
         corner_ratio: 2.5,
         ratio: 2.4,
-        modes: 7,
+        modes: 6,
         spacing: [0.025; 2],
-        k_max: 130.0,
+        k_max: 100.0,
         k_order: 4,
-        k_step: 6.0,
+        k_across: 2.0,
         k_min: 0.01,
-        k_ratio: 3.2,
+        k_ratio: 4.0,
         images: 2,
         face_reach: 15.0,
         reach: 15.0,
@@ -189,10 +190,10 @@ const FINITE: [Resolution; 5] = [
         modes: 8,
         spacing: [0.02; 2],
         k_max: 200.0,
-        k_order: 6,
-        k_step: 3.0,
+        k_order: 5,
+        k_across: 2.2,
         k_min: 0.003,
-        k_ratio: 2.0,
+        k_ratio: 3.0,
         images: 4,
         face_reach: 19.0,
         reach: 20.0,
@@ -211,7 +212,7 @@ const SINGULAR: [Resolution; 5] = [
         spacing: [0.12; 2],
         k_max: 20.0,
         k_order: 3,
-        k_step: 3.0,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 5.0,
         images: 1,
@@ -225,9 +226,9 @@ const SINGULAR: [Resolution; 5] = [
         ratio: 2.7,
         modes: 3,
         spacing: [0.075; 2],
-        k_max: 60.0,
-        k_order: 4,
-        k_step: 4.0,
+        k_max: 50.0,
+        k_order: 3,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 4.95,
         images: 1,
@@ -241,9 +242,9 @@ const SINGULAR: [Resolution; 5] = [
         ratio: 2.8,
         modes: 4,
         spacing: [0.06; 2],
-        k_max: 70.0,
-        k_order: 5,
-        k_step: 4.0,
+        k_max: 55.0,
+        k_order: 4,
+        k_across: 2.0,
         k_min: 0.03,
         k_ratio: 5.32,
         images: 1,
@@ -255,13 +256,13 @@ const SINGULAR: [Resolution; 5] = [
         corner: 0.0017,
         corner_ratio: 5.8,
         ratio: 2.4,
-        modes: 7,
+        modes: 6,
         spacing: [0.04; 2],
-        k_max: 200.0,
-        k_order: 6,
-        k_step: 5.5,
+        k_max: 130.0,
+        k_order: 5,
+        k_across: 2.0,
         k_min: 0.005,
-        k_ratio: 2.8,
+        k_ratio: 4.5,
         images: 2,
         face_reach: 17.0,
         reach: 14.0,
@@ -273,11 +274,11 @@ const SINGULAR: [Resolution; 5] = [
         ratio: 2.0,
         modes: 8,
         spacing: [0.03; 2],
-        k_max: 200.0,
-        k_order: 6,
-        k_step: 4.0,
+        k_max: 160.0,
+        k_order: 5,
+        k_across: 2.2,
         k_min: 0.003,
-        k_ratio: 2.2,
+        k_ratio: 3.0,
         images: 4,
         face_reach: 18.0,
         reach: 16.0,
@@ -288,15 +289,13 @@ const SINGULAR: [Resolution; 5] = [
 /// the levels of all bodies. Nothing bends such bodies: long waves turn others as 1 / k, and what
 /// clusters of panels and panels of wavenumbers leave out counts a hundred times.
 const STRAIGHT_FINITE: [Resolution; 6] = [
-    Resolution { order: 2, ratio: 2.9, k_order: 2, k_step: 4.26, reach: 5.93, ..FINITE[0] },
+    Resolution { order: 2, ratio: 2.9, k_across: 1.5, reach: 5.93, ..FINITE[0] },
     Resolution {
-        corner: 0.045,
+        corner: 0.035,
         ratio: 2.6,
         modes: 5,
         spacing: [0.12; 2],
         k_max: 13.0,
-        k_order: 2,
-        k_step: 2.8,
         k_ratio: 6.0,
         face_reach: 8.5,
         reach: 9.0,
@@ -309,8 +308,6 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         modes: 5,
         spacing: [0.07; 2],
         k_max: 26.0,
-        k_order: 4,
-        k_step: 5.0,
         k_ratio: 6.0,
         ..FINITE[1]
     },
@@ -328,19 +325,15 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         order: 5,
         corner: 0.0045,
         ratio: 2.3,
-        modes: 6,
         spacing: [0.04; 2],
-        k_max: 110.0,
         face_reach: 19.0,
         ..FINITE[3]
     },
     Resolution {
         ratio: 1.85,
         k_max: 170.0,
-        k_order: 5,
-        k_step: 3.8,
         k_min: 0.004,
-        k_ratio: 2.2,
+        k_ratio: 4.0,
         images: 8,
         face_reach: 17.0,
         ..FINITE[4]
@@ -355,25 +348,31 @@ const STRAIGHT_SINGULAR: [Resolution; 6] = [
         ratio: 3.5,
         modes: 2,
         k_order: 2,
-        k_step: 3.23,
+        k_across: 1.5,
         k_min: 0.037,
         reach: 5.2,
         ..SINGULAR[0]
     },
-    SINGULAR[0],
-    Resolution { spacing: [0.13; 2], ..SINGULAR[1] },
-    Resolution { order: 4, corner: 0.002, corner_ratio: 6.0, ratio: 2.4, ..SINGULAR[2] },
+    Resolution { k_max: 26.0, ..SINGULAR[0] },
+    Resolution { spacing: [0.13; 2], reach: 9.0, ..SINGULAR[1] },
+    Resolution {
+        order: 4,
+        corner: 0.002,
+        corner_ratio: 6.0,
+        ratio: 2.4,
+        reach: 9.6,
+        ..SINGULAR[2]
+    },
     Resolution {
         order: 5,
         corner: 0.0009,
         ratio: 2.3,
         modes: 5,
         spacing: [0.06; 2],
-        k_order: 5,
         reach: 15.0,
         ..SINGULAR[3]
     },
-    Resolution { spacing: [0.04; 2], k_max: 160.0, ..SINGULAR[4] },
+    Resolution { spacing: [0.04; 2], k_ratio: 2.6, ..SINGULAR[4] },
 ];
 
 /// Those of contacts that end before their bodies do at both ends: the pressure falls to zero
@@ -391,7 +390,7 @@ const TIPS: [Resolution; 5] = [
         spacing: [0.1; 2],
         k_max: 20.0,
         k_order: 4,
-        k_step: 2.5,
+        k_across: 2.5,
         k_min: 0.05,
         k_ratio: 6.5,
         images: 1,
@@ -407,7 +406,7 @@ const TIPS: [Resolution; 5] = [
         spacing: [0.05; 2],
         k_max: 130.0,
         k_order: 4,
-        k_step: 4.0,
+        k_across: 2.5,
         k_min: 0.01,
         k_ratio: 3.2,
         images: 2,
@@ -423,7 +422,7 @@ const TIPS: [Resolution; 5] = [
         spacing: [0.05; 2],
         k_max: 260.0,
         k_order: 5,
-        k_step: 3.0,
+        k_across: 3.0,
         k_min: 0.005,
         k_ratio: 2.2,
         images: 4,
@@ -444,7 +443,7 @@ const ENDLESS: [Resolution; 5] = [
         spacing: [0.1; 2],
         k_max: 60.0,
         k_order: 4,
-        k_step: 4.0,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 2.6,
         images: 1,
@@ -452,7 +451,7 @@ const ENDLESS: [Resolution; 5] = [
         reach: 8.0,
     },
     Resolution {
-        order: 5,
+        order: 4,
         corner: 0.015,
         corner_ratio: 3.0,
         ratio: 2.35,
@@ -460,9 +459,9 @@ const ENDLESS: [Resolution; 5] = [
         spacing: [0.0949; 2],
         k_max: 60.0,
         k_order: 4,
-        k_step: 4.0,
+        k_across: 2.0,
         k_min: 0.0141,
-        k_ratio: 2.6,
+        k_ratio: 4.0,
         images: 1,
         face_reach: 12.9,
         reach: 8.0,
@@ -476,7 +475,7 @@ const ENDLESS: [Resolution; 5] = [
         spacing: [0.0569; 2],
         k_max: 80.0,
         k_order: 5,
-        k_step: 4.0,
+        k_across: 2.0,
         k_min: 0.05,
         k_ratio: 2.15,
         images: 1,
@@ -492,7 +491,7 @@ const ENDLESS: [Resolution; 5] = [
         spacing: [0.08; 2],
         k_max: 185.0,
         k_order: 6,
-        k_step: 4.0,
+        k_across: 3.0,
         k_min: 0.0151,
         k_ratio: 2.34,
         images: 1,
@@ -508,7 +507,7 @@ const ENDLESS: [Resolution; 5] = [
         spacing: [0.025; 2],
         k_max: 340.0,
         k_order: 6,
-        k_step: 4.2,
+        k_across: 4.0,
         k_min: 0.005,
         k_ratio: 2.2,
         images: 1,
@@ -579,7 +578,7 @@ impl Resolution {
     /// beside each other do to each other, which half-widths beside the end and the kink follow.
     #[must_use]
     pub fn across(self, widest: f64) -> Self {
-        Self { k_step: self.k_step.min(self.k_order as f64 / widest), ..self }
+        Self { k_across: self.k_across * widest.max(1.0), ..self }
     }
 
     /// The resolution between two of the levels: lengths by their logarithms, numbers rounded up.
@@ -606,7 +605,7 @@ impl Resolution {
             spacing: [mixed(|r| r.spacing[0]), mixed(|r| r.spacing[1])],
             k_max: mixed(|r| r.k_max),
             k_order: count(|r| r.k_order),
-            k_step: mixed(|r| r.k_step),
+            k_across: mixed(|r| r.k_across),
             k_ratio: mixed(|r| r.k_ratio),
             k_min: mixed(|r| r.k_min),
             images: count(|r| r.images),
@@ -626,7 +625,7 @@ impl Resolution {
             spacing: self.spacing.map(|apart| 0.5 * apart),
             k_max: 2.0 * self.k_max,
             k_order: self.k_order,
-            k_step: 0.5 * self.k_step,
+            k_across: 2.0 * self.k_across,
             k_ratio: self.k_ratio.sqrt(),
             k_min: 0.5 * self.k_min,
             images: 2 * self.images,
@@ -704,8 +703,7 @@ impl Resolution {
     }
 
     /// Wavenumbers across the contact, for bodies of half-length up to `half` under loads that are
-    /// even about their middle, or not: coarse panels that grow from the smallest one to `k_max`,
-    /// cut where they are wider than `k_step` for the pressure's transform.
+    /// even about their middle, or not: coarse panels that grow from the smallest one to `k_max`.
     pub fn wavenumbers(&self, half: f64, parity: Parity) -> Wavenumbers {
         let smallest = self.smallest_wavenumber(half, parity);
         let mut breaks = vec![0.0, smallest];
@@ -727,7 +725,7 @@ impl Resolution {
             equal(smallest, SLOW, growth);
         }
         equal(SLOW.max(smallest), self.k_max, self.k_ratio);
-        Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_step)
+        Wavenumbers::new(Panels::new(breaks, self.k_order), self.k_across)
     }
 
     /// [`Resolution::wavenumbers`] of bodies of these half-lengths.

@@ -58,7 +58,7 @@ const COARSEST: Resolution = Resolution {
     spacing: [0.0; 2],
     k_max: 3.5,
     k_order: 2,
-    k_step: 4.0,
+    k_across: 3.0,
     k_min: 0.0,
     k_ratio: 4.0,
     images: 1,
@@ -77,7 +77,6 @@ const LEVELS: [Level; 6] = [
             ratio: 2.6,
             k_max: 4.0,
             k_order: 2,
-            k_step: 3.8,
             k_ratio: 3.9,
             face_reach: 11.4,
             reach: 10.0,
@@ -94,7 +93,6 @@ const LEVELS: [Level; 6] = [
             ratio: 2.5,
             k_max: 6.0,
             k_order: 3,
-            k_step: 2.0,
             k_ratio: 4.5,
             face_reach: 11.5,
             reach: 9.0,
@@ -111,7 +109,6 @@ const LEVELS: [Level; 6] = [
             ratio: 2.7,
             k_max: 12.7,
             k_order: 5,
-            k_step: 4.4,
             k_ratio: 6.0,
             face_reach: 7.8,
             reach: 10.0,
@@ -128,7 +125,6 @@ const LEVELS: [Level; 6] = [
             ratio: 2.5,
             k_max: 21.7,
             k_order: 5,
-            k_step: 4.4,
             k_ratio: 4.25,
             face_reach: 9.0,
             reach: 10.0,
@@ -145,7 +141,6 @@ const LEVELS: [Level; 6] = [
             ratio: 2.4,
             k_max: 45.0,
             k_order: 5,
-            k_step: 4.0,
             k_ratio: 3.5,
             face_reach: 10.0,
             reach: 11.0,
@@ -255,7 +250,7 @@ impl Skins {
         let bodies: Vec<Body> = fold.parities().iter().map(body).collect();
         let of_body = |body: &Body| OnSurface::new(body, k).skins(&tables);
         let (loads, compliances) = bodies.iter().map(of_body).unzip();
-        let wavenumbers = Wavenumbers::new(coarse, resolution.k_step);
+        let wavenumbers = Wavenumbers::new(coarse, resolution.k_across);
         let nodes_per_e = level.nodes_per_e;
         Self { middle, line, fold, bodies, wavenumbers, nodes_per_e, tables, loads, compliances }
     }

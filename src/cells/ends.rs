@@ -282,7 +282,7 @@ impl FreeEnds {
         let fine = wavenumbers.fine();
         let weights = DVector::from_column_slice(self.axis.weights());
         let shapes = scaled(self.basis.clone(), &weights, |value, weight| value * weight);
-        let loads = shapes.tr_mul(&pressure.transforms(fine.nodes()));
+        let loads = shapes.tr_mul(&pressure.transforms(fine));
         let rank = self.basis.ncols();
         let moments = wavenumbers.moments(loads.as_slice(), rank);
         let mut moved = DVector::zeros(rank);
@@ -290,7 +290,7 @@ impl FreeEnds {
             moved += matrix * DVector::from_column_slice(load);
         }
         let rigid = self.bodies[0].long.nrows();
-        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
+        for (i, (k, weight)) in fine.iter().zip(wavenumbers.weights()).enumerate() {
             let mut long = moved.rows_mut(0, rigid);
             long += self.long(*k) * loads.column(i).rows(0, rigid) * *weight;
         }
@@ -319,7 +319,7 @@ impl FreeEnds {
         let add = |share: f64, wave: &[f64], into: &mut [f64]| {
             into.iter_mut().zip(wave).for_each(|(into, wave)| *into += share * wave);
         };
-        for (i, (k, weight)) in fine.nodes().iter().zip(wavenumbers.weights()).enumerate() {
+        for (i, (k, weight)) in fine.iter().zip(wavenumbers.weights()).enumerate() {
             let width = 2.0 * (k * a).sin() / k;
             let mut wave: Vec<f64> = (0..=mx)
                 .map(|d| (k * 2.0 * a * d as f64).cos() * weight * width / (PI * PI))

@@ -97,7 +97,7 @@ impl LinearProblem<'_> {
         let count = counts.max().unwrap_or(0);
         let mut modes = vec![0.0; self.layout.counts[j]];
         let mut tiles = vec![[0.0; TILE]; (modes.len() + 1).div_ceil(TILE) * all];
-        for (at, k) in fine.nodes()[..count].iter().enumerate() {
+        for (at, k) in fine[..count].iter().enumerate() {
             let singular = strip::transforms(self.half_widths[j], *k, &mut modes);
             for (mode, transform) in modes.iter().chain([&singular]).enumerate() {
                 tiles[mode / TILE * all + at][mode % TILE] = *transform;

@@ -83,7 +83,7 @@ impl Operator for LineOperator<'_> {
         let mut rows = vec![vec![0.0; nodes]; places.len()];
         let fine = self.compliance.wavenumbers.fine();
         // All wavenumbers of each node.
-        let transforms: Vec<_> = fine.nodes().iter().map(|k| pressure.transform(*k)).collect();
+        let transforms: Vec<_> = fine.iter().map(|k| pressure.transform(*k)).collect();
         let transforms: Vec<Vec<f64>> =
             (0..nodes).map(|j| transforms.iter().map(|t| t[j]).collect()).collect();
         let mut amplitudes = vec![0.0; fine.len()];
@@ -96,8 +96,7 @@ impl Operator for LineOperator<'_> {
             }
             let c = &pressure.coefficients[i];
             for (row, &t) in rows.iter_mut().zip(places) {
-                let waves =
-                    fine.nodes().iter().zip(self.compliance.wavenumbers.weights()).zip(&amplitudes);
+                let waves = fine.iter().zip(self.compliance.wavenumbers.weights()).zip(&amplitudes);
                 let waves = waves.map(|((k, w), s)| w / (PI * PI) * s * (k * t * a).cos());
                 row[i] = waves.sum();
                 modes.resize(c.len(), 0.0);
@@ -138,7 +137,7 @@ impl Remainders {
         // The singular mode's transform, pi J0(k), decays most slowly.
         // What falls like a power of k leaves about k times its last value.
         let limit = |k: &f64| negligible * PI / (k * (0.8 / k.sqrt()).min(1.0));
-        let limits: Vec<f64> = fine.nodes().iter().map(limit).collect();
+        let limits: Vec<f64> = fine.iter().map(limit).collect();
         let all = fine.len();
         let mut entries = vec![0.0; nodes * nodes * all];
         let mut counts = vec![0; nodes * nodes];

@@ -314,7 +314,7 @@ fn details_of_the_solver_have_words_and_units() {
     assert!(page.contains("9 cases, 1 model, recorded FEM"));
     let section = page.split("How the models were resolved").nth(1).unwrap();
     let section = section.split("</section>").next().unwrap();
-    assert!(section.contains("widest panel of wavenumbers (1"), "{section}");
+    assert!(section.contains("distance across that wavenumbers resolve (C): 2"), "{section}");
     for raw in ["resolution", "reference m", "tension pa", "k ratio"] {
         assert!(!section.contains(raw), "{raw}: {section}");
     }

@@ -205,7 +205,7 @@ impl<'a> Field<'a> {
     /// The loads of all fine ones of the wavenumbers `numbers`, but for those of the first panel:
     /// those of the layers stand for them.
     fn resolved(&self, numbers: &Wavenumbers) -> Waves {
-        let (stack, fine) = (self.stack, numbers.fine().nodes());
+        let (stack, fine) = (self.stack, numbers.fine());
         let order = numbers.coarse().order();
         let long = fine.partition_point(|k| *k < numbers.coarse().breaks()[1]);
         let shares = |i: usize| stack.interpolation(numbers.interpolation(i));

@@ -70,7 +70,7 @@ pub trait Load: Debug + Sync {
     /// each of the coarse ones, over the nodes.
     fn moments(&self, wavenumbers: &Wavenumbers) -> DMatrix<f64> {
         let n = self.axis().len();
-        let transforms = self.transforms(wavenumbers.fine().nodes());
+        let transforms = self.transforms(wavenumbers.fine());
         let moments = wavenumbers.moments(transforms.as_slice(), n);
         DMatrix::from_row_slice(wavenumbers.coarse().len(), n, &moments)
     }

@@ -69,7 +69,7 @@ impl<'a> SkinField<'a> {
             |y: &f64| pressure.axis().load_interpolation(pressure.on_axis(*y)).collect();
         let places: Vec<Vec<_>> = skins.line.nodes().iter().map(neighbours).collect();
         let numbers = &skins.wavenumbers;
-        let transforms = transforms(pressure, &places, numbers.fine().nodes());
+        let transforms = transforms(pressure, &places, numbers.fine());
         let moments = numbers.moments(transforms.as_slice(), places.len());
         let moments = DMatrix::from_row_slice(numbers.coarse().len(), places.len(), &moments);
         let order = numbers.coarse().order();
@@ -95,7 +95,7 @@ impl<'a> SkinField<'a> {
 
     /// The loads of the fine ones of the wavenumbers `numbers` that have some.
     fn resolved(&self, numbers: &Wavenumbers) -> SkinWaves {
-        let fine = numbers.fine().nodes();
+        let fine = numbers.fine();
         let long = fine.partition_point(|k| *k < self.skins.longest());
         let k = fine[long..].to_vec();
         let weights = numbers.weights()[long..].iter().map(|w| self.felt * w / PI).collect();

@@ -453,7 +453,7 @@ mod tests {
             numbers.coarse(),
         );
         let (body, layers) = &stack.parts()[0];
-        let (k, weights) = (numbers.fine().nodes().to_vec(), numbers.weights());
+        let (k, weights) = (numbers.fine().to_vec(), numbers.weights());
         let loads = DMatrix::from_fn(k.len(), line.len(), |i, j| 1.0 + ((3 * i + j) % 5) as f64);
         let all = Waves::new(&stack, k.clone(), Some(weights), loads.clone(), |i| {
             numbers.interpolation(i)

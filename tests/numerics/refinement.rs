@@ -245,7 +245,7 @@ fn nodes_closer_than_the_shortest_wave_keep_together() {
             spacing: [0.07; 2],
             k_max: 300.0,
             k_order: 6,
-            k_step: 4.0,
+            k_across: 2.5,
             k_min: 0.005,
             k_ratio: 2.2,
             images: 2,
@@ -281,7 +281,7 @@ fn no_half_width_is_left_behind() {
             spacing: [0.02; 2],
             k_max: 200.0,
             k_order: 5,
-            k_step: 4.0,
+            k_across: 2.5,
             k_min: 0.005,
             k_ratio: 2.5,
             images: 2,
@@ -319,7 +319,7 @@ fn every_direction_converges() {
         }),
         ("wavenumbers", |r, level| {
             r.k_max *= 2f64.powf(level);
-            r.k_step *= 0.5f64.powf(level);
+            r.k_across *= 2.0f64.powf(level);
             r.k_ratio = r.k_ratio.powf(0.5f64.powf(level));
         }),
         ("extents and images", |r, level| {

@@ -56,7 +56,7 @@ const WORDS: [(&str, &str); 20] = [
     ("resolution modes", "modes across the contact"),
     ("resolution k_max", "largest wavenumber (1/C)"),
     ("resolution k_order", "nodes per panel of wavenumbers"),
-    ("resolution k_step", "widest panel of wavenumbers (1/C)"),
+    ("resolution k_across", "distance across that wavenumbers resolve (C)"),
     ("resolution k_ratio", "growth of panels of wavenumbers"),
     ("resolution k_min", "first panel of wavenumbers (1/C)"),
     ("resolution images", "images"),
