@@ -82,6 +82,38 @@ fn shears_beside_a_singular_end_do_not_depend_on_short_waves() {
     }
 }
 
+/// Coarse tolerances are kept as fine ones are. With two wavenumbers a panel, through seven of which
+/// no polynomial follows the bodies' response, pressures next to flush ends were 3.8 to 4.8
+/// tolerances off.
+#[test]
+fn coarse_tolerances_are_kept_beside_flush_ends() {
+    for (half, nu, share) in [
+        (9.943, [0.387, 0.034], 0.531),
+        (6.25, [0.287, 0.342], 0.269),
+        (48.744, [0.335, 0.224], 0.546),
+    ] {
+        let bodies = PerBody {
+            block: SceneBody::straight(half, nu[0], share),
+            roller: SceneBody::straight(half, nu[1], 1.0 - share),
+        };
+        let [own, fine] = [3e-2, 1e-3].map(|tolerance| {
+            let scene = Scene::symmetric(bodies.clone(), EdgeModel::QuarterSpace, tolerance);
+            SolvedScene::new(&scene).unwrap()
+        });
+        small(
+            &format!("approach, S_l {half}"),
+            own.approach(100.0) / fine.approach(100.0) - 1.0,
+            2e-2,
+        );
+        for from_end in [0.03, 0.045, 0.06, 0.1, 0.2, 0.4] {
+            for x in [0.0, 0.4, 0.8] {
+                let [own, fine] = [&own, &fine].map(|s| s.pressure.at(x, half - from_end));
+                small(&format!("S_l {half} at {x}, {from_end}"), own - fine, 3e-2);
+            }
+        }
+    }
+}
+
 #[test]
 fn strengths_do_not_depend_on_the_mesh() {
     let usual = Resolution::for_tolerance(1e-3);
