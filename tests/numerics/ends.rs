@@ -82,9 +82,8 @@ fn shears_beside_a_singular_end_do_not_depend_on_short_waves() {
     }
 }
 
-/// Coarse tolerances are kept as fine ones are. With two wavenumbers a panel, through seven of which
-/// no polynomial follows the bodies' response, pressures next to flush ends were 3.8 to 4.8
-/// tolerances off.
+/// Coarse tolerances are kept as fine ones are. With two wavenumbers a panel, too far apart for
+/// polynomials through seven of them, pressures next to flush ends were 3.8 to 4.8 tolerances off.
 #[test]
 fn coarse_tolerances_are_kept_beside_flush_ends() {
     for (half, nu, share) in [
