@@ -17,8 +17,8 @@ use super::tools::{self, Interpreter};
 use crate::base::{Error, Result};
 use crate::case::Case;
 use crate::host::{
-    Lock, Stage, check_memory, check_not_given, kill_marked, prepare_folder, read_text,
-    remove_if_there, write_set_over, write_whole,
+    Lock, Stage, check_memory, check_not_given, kill_marked, make_folder, prepare_folder,
+    read_text, remove_folder, remove_if_there, write_set_over, write_whole,
 };
 use std::ffi::OsString;
 use std::num::NonZero;
@@ -147,7 +147,7 @@ impl Driver {
         write_set_over(folder, &files, &["fem.json", "summary.json"])?;
         jit_cache::keep(&run.cache());
         if !self.settings.keep {
-            run.remove()?;
+            remove_folder(&run.work)?;
         }
         Ok(result)
     }
@@ -172,7 +172,7 @@ impl Driver {
         let files: Vec<_> = run.logs().chain(deck).collect();
         // The meshes of results give way to these.
         write_set_over(folder, &files, &["fem.json"])?;
-        run.remove()?;
+        remove_folder(&run.work)?;
         Ok(summary)
     }
 
@@ -258,12 +258,6 @@ fn claim(folder: &Path) -> Result<(PathBuf, Lock)> {
     Ok((folder, lock))
 }
 
-/// Renames a folder, within one other.
-fn move_folder(from: &Path, to: &Path) -> Result<()> {
-    let io = |source| Error::Io { action: "move", path: from.to_path_buf(), source };
-    std::fs::rename(from, to).map_err(io)
-}
-
 /// Where the interpreter looks for modules: below `folder` first.
 ///
 /// # Errors
@@ -311,13 +305,10 @@ impl<'a> Run<'a> {
             });
         }
         if read(&marker).ok().as_ref() != Some(&self.key) {
-            self.remove()?;
-            let aside = self.aside();
-            prepare_folder(&aside)?;
-            write_whole(&aside.join(KEY), &self.key)?;
-            move_folder(&aside, &self.work)?;
+            remove_folder(&self.work)?;
+            // Without its marker the folder would be taken for somebody else's.
+            make_folder(&self.work, KEY, &self.key)?;
         }
-        prepare_folder(&self.work)?;
         let package = self.work.join("package/edgeline_fem");
         prepare_folder(&package)?;
         for (name, source) in SOURCES {
@@ -327,22 +318,6 @@ impl<'a> Run<'a> {
         remove_if_there(&self.work.join("cache"))?;
         jit_cache::seed(&self.cache());
         write_whole(&self.work.join("request.json"), &self.request)
-    }
-
-    /// Where the working folder is made, and removed: a killed process leaves it with its marker or
-    /// not at all, as without one the next run would take it for somebody else's.
-    fn aside(&self) -> PathBuf {
-        self.folder.join(".work")
-    }
-
-    /// Removes the working folder.
-    fn remove(&self) -> Result<()> {
-        let aside = self.aside();
-        remove_if_there(&aside)?;
-        if self.work.exists() {
-            move_folder(&self.work, &aside)?;
-        }
-        remove_if_there(&aside)
     }
 
     fn cache(&self) -> PathBuf {

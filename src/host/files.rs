@@ -184,6 +184,30 @@ pub(super) fn remove_parts(folder: &Path) -> Result<()> {
     remove_if_there(&folder.join(PARTS))
 }
 
+/// Makes the folder `path`, which does not exist, with a file of this `name` in it. A process that
+/// is killed leaves both or neither. This process has locked the folder around it.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be made or written into.
+pub fn make_folder(path: &Path, name: &str, content: impl AsRef<[u8]>) -> Result<()> {
+    let parts = path.with_file_name(PARTS);
+    prepare_folder(&parts)?;
+    write_whole(&parts.join(name), content)?;
+    std::fs::rename(&parts, path).map_err(failed("create the folder", path))
+}
+
+/// Removes the folder `path` with its content, if it exists: a process that is killed leaves all of
+/// it or nothing. This process has locked the folder around it.
+///
+/// # Errors
+/// [`Error::Io`] when it cannot be removed.
+pub fn remove_folder(path: &Path) -> Result<()> {
+    let parts = path.with_file_name(PARTS);
+    unless_missing(std::fs::rename(path, &parts))
+        .and_then(|()| remove(&parts))
+        .map_err(failed("remove", path))
+}
+
 /// Removes the file that marks a run of another kind in `folder` as complete, some of whose files
 /// give way to others. A folder of that name is somebody else's, and stays.
 ///
@@ -244,6 +268,21 @@ mod tests {
         write_whole(&deep.join("f"), "two").unwrap();
         assert_eq!(std::fs::read_to_string(deep.join("f")).unwrap(), "two");
         assert_eq!(std::fs::read_dir(&deep).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn folders_are_made_and_removed_whole() {
+        let folder = tempfile::tempdir().unwrap();
+        let work = folder.path().join("work");
+        remove_folder(&work).unwrap();
+        make_folder(&work, "mark", "own").unwrap();
+        assert_eq!(std::fs::read_to_string(work.join("mark")).unwrap(), "own");
+        assert_eq!(std::fs::read_dir(&work).unwrap().count(), 1);
+        assert!(make_folder(&work, "mark", "other").is_err());
+        assert_eq!(std::fs::read_to_string(work.join("mark")).unwrap(), "own");
+        remove_parts(folder.path()).unwrap();
+        remove_folder(&work).unwrap();
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
     }
 
     #[test]

@@ -20,8 +20,8 @@ mod text;
 #[cfg(feature = "cli")]
 pub(crate) use {
     files::{
-        check_not_given, prepare_folder, remove_if_there, remove_marker, replace_set, write_set,
-        write_set_over, write_whole,
+        check_not_given, make_folder, prepare_folder, remove_folder, remove_if_there,
+        remove_marker, replace_set, write_set, write_set_over, write_whole,
     },
     lock::Lock,
     process::{Stage, capture, capture_any, kill_marked},

@@ -14,6 +14,16 @@ fn strength(scene: &Scene, resolution: &Resolution) -> Option<EdgeStrength> {
     edge::edge_strength(&SolvedScene::with_resolution(scene, resolution).unwrap(), Side::Positive)
 }
 
+/// A contact of unlike materials: half-lengths and Poisson's ratios of block and roller, and the
+/// block's share of the compliance.
+fn unlike(halves: [f64; 2], nu: [f64; 2], share: f64, tolerance: f64) -> Scene {
+    let bodies = PerBody {
+        block: SceneBody::straight(halves[0], nu[0], share),
+        roller: SceneBody::straight(halves[1], nu[1], 1.0 - share),
+    };
+    Scene::symmetric(bodies, EdgeModel::QuarterSpace, tolerance)
+}
+
 #[test]
 fn exponents_of_corners_are_the_known_ones() {
     let exponent =
@@ -40,9 +50,7 @@ fn exponents_of_corners_are_the_known_ones() {
 #[test]
 fn pressures_between_the_nodes_beside_a_flush_end_converge() {
     for (half, nu, share) in [(2.8674, [0.315, 0.436], 0.484), (3.4893, [0.411, 0.200], 0.517)] {
-        let body = |nu, share| SceneBody::straight(half, nu, share);
-        let bodies = PerBody { block: body(nu[0], share), roller: body(nu[1], 1.0 - share) };
-        let scene = Scene::symmetric(bodies, EdgeModel::QuarterSpace, 1e-3);
+        let scene = unlike([half; 2], nu, share, 1e-3);
         let solved = SolvedScene::new(&scene).unwrap();
         let fine = SolvedScene::new(&Scene { tolerance: 1e-4, ..scene.clone() }).unwrap();
         for x in [0.0, 0.4, 0.8] {
@@ -63,11 +71,7 @@ fn shears_beside_a_singular_end_do_not_depend_on_short_waves() {
     for (half, block, nu, share) in
         [(3.98, 22.36, [0.304, 0.429], 0.735), (54.13, 194.0, [0.442, 0.445], 0.729)]
     {
-        let bodies = PerBody {
-            block: SceneBody::straight(block, nu[0], share),
-            roller: SceneBody::straight(half, nu[1], 1.0 - share),
-        };
-        let scene = Scene::symmetric(bodies, EdgeModel::QuarterSpace, 1e-4);
+        let scene = unlike([block, half], nu, share, 1e-4);
         let own = SolvedScene::new(&scene).unwrap();
         let more = Resolution { k_max: 2.0 * own.resolution.k_max, ..own.resolution };
         let fine = SolvedScene::with_resolution(&scene, &more).unwrap();
@@ -91,14 +95,8 @@ fn coarse_tolerances_are_kept_beside_flush_ends() {
         (6.25, [0.287, 0.342], 0.269),
         (48.744, [0.335, 0.224], 0.546),
     ] {
-        let bodies = PerBody {
-            block: SceneBody::straight(half, nu[0], share),
-            roller: SceneBody::straight(half, nu[1], 1.0 - share),
-        };
-        let [own, fine] = [3e-2, 1e-3].map(|tolerance| {
-            let scene = Scene::symmetric(bodies.clone(), EdgeModel::QuarterSpace, tolerance);
-            SolvedScene::new(&scene).unwrap()
-        });
+        let [own, fine] = [3e-2, 1e-3]
+            .map(|tolerance| SolvedScene::new(&unlike([half; 2], nu, share, tolerance)).unwrap());
         small(
             &format!("approach, S_l {half}"),
             own.approach(100.0) / fine.approach(100.0) - 1.0,
