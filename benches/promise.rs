@@ -568,7 +568,8 @@ fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 8] 
     ]
 }
 
-/// The errors of a scene when one part of its resolution after the other is that of the limit.
+/// The errors of a scene when one part of its resolution after the other is that of the limit, all
+/// of it, or the tolerance of iterations and sums.
 fn causes(kind: Kind, tolerance: f64, index: usize) {
     let Some(known) = Known::new(kind, index) else { return };
     let limit = kind.limit();
@@ -591,9 +592,11 @@ fn causes(kind: Kind, tolerance: f64, index: usize) {
     println!("{}", known.name);
     let own = show("own", SolvedScene::new(&scene));
     println!("{own:?}");
-    for (what, resolution) in parts(own, *limit) {
+    for (what, resolution) in parts(own, *limit).into_iter().chain([("all", *limit)]) {
         show(what, SolvedScene::with_resolution(&scene, &resolution));
     }
+    let tighter = Scene { tolerance: LIMIT_TOLERANCE, ..scene };
+    show("tolerance", SolvedScene::with_resolution(&tighter, &own));
 }
 
 /// What the limit itself is worth: its change when every panel is halved and every extent doubled,

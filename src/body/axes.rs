@@ -95,8 +95,9 @@ const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Largest distance between half-widths that follow a gap, in the length within which it turns, and
 /// the least one (C): nearer to each other than the shortest waves are long they would be noise.
+/// With 0.02 a contact that ends 0.01 C before its bodies do is four tolerances of 1e-3 off.
 const TURN: f64 = 0.1;
-const NARROWEST: f64 = 0.02;
+const NARROWEST: f64 = 0.01;
 
 /// Most growth of the panels at a corner towards which a half-width falls within that length: over
 /// one of 0.1 C next to one of 0.015 C it falls by a third, and five nodes do not follow that.
@@ -158,10 +159,10 @@ const FINITE: [Resolution; 5] = [
         modes: 6,
         spacing: [0.05; 2],
         k_max: 36.0,
-        k_order: 3,
+        k_order: 4,
         k_across: 2.0,
         k_min: 0.05,
-        k_ratio: 6.0,
+        k_ratio: 8.0,
         images: 1,
         face_reach: 12.0,
         reach: 8.4,
@@ -316,6 +317,7 @@ const STRAIGHT_FINITE: [Resolution; 6] = [
         ratio: 2.3,
         modes: 4,
         spacing: [0.08; 2],
+        k_order: 3,
         k_min: 0.035,
         k_ratio: 7.0,
         reach: 9.2,
@@ -376,19 +378,29 @@ const STRAIGHT_SINGULAR: [Resolution; 6] = [
 ];
 
 /// Those of contacts that end before their bodies do at both ends: the pressure falls to zero
-/// there, and only its length has to be found. Where a long one is eccentric, its end depends on
-/// what long waves do as much as on its tips.
+/// there, and only its length has to be found. Waves have to tell how narrow the contact is as near
+/// to a tip as pressures are asked for, and the first panel is so short that a transform does not
+/// turn within it. Where a long one is eccentric, its end depends on what long waves do as much as
+/// on its tips.
 const TIPS: [Resolution; 5] = [
-    FINITE[0],
-    Resolution { k_order: 4, ..FINITE[0] },
+    Resolution { corner: 0.02, k_max: 30.0, ..FINITE[0] },
     Resolution {
-        order: 3,
-        corner: 0.04,
+        order: 4,
+        corner: 0.015,
+        corner_ratio: 2.6,
+        ratio: 2.6,
+        k_max: 60.0,
+        k_order: 4,
+        ..FINITE[0]
+    },
+    Resolution {
+        order: 4,
+        corner: 0.01,
         corner_ratio: 2.5,
         ratio: 2.5,
         modes: 4,
         spacing: [0.1; 2],
-        k_max: 20.0,
+        k_max: 95.0,
         k_order: 4,
         k_across: 2.5,
         k_min: 0.05,
@@ -399,12 +411,12 @@ const TIPS: [Resolution; 5] = [
     },
     Resolution {
         order: 5,
-        corner: 0.015,
+        corner: 0.005,
         corner_ratio: 2.0,
         ratio: 2.0,
         modes: 5,
         spacing: [0.05; 2],
-        k_max: 130.0,
+        k_max: 260.0,
         k_order: 4,
         k_across: 2.5,
         k_min: 0.01,
@@ -415,12 +427,12 @@ const TIPS: [Resolution; 5] = [
     },
     Resolution {
         order: 7,
-        corner: 0.01,
+        corner: 0.003,
         corner_ratio: 1.8,
         ratio: 1.8,
         modes: 7,
         spacing: [0.05; 2],
-        k_max: 260.0,
+        k_max: 500.0,
         k_order: 5,
         k_across: 3.0,
         k_min: 0.005,

@@ -18,7 +18,7 @@ const CORNER: f64 = 10.0;
 /// Width, in its lengths, of a contact that ends before its bodies do from which on it has the
 /// resolution of tighter tolerances, in proportion: the pressure is the higher, and changes the
 /// faster along the nodes, the shorter it is.
-const SLENDER: f64 = 0.1;
+const SLENDER: f64 = 0.15;
 
 /// Length (C) between a kink of the gap and the end of a contact beyond it below which the contact
 /// has the resolution of tighter tolerances, in proportion: the pressure rises and falls within it.
