@@ -72,7 +72,7 @@ case = edgeline.Case.from_toml("long-contact")
 steps = {"dx_m": 10e-6, "dy_m": case.tables["roller"]["length_m"] / 299}
 rough = case.changed(surface={"heights": "rough.npy", **steps})
 solution = edgeline.solve(case, tolerance=1e-2)
-axes = numpy.linspace(0, 1e-3, 300), numpy.linspace(0, 2e-3, 300), numpy.linspace(0, 1e-3, 400)
+axes = numpy.linspace(0, 1e-3, 250), numpy.linspace(0, 2e-3, 250), numpy.linspace(0, 1e-3, 300)
 def grid():
     solution.to_xarray(*axes)
 for task in (lambda: edgeline.solve(rough), grid):
