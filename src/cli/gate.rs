@@ -1,6 +1,6 @@
 //! `edgeline gate`: checks of the accuracy.
 
-use super::output::{Exit, print, print_json};
+use super::output::{Exit, print, print_json, warn};
 use super::study_options::StudyOptions;
 use crate::base::{Error, Result};
 use crate::body::EdgeModel;
@@ -76,6 +76,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
             kept = kept.without(&run);
             now = now.with(Baseline::of(&run));
         } else {
+            warn(&left_out(thresholds, &run));
             outcomes.extend(gate::evaluate(&run, thresholds, Some(&accepted)));
         }
     }
@@ -100,6 +101,17 @@ pub(super) fn run(arguments: Arguments) -> Result<Exit> {
     }
     let hold = outcomes.iter().all(|o| o.passed);
     Ok(if hold { Exit::Done } else { Exit::GateFailed })
+}
+
+/// What to say of the gates of models that the run does not have: it may pass without them.
+fn left_out(thresholds: &Gates, run: &StudyRun) -> Vec<String> {
+    let missing = EdgeModel::ALL.into_iter().filter(|model| !run.methods.contains(model));
+    let gates_of = |model| thresholds.gate.iter().filter(|gate| gate.method == model).count();
+    let counted = missing.map(|model| (model, gates_of(model))).filter(|(_, count)| *count > 0);
+    let text = |(model, count): (EdgeModel, usize)| {
+        format!("{}: {count} gates of {model} are not checked: --methods leaves it out", run.study)
+    };
+    counted.map(text).collect()
 }
 
 /// Refuses a run in which a model has no solution: its numbers would be missing among the accepted

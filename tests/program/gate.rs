@@ -226,6 +226,10 @@ fn another_psi_fails_the_command_and_names_its_model() {
     assert!(failed[0]["note"].as_str().unwrap().contains(" guilbault "), "{failed:?}");
     assert!(said(&bad).contains("guilbault"));
     assert_eq!(gate(&["--psi", "-1"]).status.code(), Some(2));
+    let files = ["--baseline", "accepted.json", "--out", "gate"];
+    let one = self::gate(at, &[&["small.toml", "--methods", "guilbault"], &files[..]].concat());
+    assert_eq!(one.status.code(), Some(0), "{}", said(&one));
+    assert!(said(&one).contains("gates of quarter-space are not checked"), "{}", said(&one));
     let cells = self::gate(at, &["small.toml", "--methods", "guilbault-cells", "--out", "gate"]);
     assert_eq!(cells.status.code(), Some(2));
     assert!(said(&cells).contains("--methods = guilbault-cells is not valid"), "{}", said(&cells));
