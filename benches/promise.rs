@@ -122,7 +122,7 @@ fn real_scene(index: usize, tips: bool) -> Scene {
     if u[8] < 0.5 {
         case.pose.offset_m = 0.1 * (4.0 * u[8] - 1.0) * half;
     }
-    let [from, to] = case.overlap().map(|y| y * case.hertz().c_m);
+    let [from, to] = case.overlap_m();
     case.load.eccentricity_m = Some(0.5 * (from + to) + 0.1 * (2.0 * u[9] - 1.0) * (to - from));
     Scene::new(&case, EdgeModel::QuarterSpace, None)
 }
@@ -537,8 +537,8 @@ fn hold(scenes: Range<usize>, kinds: &[Kind], tolerances: &[f64]) {
     }
 }
 
-/// The resolution `own` with one part after the other from `finer`.
-fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 8] {
+/// The resolution `own` with one part after the other from `finer`, and with all of them.
+fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 9] {
     [
         ("order", Resolution { order: finer.order, ..own }),
         ("corner", Resolution { corner: finer.corner, corner_ratio: finer.corner_ratio, ..own }),
@@ -565,6 +565,7 @@ fn parts(own: Resolution, finer: Resolution) -> [(&'static str, Resolution); 8] 
                 ..own
             },
         ),
+        ("all", finer),
     ]
 }
 
@@ -592,7 +593,7 @@ fn causes(kind: Kind, tolerance: f64, index: usize) {
     println!("{}", known.name);
     let own = show("own", SolvedScene::new(&scene));
     println!("{own:?}");
-    for (what, resolution) in parts(own, *limit).into_iter().chain([("all", *limit)]) {
+    for (what, resolution) in parts(own, *limit) {
         show(what, SolvedScene::with_resolution(&scene, &resolution));
     }
     let tighter = Scene { tolerance: LIMIT_TOLERANCE, ..scene };
@@ -609,7 +610,7 @@ fn limit(count: usize) {
             let (own, finer) = (*kind.limit(), kind.limit().refined());
             let usual = |(what, resolution)| (what, resolution, LIMIT_TOLERANCE);
             let tighter = ("tolerance", own, 0.1 * LIMIT_TOLERANCE);
-            let all = parts(own, finer).into_iter().chain([("all", finer)]).map(usual);
+            let all = parts(own, finer).into_iter().map(usual);
             for (what, resolution, tolerance) in all.chain([tighter]) {
                 let scene = Scene { tolerance, ..known.scene.clone() };
                 match SolvedScene::with_resolution(&scene, &resolution) {

@@ -95,7 +95,7 @@ const TOLERANCES: [f64; 6] = [1e-1, 3e-2, 1e-2, 5e-3, 1e-3, 1e-4];
 
 /// Largest distance between half-widths that follow a gap, in the length within which it turns, and
 /// the least one (C): nearer to each other than the shortest waves are long they would be noise.
-/// With 0.02 a contact that ends 0.01 C before its bodies do is four tolerances of 1e-3 off.
+/// With 0.02 a contact that ends as much before its bodies do is four tolerances of 1e-3 off.
 const TURN: f64 = 0.1;
 const NARROWEST: f64 = 0.01;
 

@@ -109,7 +109,7 @@ fn left_out(thresholds: &Gates, run: &StudyRun) -> Vec<String> {
     let gates_of = |model| thresholds.gate.iter().filter(|gate| gate.method == model).count();
     let counted = missing.map(|model| (model, gates_of(model))).filter(|(_, count)| *count > 0);
     let text = |(model, count): (EdgeModel, usize)| {
-        format!("{}: {count} gates of {model} are not checked: --methods leaves it out", run.study)
+        format!("{}: {count} gates of {model} are not checked: it is not run", run.study)
     };
     counted.map(text).collect()
 }

@@ -448,7 +448,7 @@ fn logarithmic(nu: f64, block: Material, factors: Factors, [drop, arm, offset]: 
         ..ProfileSpec::new(ProfileKind::Logarithmic)
     });
     case.pose.offset_m = 0.5 * offset * case.roller.length_m;
-    let [from, to] = case.overlap().map(|y| y * case.hertz().c_m);
+    let [from, to] = case.overlap_m();
     case.load.eccentricity_m = Some(0.5 * (from + to) + arm * (to - from));
     case
 }

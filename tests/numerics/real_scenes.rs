@@ -127,7 +127,7 @@ fn draw(index: usize) -> (EdgeModel, Case) {
         let most = 0.5 * (case.roller.length_m + case.block.length_m) - 0.6 * shorter;
         case.pose.offset_m = (5.0 * u[12] - 1.0) * most;
     }
-    let [from, to] = case.overlap().map(|y| y * case.hertz().c_m);
+    let [from, to] = case.overlap_m();
     match u[13] {
         v if v < 0.5 => {
             // At 0.25 of the length the contact of straight bodies leaves a quarter of it.
